@@ -1,7 +1,7 @@
 """BeliefNest: nested belief simulators for embodied agents with a Theory of Mind.
 
-What is listed in `__all__` is the public surface; each name is loaded on first use, so
-that `import beliefnest` stays fast.
+`__all__` lists the public surface. Each name is imported on first use, so that `import
+beliefnest` is fast.
 """
 
 import importlib

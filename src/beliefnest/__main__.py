@@ -1,4 +1,4 @@
-"""`python -m beliefnest`."""
+"""Entry point of `python -m beliefnest`."""
 
 from beliefnest.cli import main
 

@@ -1,7 +1,7 @@
-"""Every error the package raises on purpose.
+"""Errors that the package raises.
 
-A message says what was found, where, and what to do about it. `exit_status` is the
-process status the command line ends with when the error reaches it.
+A message says what is wrong, where, and what to do. `exit_status` is the exit status of the
+command line after the error.
 """
 
 __all__ = [
@@ -32,11 +32,11 @@ class BeliefNestError(Exception):
 
 
 class InputError(BeliefNestError):
-    """An argument is not of the form the call takes."""
+    """An argument has a wrong form or value."""
 
 
 class WorldError(BeliefNestError):
-    """An act is impossible in the world; nothing was changed."""
+    """An act is impossible in the world; it changed nothing."""
 
 
 class PathError(BeliefNestError):
@@ -44,7 +44,7 @@ class PathError(BeliefNestError):
 
 
 class ForkedError(BeliefNestError):
-    """Something is used in another process than the one that opened it."""
+    """An object is used in another process than the one that opened it."""
 
 
 class PositionError(BeliefNestError):
@@ -60,12 +60,12 @@ class UnknownNameError(BeliefNestError):
 
 
 class MissingExtraError(UnknownNameError):
-    """A package that an extra installs is not there; the message gives the command.
+    """A package that belongs to an extra is missing; the message has the command to install it.
 
     Args:
-        what: What needs it, as a beginning of a sentence.
+        what: Beginning of the message: the feature that needs the package.
         extra: Name of the extra.
-        instead: What else can be done.
+        instead: End of the message: an alternative.
     """
 
     def __init__(self, what: str, extra: str, instead: str = "") -> None:
@@ -73,7 +73,7 @@ class MissingExtraError(UnknownNameError):
 
 
 class ScenarioError(BeliefNestError):
-    """A scenario file is wrong; the message names file, line and key."""
+    """A scenario file is invalid; the message names file, line and key."""
 
 
 class TemplateError(BeliefNestError):
@@ -81,29 +81,29 @@ class TemplateError(BeliefNestError):
 
 
 class BranchError(BeliefNestError):
-    """A branch cannot be selected, forked, renamed or deleted as asked."""
+    """A branch cannot be selected, forked, renamed or deleted."""
 
 
 class StoreError(BeliefNestError):
-    """A run file is damaged, foreign, newer than this program, or locked by a writer."""
+    """A run file is damaged, foreign, of a newer format, or locked by a writer."""
 
 
 class NotBegunError(StoreError):
-    """A run was stopped while it began: there is nothing in its file that could go on."""
+    """A run was stopped while it began, so that its file has nothing to continue."""
 
 
 class ProgramError(BeliefNestError):
-    """An agent program failed where its success was required."""
+    """An agent program failed where it had to succeed."""
 
 
 class BodyError(BeliefNestError):
-    """The Minecraft side failed to start, died, or broke the channel's protocol."""
+    """The Minecraft process failed to start, died, or broke the protocol of the channel."""
 
     exit_status = 3
 
 
 class BodyLostError(BodyError):
-    """The process behind a body ended; what was asked of it counts as not having happened."""
+    """The process of a body died; the acts it was asked for count as not done."""
 
 
 class ModelError(BeliefNestError):

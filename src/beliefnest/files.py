@@ -1,6 +1,6 @@
-"""Reading files that a person names: regular ones, and no larger than what is asked for allows.
+"""Safe reading of files that a user names: regular files of limited size.
 
-A FIFO would keep a reader waiting, a device could go on for ever.
+A FIFO would block the reader, and a device could be endless.
 """
 
 import errno
@@ -24,12 +24,12 @@ _KINDS = (
 
 
 def open_regular(path: Path) -> BinaryIO:
-    """Return a file opened to be read in binary.
+    """Open a regular file for binary reading.
 
     Raises:
-        OSError: It cannot be opened or is no regular file; `strerror` says what it is.
+        OSError: The file cannot be opened or is not regular; `strerror` says which.
     """
-    # Not to wait for whoever might write into a FIFO; it changes nothing for regular files.
+    # O_NONBLOCK: do not wait for a writer of a FIFO. It has no effect on regular files.
     descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK)
     mode = os.fstat(descriptor).st_mode
     if not stat.S_ISREG(mode):
@@ -41,10 +41,10 @@ def open_regular(path: Path) -> BinaryIO:
 
 
 def read_regular(path: Path, longest: int = _LONGEST) -> bytes:
-    """Return all of a file, if it is no longer than `longest` bytes.
+    """Return the content of a regular file of at most `longest` bytes.
 
     Raises:
-        OSError: It cannot be read, is no regular file or is too long; `strerror` says which.
+        OSError: The file cannot be read, is not regular or is too long; `strerror` says which.
     """
     with open_regular(path) as file:
         content = file.read(longest + 1)
@@ -54,28 +54,28 @@ def read_regular(path: Path, longest: int = _LONGEST) -> bytes:
 
 
 def read_regular_text(path: Path, longest: int = _LONGEST) -> str:
-    """Return all of a file as text, its line ends as those of Unix.
+    """Return the text of a regular file, with Unix line ends.
 
     Raises:
         OSError: As `read_regular`.
-        UnicodeDecodeError: It is not UTF-8.
+        UnicodeDecodeError: The file is not UTF-8.
     """
     text = read_regular(path, longest).decode()
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def decode_json(content: bytes | str, form: type[_T]) -> _T:
-    """Return a value of a form from JSON.
+    """Decode JSON and validate it against a type.
 
     Raises:
-        msgspec.DecodeError: The content is no JSON, is nested without end, or has another form.
+        msgspec.DecodeError: The content is not JSON, is nested too deeply, or has another form.
     """
     try:
         return msgspec.json.decode(content, type=form)
     except RecursionError:
-        raise msgspec.DecodeError("it is nested too deep") from None
+        raise msgspec.DecodeError("it is nested too deeply") from None
     except UnicodeError as fault:
-        raise msgspec.DecodeError(f"it is no UTF-8 text: {fault}") from None
+        raise msgspec.DecodeError(f"it is not UTF-8 text: {fault}") from None
 
 
 def _kind(mode: int) -> str:

@@ -1,8 +1,8 @@
-"""Things that belong to the process that opened them, and that a forked child may not use.
+"""Objects that belong to the process that opened them; a forked child may not use them.
 
-A fork copies an open run file, the connection to Node and their locks into the child. SQLite does
-not allow that use (https://www.sqlite.org/howtocorrupt.html, section 2.6), and two processes that
-write to one connection destroy what each of them says.
+A fork copies an open run file, the connection to Node and their locks into the child. SQLite
+forbids such use (https://www.sqlite.org/howtocorrupt.html, section 2.6), and two processes that
+write to one connection mix up their messages.
 """
 
 import os
@@ -14,9 +14,9 @@ __all__ = ["Owned"]
 
 
 class Owned:
-    """Something that only the process that made it may use; a base class.
+    """Base class of objects that only the process that created them may use.
 
-    A class that holds something of the operating system overrides `disown`.
+    Subclasses that hold a resource of the operating system override `disown`.
     """
 
     def __init__(self) -> None:
@@ -25,14 +25,14 @@ class Owned:
 
     @property
     def is_own(self) -> bool:
-        """True if this process made it, and not one that this process was forked from."""
+        """True if this process created the object; False in a forked child."""
         return self._owner == os.getpid()
 
     def check_own(self, what: str) -> None:
-        """Refuse its use in a forked child; `what` names it at the beginning of the message.
+        """Refuse the use in a forked child; messages begin with `what`, the object's name.
 
         Raises:
-            ForkedError: Another process made it.
+            ForkedError: Another process created the object.
         """
         if not self.is_own:
             raise ForkedError(
@@ -42,7 +42,7 @@ class Owned:
             )
 
     def disown(self) -> None:
-        """Let go, in a forked child, of what the child has inherited."""
+        """Release inherited resources in a forked child."""
 
 
 _all: WeakSet[Owned] = WeakSet()

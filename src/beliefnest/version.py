@@ -1,4 +1,4 @@
-"""The version of the package, for what runs record."""
+"""Version of the package, which runs record."""
 
 __all__ = ["VERSION"]
 

@@ -61,7 +61,7 @@ def test_a_study_that_was_not_recorded_has_cells_and_probes_alone(tmp_path):
     assert list(cells.cell) == list(probes.cell)
     assert cells.run.isna().all()
     for read in (frames.requests_df, frames.events_df, frames.claims_df):
-        with pytest.raises(bn.InputError, match="no cell of the study was recorded"):
+        with pytest.raises(bn.InputError, match="the study recorded no runs"):
             read(tmp_path / "plain")
 
 

@@ -1,4 +1,4 @@
-"""Runs and studies as tables of pandas (the extra `study`); all join on `cell`."""
+"""Runs and studies as pandas data frames (extra `study`), joined by the column `cell`."""
 
 from beliefnest.frames.tables import (
     beliefs_df,

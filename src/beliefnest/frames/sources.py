@@ -1,4 +1,4 @@
-"""Where tables come from: run files, folders of runs, folders of studies."""
+"""Sources of data frames: run files, folders of runs, folders of studies."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ _AGAIN = "move it away to read the recorded runs alone"
 
 
 class _RunForm(msgspec.Struct):
-    """What came of one condition."""
+    """Result of one condition."""
 
     run_dir: str
     probes: list[ProbeForm]
@@ -41,10 +41,10 @@ class RecordedCell:
     """One cell: a scenario under one condition, played once.
 
     Attributes:
-        cell: Its id: in a study the name of the cell, in a run's folder the folder of the
-            condition in it, else the name of the run file.
-        about: What it was and what came of it, as plain values; empty where only a run file is.
-        file: The run file; None: nothing was recorded.
+        cell: Id of the cell: in a study its name, in a run's folder the folder of its condition,
+            else the name of the run file.
+        about: Settings and results as plain values; empty if there is only a run file.
+        file: Run file; None if nothing was recorded.
     """
 
     cell: str
@@ -53,7 +53,7 @@ class RecordedCell:
 
 
 def study_of(source: Source) -> StudyResult | None:
-    """Return the study that a source is; None: it is none."""
+    """Return the study of a source; None if the source is not a study."""
     if isinstance(source, StudyResult):
         return source
     return StudyResult.read(source) if (Path(source) / "cells").is_dir() else None
@@ -63,7 +63,7 @@ def cells_of(source: Source) -> Iterator[RecordedCell]:
     """Yield the cells of a source, in order.
 
     Raises:
-        InputError: There is no run and no study.
+        InputError: The source holds neither a run nor a study.
     """
     study = study_of(source)
     if study is not None:
@@ -77,7 +77,9 @@ def cells_of(source: Source) -> Iterator[RecordedCell]:
     known = {Path(run["run_dir"]).absolute(): run for run in report.get("runs", [])}
     files = sorted(path.rglob(_RUN_FILE))
     if not files:
-        raise InputError(f"there is no run at {path}: no {_RUN_FILE}, and it is no study's folder")
+        raise InputError(
+            f"there is no run at {path}: it has no {_RUN_FILE} and is not the folder of a study"
+        )
     for file in files:
         relative = file.parent.relative_to(path).as_posix()
         about = known.get(file.parent.absolute(), {})

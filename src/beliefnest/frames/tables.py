@@ -1,4 +1,4 @@
-"""What runs and studies hold, as tables of pandas, with ids to join them on."""
+"""Contents of runs and studies as pandas data frames, with ids to join them."""
 
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -38,27 +38,27 @@ Row = dict[str, Any]
 
 
 def cells_df(source: Source) -> "pandas.DataFrame":
-    """One row for each cell: `cell`, what it was, `ok`, `error`, `ticks`, `probes`, `right`, `run`.
+    """Return one row per cell: its settings, `ok`, `error`, `ticks`, `probes`, `right`, `run`.
 
     Args:
         source: A run file, the folder of a run or a study, or a study's result.
 
     Raises:
-        InputError: There is no run and no study.
+        InputError: The source holds neither a run nor a study.
         MissingExtraError: pandas is not installed.
     """
     return _frame((_cell_row(each) for each in cells_of(source)), ["cell"])
 
 
 def episodes_df(source: Source | Iterable[Measures]) -> "pandas.DataFrame":
-    """One row for each episode: what it was, success, ticks, messages and all other measures.
+    """Return one row per episode: its settings, success, ticks, messages and other measures.
 
     Args:
         source: A study of episodes (a folder or a result), whose rows also have `cell`; or
-            measures, as `Episode.measures` gives them.
+            measures, as of `Episode.measures`.
 
     Raises:
-        InputError: There is no study of episodes.
+        InputError: The source is not a study of episodes.
         MissingExtraError: pandas is not installed.
     """
     if not isinstance(source, str | Path | StudyResult):
@@ -71,18 +71,18 @@ def episodes_df(source: Source | Iterable[Measures]) -> "pandas.DataFrame":
 
 
 def rounds_df(source: Source) -> "pandas.DataFrame":
-    """Return one row for each agent in each round of episodes: `cell`, `branch`, `round`, `agent`.
+    """Return one row for each agent in each round of episodes.
 
-    These four tell it from all others; then come its policy, program, and how that ended.
-    Arguments and errors as for `requests_df`.
+    The columns `cell`, `branch`, `round` and `agent` identify a row. The others are its policy,
+    its program and the program's result. Arguments and errors as for `requests_df`.
     """
     return _frame(_recorded(source, _rounds), ["cell", "branch", "round", "agent"])
 
 
 def probes_df(source: Source) -> "pandas.DataFrame":
-    """One row for each probe: `cell`, `probe` (as requests and branches call it), `ok` and more.
+    """Return one row per probe: `cell`, `probe` (its name in requests and branches), `ok`, ...
 
-    Arguments and errors as for `cells_df`; a run file alone knows of no probes.
+    Arguments and errors as for `cells_df`. A run file without its folder has no probes.
     """
     rows = (
         {
@@ -97,31 +97,32 @@ def probes_df(source: Source) -> "pandas.DataFrame":
 
 
 def requests_df(source: Source) -> "pandas.DataFrame":
-    """Return one row for each request to a model: `cell`, `request`, `probe`, `messages`, `answer`.
+    """Return one row per request to a model: `cell`, `request`, `probe`, messages, answer.
 
-    Arguments and errors as for `cells_df`; of a study, cells that were recorded.
+    Arguments and errors as for `cells_df`. Cells of a study that were not recorded have no rows.
     """
     return _frame(_recorded(source, _requests), ["cell", "request"])
 
 
 def events_df(source: Source) -> "pandas.DataFrame":
-    """One row for each event: `cell`, `path`, `branch`, `entry`, `number`, `tick`, `kind`, `actor`.
+    """Return one row per event: its place, `tick`, `kind`, `actor` and details.
 
-    The first five tell it from all others. Arguments and errors as for `requests_df`.
+    The columns `cell`, `path`, `branch`, `entry` and `number` identify a row. Arguments and
+    errors as for `requests_df`.
     """
     return _frame(_recorded(source, _events), ["cell", "path", "branch", "entry", "number"])
 
 
 def claims_df(source: Source, paths: Sequence[str] | None = None) -> "pandas.DataFrame":
-    """One row for each claim in the real world and each belief: whether it was taken up, and why.
+    """Return one row per claim and belief: if the claim was taken up there, and why.
 
     Args:
         source: As for `requests_df`.
-        paths: Beliefs; None: that of each agent.
+        paths: Belief paths; None for the belief of each agent.
 
     Raises:
         PathError: A path is malformed or names an unknown agent.
-        InputError: There is no run and no study.
+        InputError: The source holds neither a run nor a study.
         MissingExtraError: pandas is not installed.
     """
     return _frame(
@@ -130,7 +131,7 @@ def claims_df(source: Source, paths: Sequence[str] | None = None) -> "pandas.Dat
 
 
 def beliefs_df(source: Source, paths: Sequence[str]) -> "pandas.DataFrame":
-    """One row for each container and agent that a belief knows of, at each tick with a change.
+    """Return one row per known container and agent of a belief, at each tick with a change.
 
     Args:
         source: As for `requests_df`.
@@ -138,7 +139,7 @@ def beliefs_df(source: Source, paths: Sequence[str]) -> "pandas.DataFrame":
 
     Raises:
         PathError: A path is malformed or names an unknown agent.
-        InputError: There is no run and no study.
+        InputError: The source holds neither a run nor a study.
         MissingExtraError: pandas is not installed.
     """
     return _frame(
@@ -166,18 +167,20 @@ def _cell_row(recorded: RecordedCell) -> Row:
 
 
 def _recorded(source: Source, rows: Any) -> Iterator[Row]:
-    """Yield the rows of every recorded cell, each read at one moment."""
+    """Yield the rows of every recorded cell; each run file is read in one consistent state."""
     cells = list(cells_of(source))
     if cells and all(each.file is None for each in cells):
         raise InputError(
-            "no cell of the study was recorded, so that only cells and probes are known; play it "
-            "in another folder with record=True, or `beliefnest study --record`"
+            "the study recorded no runs, so that it has only cells and probes; run it again in "
+            "another folder with record=True or `beliefnest study --record`"
         )
     for each in cells:
         if each.file is None:
             continue
         if not Path(each.file).is_file():
-            raise InputError(f"the run of the cell {each.cell} is not at {each.file} any more")
+            raise InputError(
+                f"the run file {each.file} of the cell {each.cell} is missing; restore it"
+            )
         with SqliteJournal.read(each.file) as journal, journal.unchanging():
             for row in rows(journal):
                 yield {"cell": each.cell, **row}
@@ -265,7 +268,7 @@ def _held(held: Mapping[str, Any]) -> Row:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as one cell of a table: structures as JSON."""
+    """Return a value for a cell of the data frame: structures as JSON."""
     if isinstance(value, list | dict | tuple):
         return json.dumps(value, sort_keys=True)
     return value

@@ -1,4 +1,4 @@
-"""Scenarios and suites as tasks of Inspect AI (the extra `inspect`): `registry.py` has them all."""
+"""Scenarios and suites as tasks of Inspect AI (extra `inspect`); see `registry.py`."""
 
 from importlib.util import find_spec
 

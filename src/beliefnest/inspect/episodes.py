@@ -1,4 +1,4 @@
-"""Tasks of episodes: a model plays the players, round after round, by what they believe."""
+"""Tasks of episodes: a model controls players round after round, from their beliefs."""
 
 import threading
 from collections.abc import Callable, Coroutine, Mapping, Sequence
@@ -38,21 +38,22 @@ def episode_task(
     players: str | list[str] | None,
     parameters: dict[str, Any],
 ) -> Task:
-    """Return the task of episodes; each instance is a sample.
+    """Return a task whose samples are the instances of an episode.
 
     Args:
-        name: A built-in task or scenario, or the path of a file of either.
-        order: Order of Theory of Mind at which the model plays, or `omniscient`; None: the one
-            that the task needs.
-        seeds: How many instances.
-        seed: The first of them.
+        name: A built-in task or scenario, or the path of a task or scenario file.
+        order: Order of Theory of Mind of the model's players, or `omniscient`; None for the
+            order that the task needs.
+        seeds: Number of instances.
+        seed: Seed of the first instance.
         world: Name of the world.
-        condition: Number of a scenario's condition; None: as written.
-        players: Whom the model plays; None: all players. The others are played as the task says.
+        condition: Number of a scenario's condition; None for the scenario as written.
+        players: Agents that the model controls; None for all players. The task controls the
+            others.
         parameters: Values of the task's parameters.
 
     Raises:
-        BeliefNestError: There is no such task, or an argument is wrong.
+        BeliefNestError: There is no such task, or an argument is invalid.
     """
     if seeds < 1:
         raise InputError(f"seeds is {seeds}; give at least 1")
@@ -90,11 +91,13 @@ def episode_task(
 
 @dataclass
 class _Asked:
-    """Inspect's model, asked from the thread in which an episode is played.
+    """Adapter to Inspect's model, which is called from the thread that plays an episode.
 
     Attributes:
-        generate: Asks it, on the event loop.
-        said: What was asked and answered, in order.
+        generate: Coroutine function that asks the model, on the event loop.
+        said: Requests and answers, in order.
+        output: Last answer in Inspect's form.
+        name: Name of the model for records.
     """
 
     generate: Callable[[Sequence[Message], Sampling], Coroutine[Any, Any, ModelOutput]]
@@ -103,7 +106,7 @@ class _Asked:
     name: str = "inspect"
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Ask it, and wait."""
+        """Ask the model and wait for its answer."""
         self.output = output = from_thread.run(self.generate, messages, sampling)
         self.said += [*messages, Message("assistant", output.completion)]
         used = output.usage
@@ -115,8 +118,8 @@ class _Asked:
 
 @solver
 def play_episode() -> Solver:
-    """Play the sample's episode; the model is asked for the programs of its players."""
-    # A world in Minecraft is a process: one at a time.
+    """Play the sample's episode; the model writes the programs of its players."""
+    # A Minecraft world is a separate process, so play one episode at a time there.
     turn = threading.Lock()
 
     async def generated(messages: Sequence[Message], sampling: Sampling) -> ModelOutput:
@@ -141,7 +144,7 @@ def play_episode() -> Solver:
 
 
 def _report(sample: dict[str, Any], asked: _Asked) -> dict[str, Any]:
-    """Play an episode, and what came of it as plain values."""
+    """Play an episode and return its results as plain values."""
     task = Played.from_mapping(sample["plain"], sample["instance"])
     if sample["order"] == _OMNISCIENT:
         policy: ModelPolicy = OmniscientModelPolicy(asked, 2)
@@ -168,7 +171,7 @@ def _report(sample: dict[str, Any], asked: _Asked) -> dict[str, Any]:
 
 
 def _line(number: int, done: Mapping[str, Any]) -> str:
-    """Return what an agent did in a round, and why it failed, in one paragraph."""
+    """Return an agent's program in a round and the reason of its failure, in one line."""
     reason = f": {done['reason']}" if done["reason"] else ""
     deed = done["program"] or "nothing"
     return f"round {number + 1}, {done['agent']}: {deed} ({done['ended']}{reason})"
@@ -176,7 +179,7 @@ def _line(number: int, done: Mapping[str, Any]) -> str:
 
 @scorer(metrics=metrics_by("needs"))
 def goal_reached() -> Scorer:
-    """Whether the episode's goal was reached; when each condition came true, and who did what."""
+    """Score an episode by its goal; explain when each condition came true, and all rounds."""
 
     async def score(state: TaskState, target: Target) -> Score:
         found = state.metadata["episode"]

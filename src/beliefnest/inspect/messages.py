@@ -1,4 +1,4 @@
-"""Conversations in Inspect's form."""
+"""Conversion of conversations to Inspect's form."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ __all__ = ["messages_of"]
 
 
 def messages_of(messages: Sequence[Message]) -> list[ChatMessage]:
-    """Return a conversation in Inspect's form."""
+    """Convert a conversation to Inspect's form."""
     forms = {
         "system": ChatMessageSystem,
         "user": ChatMessageUser,

@@ -1,4 +1,4 @@
-"""What all tasks have alike: a data set of samples, and scores that say why."""
+"""Common parts of all tasks: data sets of samples, and scores with explanations."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -12,14 +12,14 @@ __all__ = ["metrics_by", "score_of", "task_of"]
 
 
 def task_of(name: str, samples: list[Sample], scorer: Scorer, *before: Solver) -> Task:
-    """Return a task whose samples a model answers once, after some solvers."""
+    """Return a task that runs some solvers and then asks the model once per sample."""
     return Task(
         dataset=MemoryDataset(samples, name=name), solver=[*before, generate()], scorer=scorer
     )
 
 
 def metrics_by(key: str) -> list[Metric | dict[str, list[Metric]]]:
-    """Accuracy, its standard error, and accuracy for each value that samples have under a key."""
+    """Return accuracy, its standard error, and accuracy grouped by a key of the samples."""
     return [accuracy(), stderr(), grouped(accuracy(), key, all=False)]
 
 
@@ -30,7 +30,7 @@ def score_of(
     lines: Iterable[str],
     metadata: dict[str, Any] | None = None,
 ) -> Score:
-    """Return a score, with the lines that explain it in the log."""
+    """Return a score with explaining lines for the log."""
     return Score(
         value=CORRECT if ok else INCORRECT,
         answer=answer,

@@ -1,4 +1,4 @@
-"""Everything that `inspect` finds under `beliefnest/`: tasks, and our offline model."""
+"""Entry point for Inspect: all tasks under `beliefnest/`, and the offline model."""
 
 from typing import Any
 
@@ -32,19 +32,19 @@ def scenario(
     world: str = "embedded",
     seed: int = 0,
 ) -> Task:
-    """One's own scenario; arguments as for the built-in ones, and `file`, its path."""
+    """Return the task of your own scenario `file`; arguments as for built-in scenarios."""
     return scenario_task(file, conditions=conditions, variations=variations, world=world, seed=seed)
 
 
 @task
 def hi_tom(file: str, stories: int | None = None) -> Task:
-    """Return the stories of Hi-ToM's form in `file`, the first so many of them."""
+    """Return the task of stories in Hi-ToM's form; `stories` limits their number."""
     return suite_task("hi-tom", file, stories)
 
 
 @task
 def stories(file: str, stories: int | None = None) -> Task:
-    """One's own stories, JSON lines in `file`, the first so many of them."""
+    """Return the task of your own stories, JSON lines; `stories` limits their number."""
     return suite_task("stories", file, stories)
 
 
@@ -58,7 +58,7 @@ def episode(
     condition: int | None = None,
     players: str | list[str] | None = None,
 ) -> Task:
-    """Episodes of one's own task or scenario, in `file`; other arguments as for built-in tasks."""
+    """Return the task of your own episode `file`; arguments as for built-in tasks."""
     return episode_task(
         file,
         order=order,
@@ -72,7 +72,7 @@ def episode(
 
 
 def _register_episodes(name: str) -> None:
-    """Make a task of a built-in task; a hyphen of its name becomes an underline."""
+    """Register a built-in task; hyphens of its name become underscores."""
 
     @task(name=name.replace("-", "_"))
     def builtin(
@@ -96,7 +96,7 @@ def _register_episodes(name: str) -> None:
 
 
 def _register(name: str) -> None:
-    """Make a task of a built-in scenario; a hyphen of its name becomes an underline."""
+    """Register a built-in scenario; hyphens of its name become underscores."""
 
     @task(name=name.replace("-", "_"))
     def builtin(
@@ -111,7 +111,7 @@ def _register(name: str) -> None:
 
 
 for _name in builtin_names():
-    # Where nothing is asked, there is nothing to score.
+    # A scenario without probes has nothing to score.
     if "probes" in read_document(_name).root.value:
         _register(_name)
 for _name in builtin_tasks():
@@ -120,7 +120,7 @@ for _name in builtin_tasks():
 
 @modelapi(name="beliefnest")
 class OfflineAPI(ModelAPI):
-    """`beliefnest/offline`: our own model that needs no network and no key."""
+    """Offline model as `beliefnest/offline`; it needs no network and no key."""
 
     def __init__(
         self,
@@ -132,7 +132,7 @@ class OfflineAPI(ModelAPI):
     ) -> None:
         super().__init__(model_name, base_url, api_key, [], config)
         if model_name.rpartition("/")[2] != "offline":
-            raise UnknownNameError(f"there is no model {model_name!r}; there is beliefnest/offline")
+            raise UnknownNameError(f"there is no model {model_name!r}; use beliefnest/offline")
         self._model = OfflineModel()
 
     async def generate(
@@ -142,7 +142,7 @@ class OfflineAPI(ModelAPI):
         tool_choice: ToolChoice,
         config: GenerateConfig,
     ) -> ModelOutput:
-        """Answer a conversation; tools play no part."""
+        """Answer a conversation; tools are ignored."""
         messages = [
             Message(each.role, each.text)
             for each in input

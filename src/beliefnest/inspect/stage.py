@@ -1,4 +1,4 @@
-"""What a sample stands for: one request of one probe, asked and judged in a nest of its own."""
+"""Execution of samples: each sample is one request of one probe, judged in its own nest."""
 
 import threading
 from collections.abc import Mapping, Sequence
@@ -23,7 +23,10 @@ _ONCE = Asking(attempts=1, keeps_unanswered=True)
 
 
 def requests_of(scenario: Scenario) -> list[Probe]:
-    """The probes of a scenario, one for each single request; those that expect nothing left out."""
+    """Return the probes of a scenario, split so that each makes a single request.
+
+    Probes without expectations are left out.
+    """
     found = []
     for probe in scenario.probes:
         told = tuple(each for each in probe.expect if not isinstance(each, Answers))
@@ -35,11 +38,11 @@ def requests_of(scenario: Scenario) -> list[Probe]:
 
 @dataclass(frozen=True)
 class JudgedOutcome:
-    """An answer that was judged.
+    """A judged answer.
 
     Attributes:
-        outcome: What it came to.
-        grounds: What the belief that was asked holds of what is expected, and why, in lines.
+        outcome: Outcome of the probe.
+        grounds: Lines that explain the belief about the expected containers.
     """
 
     outcome: ProbeOutcome
@@ -48,31 +51,31 @@ class JudgedOutcome:
 
 @dataclass
 class _Listener:
-    """A model that notes what it is asked, and gives the answer that it was given."""
+    """Model that records its requests and always gives the same answer."""
 
     text: str
     name: str = "inspect"
     asked: list[tuple[Message, ...]] = field(default_factory=list)
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Return the answer that it was given."""
+        """Record the request and return the fixed answer."""
         self.asked.append(tuple(messages))
         return Answer(self.text)
 
 
 class Stage:
-    """Plays scenarios, one at a time, in worlds that stay open; threads wait for each other."""
+    """Plays scenarios in worlds that stay open; threads take turns."""
 
     def __init__(self) -> None:
         self._turn = threading.Lock()
-        # The process behind a world ends with the one that started it.
+        # Worlds need no clean-up here: their processes end with this one.
         self._worlds = Worlds(0)
 
     def prompt(self, sample: Mapping[str, Any]) -> tuple[Message, ...]:
-        """What a model is asked in a sample.
+        """Return the messages that a model gets for a sample.
 
         Args:
-            sample: The sample's metadata: scenario, condition, variation, world, seed, request.
+            sample: Metadata of the sample: scenario, condition, variation, world, seed, request.
 
         Raises:
             BeliefNestError: The scenario cannot be played.
@@ -82,7 +85,7 @@ class Stage:
         return listener.asked[0]
 
     def judged(self, sample: Mapping[str, Any], answer: str) -> JudgedOutcome:
-        """What an answer comes to: its program is run in the belief, or its words are judged.
+        """Judge an answer: run its program in the belief, or compare its words.
 
         Raises:
             BeliefNestError: The scenario cannot be played.

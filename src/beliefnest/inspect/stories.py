@@ -1,4 +1,4 @@
-"""Tasks of suites: stories in words, questions about who believes what, containers to choose."""
+"""Tasks of suites: stories in words with questions; the answer is a container."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from beliefnest.scenarios.stories.playing import PlayedStory
 __all__ = ["NOWHERE", "story_answer", "suite_task"]
 
 NOWHERE = "in none of them"
-"""The option that a thing is held to be in no container."""
+"""Answer option for a thing that is in no container."""
 
 _READERS = {"hi-tom": read_items, "stories": read_own}
 
@@ -29,11 +29,11 @@ def suite_task(suite: str, file: str, limit: int | None) -> Task:
 
     Args:
         suite: `hi-tom` or `stories`.
-        file: File of stories, questions and answers, as `beliefnest suite` takes it.
-        limit: Take no more stories than this; None: all.
+        file: File of stories, questions and answers, as for `beliefnest suite`.
+        limit: Greatest number of stories; None for all.
 
     Raises:
-        InputError: There is no such file, or it is of another form.
+        InputError: The file is missing or has another form.
     """
     stories = _READERS[suite](Path(file))[:limit]
     samples = [
@@ -85,7 +85,7 @@ def _sample(
 
 @scorer(metrics=metrics_by("order"))
 def story_answer() -> Scorer:
-    """Compare the container with what is expected; tell what the nest holds, and why."""
+    """Score an answer by the expected container; explain the belief of the nest."""
 
     async def score(state: TaskState, target: Target) -> Score:
         answer, _ = parse_answer(state.output.completion, state.metadata["options"])
@@ -96,7 +96,7 @@ def story_answer() -> Scorer:
 
 
 def _explanation(sample: dict[str, object]) -> tuple[str, ...]:
-    """What the nest of the story says to the question, and on what grounds."""
+    """Return the nest's answer to a question and the reasons for it, in lines."""
     stories = _READERS[str(sample["suite"])](Path(str(sample["file"])))
     asked = stories[int(str(sample["story"]))]
     item = asked.items[int(str(sample["item"]))]

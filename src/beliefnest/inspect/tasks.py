@@ -1,4 +1,4 @@
-"""Tasks of scenarios: samples, what a model is asked, and how its answer is scored."""
+"""Tasks of scenarios: their samples, prompts and scores."""
 
 import json
 from typing import Any
@@ -31,17 +31,17 @@ def scenario_task(
     world: str,
     seed: int,
 ) -> Task:
-    """Return the task of a scenario; each request of each probe of each of its cells is a sample.
+    """Return the task of a scenario; each request of each probe of each cell is a sample.
 
     Args:
         scenario: Name of a built-in scenario, or path of a file.
-        conditions: Numbers of conditions; None: all.
-        variations: How many variations are drawn; None: the scenario as written.
+        conditions: Numbers of conditions; None for all.
+        variations: Number of variations to draw; None for the scenario as written.
         world: Name of the world.
-        seed: Decides which variations are drawn, and with a cell about its seed.
+        seed: Seed that selects the variations and, together with a cell, determines its seed.
 
     Raises:
-        BeliefNestError: There is no such scenario, or an argument is wrong.
+        BeliefNestError: There is no such scenario, or an argument is invalid.
     """
     design = Design(
         scenarios=(scenario,),
@@ -90,7 +90,7 @@ def _samples(cell: Cell, scenario: str) -> list[Sample]:
 
 @solver
 def belief_prompt() -> Solver:
-    """Put what the believer is asked, rendered from its belief, in place of the messages."""
+    """Replace the messages by the prompt that is rendered from the probe's belief."""
     stage = Stage()
 
     async def solve(state: TaskState, generate: Generate) -> TaskState:
@@ -103,7 +103,7 @@ def belief_prompt() -> Solver:
 
 @scorer(metrics=metrics_by("case"))
 def in_the_belief() -> Scorer:
-    """Run the answer's program in the belief it is meant for, or judge the answer's words."""
+    """Score an answer: run its program in the belief it is meant for, or judge its words."""
     stage = Stage()
 
     async def score(state: TaskState, target: Target) -> Score:

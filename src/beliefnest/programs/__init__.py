@@ -1,4 +1,4 @@
-"""The skills of agent programs: one source for their code and for what a model reads of them."""
+"""Skills of agent programs: their descriptions, and calls of them."""
 
 from beliefnest.programs.manifests import Parameter, Skill, skills
 

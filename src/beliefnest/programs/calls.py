@@ -1,4 +1,4 @@
-"""Calls of skills as values, and their texts as programs."""
+"""Calls of skills as values, and their conversion to programs."""
 
 import json
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ class Call:
     """A skill with its arguments, as plain values.
 
     Attributes:
-        skill: Its name.
-        args: Positions as tuples, items as mappings, claims as plain data.
+        skill: Name of the skill.
+        args: Arguments: positions as tuples, items as mappings, claims as plain data.
     """
 
     skill: str
@@ -21,12 +21,12 @@ class Call:
 
     @property
     def is_nothing(self) -> bool:
-        """True if it begins nothing, so that what goes on goes on."""
+        """True if the call begins no action, so that the current action continues."""
         return self.skill == "doNothing"
 
     @property
     def program(self) -> str:
-        """The same as an agent's program; empty if it begins nothing."""
+        """The call as JavaScript; empty if it begins no action."""
         if self.is_nothing:
             return ""
         if self.skill == "openContainer":
@@ -41,14 +41,14 @@ class Call:
 
 
 def program_of(calls: "tuple[Call, ...] | list[Call]") -> str:
-    """Calls one after the other, as a program; empty if there are none."""
+    """Return JavaScript that makes calls one after the other; empty if there are none."""
     texts = [call.program for call in calls]
-    # Each in a block of its own: the names that one declares are not the next one's.
+    # Put each call into a block, so that its declarations do not clash with those of others.
     return "\n".join(f"{{ {text} }}" if "\n" in text else text for text in texts if text)
 
 
 def _code(value: Any) -> str:
-    """Return a value in a program."""
+    """Return a value as JavaScript."""
     if isinstance(value, tuple):
         return f"new Vec3({', '.join(map(str, value))})"
     if isinstance(value, list):
@@ -59,7 +59,7 @@ def _code(value: Any) -> str:
 
 
 def _claim_code(claim: dict[str, Any]) -> str:
-    """Return a claim, as plain data, made by the function that programs have for it."""
+    """Return JavaScript that makes a claim, given as plain data."""
     place = _code(tuple(claim["place"]))
     match claim["kind"]:
         case "position":

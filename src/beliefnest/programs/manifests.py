@@ -1,4 +1,4 @@
-"""What the skills say of themselves, as generated beside their code."""
+"""Descriptions of the skills, which are generated from their code."""
 
 from functools import cache
 from importlib.resources import files
@@ -12,9 +12,9 @@ class Parameter(msgspec.Struct, frozen=True):
     """A parameter of a skill.
 
     Attributes:
-        name: As in the signature.
-        type: In TypeScript's notation.
-        description: What to pass.
+        name: Name as in the signature.
+        type: Type in TypeScript's notation.
+        description: Meaning of the value.
     """
 
     name: str
@@ -26,11 +26,11 @@ class Skill(msgspec.Struct, frozen=True):
     """A function that programs can call.
 
     Attributes:
-        name: Its name.
+        name: Name of the function.
         signature: Name and parameters, as a model reads them.
-        description: What it does.
-        parameters: In order.
-        example: A program that calls it.
+        description: Effect of the function.
+        parameters: Parameters in order.
+        example: Program that calls the function.
     """
 
     name: str
@@ -42,6 +42,6 @@ class Skill(msgspec.Struct, frozen=True):
 
 @cache
 def skills() -> tuple[Skill, ...]:
-    """Return every skill, in the order of the manifests, which are read once."""
+    """Return all skills in the order of the manifests, which are read once."""
     file = files("beliefnest") / "programs" / "skills" / "manifests.json"
     return msgspec.json.decode(file.read_bytes(), type=tuple[Skill, ...])

@@ -1,4 +1,4 @@
-"""Perceived events as rows of text, under the names agent programs use for them."""
+"""Perceived events as rows of text; actions have the names of their skills."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -29,7 +29,7 @@ ACTION_NAMES: Mapping[EventKind, str] = {
     EventKind.EMOTE: "emote",
     EventKind.BLOCK_UPDATE: "blockUpdate",
 }
-"""Kind of event to the name of the skill that does it."""
+"""Name of the skill that causes each kind of event."""
 
 _POSITION_LABELS: Mapping[EventKind, str] = {
     EventKind.GET_ITEM_FROM_CHEST: "chest",
@@ -52,13 +52,13 @@ _FIELDS: Mapping[str, Callable[[Any], str]] = {
     "name": text.one_line,
     "text": sign_words,
 }
-"""Detail of an event to how it is written, in the order in which details are written."""
+"""Formatter of each detail of an event, in output order."""
 
 _NOBODY = "-"
 
 
 def action_name(event: PerceivedEvent) -> str:
-    """Return the published name of the skill an event is the effect of."""
+    """Return the published name of the skill that causes an event."""
     if event.kind is EventKind.USE_LEVER and "powered" in event.detail:
         return "turnOnLever" if event.detail["powered"] else "turnOffLever"
     if event.kind is EventKind.USE_DOOR and "open" in event.detail:
@@ -69,7 +69,7 @@ def action_name(event: PerceivedEvent) -> str:
 
 
 def description(event: PerceivedEvent) -> str:
-    """What a witness saw, as `chest:(-2, -51, -4) & items:{'diamond': 1}`."""
+    """Return the perceived details, as `chest:(-2, -51, -4) & items:{'diamond': 1}`."""
     parts = []
     for name, write in _FIELDS.items():
         if event.detail.get(name) is not None:

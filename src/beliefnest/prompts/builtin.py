@@ -1,7 +1,7 @@
-"""The built-in prompt filters, in the formats of the paper's appendix.
+"""Built-in prompt filters, in the formats of the paper's appendix.
 
-Each takes the simulator before the bar. Only what the belief does not hold prints as a
-word such as `No data`; a fault is raised.
+Each filter takes the simulator before the bar. A word such as `No data` is printed only for
+values that the belief lacks; faults are raised.
 """
 
 from collections.abc import Iterable, Mapping
@@ -24,11 +24,11 @@ _CHAT_HEADER = "time;agent_name;message"
 
 @filter("position")
 def position(branch: BranchView, agent: str | None = None) -> str:
-    """Where an agent stands, as `[x, y, z]`; without a name, the owner of the belief.
+    """Return an agent's position as `[x, y, z]`; without a name, the owner's.
 
-    Another agent that is not seen at this tick prints `Cannot be seen`. The owner's last
-    known place prints even when the outer believer does not see the owner; `No data`
-    when it was never known.
+    `Cannot be seen` for another agent that is not seen at this tick. The owner's last known
+    position is printed even if the outer believer does not see the owner; `No data` if it was
+    never known.
     """
     state = branch.state
     believed = believed_agent(state, agent)
@@ -38,7 +38,7 @@ def position(branch: BranchView, agent: str | None = None) -> str:
 
 
 def _position(believed: AgentBelief) -> str:
-    """Where an agent is seen that is not the owner."""
+    """Return the position of an agent other than the owner."""
     if believed.position is None or not believed.current:
         return text.CANNOT_BE_SEEN
     return text.point(believed.position)
@@ -46,9 +46,9 @@ def _position(believed: AgentBelief) -> str:
 
 @filter("thought")
 def thought(branch: BranchView) -> str:
-    """What the owner of the belief thought last; `No thought` before the first.
+    """Return the last thought of the belief's owner; `No thought` if there is none.
 
-    In the real world, one `name: thought` a line for every agent that thought.
+    In the real world, one line `name: thought` for each agent that has thought something.
     """
     state = branch.state
     if not state.thoughts:
@@ -61,9 +61,10 @@ def thought(branch: BranchView) -> str:
 
 @filter("chat_log")
 def chat_log(branch: BranchView) -> str:
-    """What was heard, one `time;agent_name;message` a line; `No chats` if nothing was.
+    """Return the heard utterances, one line `time;agent_name;message` each.
 
-    Of what was whispered the name says to whom: `12;anne whispers to sally;Come here.`
+    `No chats` if there are none. A whisper names the addressee: `12;anne whispers to sally;Come
+    here.`
     """
     state = branch.state
     if not state.chat:
@@ -81,9 +82,10 @@ def _speaker(speaker: str, to: str | None) -> str:
 
 @filter("inventory")
 def inventory(branch: BranchView, agent: str | None = None) -> str:
-    """Return items an agent is known to have, as `{'diamond': 1}`, what is worn or held included.
+    """Return the items that an agent is known to have, as `{'diamond': 1}`.
 
-    `Empty` when it is known to have nothing, `No data` when nothing is known.
+    Worn and held items are included. `Empty` if it is known to have nothing, `No data` if
+    nothing is known.
     """
     return _inventory(believed_agent(branch.state, agent))
 
@@ -96,9 +98,10 @@ def _inventory(believed: AgentBelief) -> str:
 
 @filter("equipment")
 def equipment(branch: BranchView, agent: str | None = None) -> str:
-    """What an agent was last seen to wear and hold, as `{'head': 'iron_helmet'}`.
+    """Return the items that an agent was last seen to wear and hold.
 
-    `Empty` when it had nothing on, `No data` when it was never seen.
+    They print as `{'head': 'iron_helmet'}`; `Empty` if there were none, `No data` if the agent
+    was never seen.
     """
     worn = believed_agent(branch.state, agent).equipment
     if worn is None:
@@ -112,7 +115,7 @@ def equipment(branch: BranchView, agent: str | None = None) -> str:
 def helditem(branch: BranchView, agent: str | None = None) -> str:
     """Return the item in an agent's main hand as last seen.
 
-    `Empty` for an empty hand, `No data` when the agent was never seen.
+    `Empty` for an empty hand, `No data` if the agent was never seen.
     """
     return _helditem(believed_agent(branch.state, agent))
 
@@ -125,10 +128,10 @@ def _helditem(believed: AgentBelief) -> str:
 
 @filter("chests")
 def chests(branch: BranchView) -> str:
-    """Return known chests, trapped chests and barrels: one `(x, y, z): {'diamond': 1}` a line.
+    """Return known chests, trapped chests and barrels, one line each.
 
-    A chest that is empty, or that nothing is known of, prints `{}`; `Not observed` when no
-    chest is known.
+    A line is `(x, y, z): {'diamond': 1}`; `{}` for a chest that is empty or whose contents are
+    unknown. `Not observed` if no chest is known.
     """
     state = branch.state
     lines = [
@@ -146,9 +149,9 @@ def _is_chest(state: State, at: Position) -> bool:
 
 @filter("other_players")
 def other_players(branch: BranchView) -> str:
-    """Return every agent but the owner as JSON: `position`, `helditem` and `inventory` of each.
+    """Return `position`, `helditem` and `inventory` of every agent but the owner, as JSON.
 
-    The values are what the filters of these names print.
+    The values are those of the filters with these names.
     """
     state = branch.state
     return text.as_json(
@@ -166,10 +169,9 @@ def other_players(branch: BranchView) -> str:
 
 @filter("blocks")
 def blocks(branch: BranchView, names: Iterable[str] | None = None) -> str:
-    """Return known blocks: one `chest: (x, y, z), (x, y, z)` a line for each name.
+    """Return known blocks, one line `chest: (x, y, z), (x, y, z)` for each name.
 
-    Without names, all that are known except air. `Not observed` for a name of which no
-    block is known.
+    Without names, all known blocks except air. `Not observed` for a name without known blocks.
     """
     lines = [
         f"{name}: {', '.join(map(text.position, found)) or text.NOT_OBSERVED}"
@@ -182,10 +184,10 @@ def blocks(branch: BranchView, names: Iterable[str] | None = None) -> str:
 def blocks_and_visibilities(
     branch: BranchView, names: Iterable[str] | None = None, others: Iterable[str] = ()
 ) -> str:
-    """Return known blocks and who has seen them before, and sees them at this tick.
+    """Return known blocks, and which agents saw them before and see them at this tick.
 
-    Names as in `blocks`. `Me` is the owner of the belief; `others` are agents whose sight
-    is told as well, as the owner believes it to be.
+    Names as in `blocks`. `Me` is the owner of the belief. `others` are further agents, whose
+    sight is reported as the owner believes it to be.
     """
     state = branch.state
     viewers = {} if state.owner is None else {"Me": state}
@@ -213,9 +215,9 @@ def _visibility(viewers: Mapping[str, State], at: Position) -> dict[str, dict[st
 
 @filter("block_property")
 def block_property(branch: BranchView, name: str) -> str:
-    """Known blocks of one name with their properties: one `(x, y, z): {...}` a line.
+    """Return known blocks of one name with their properties, one line `(x, y, z): {...}` each.
 
-    `Not observed` when no such block is known.
+    `Not observed` if no such block is known.
     """
     found = branch.state.blocks.named(frozenset({name}))
     lines = [
@@ -227,9 +229,10 @@ def block_property(branch: BranchView, name: str) -> str:
 
 @filter("events")
 def events(branch: BranchView) -> str:
-    """Return perceived actions other than speech, one `time;action;agent_name;description` a line.
+    """Return perceived actions except speech, one line each.
 
-    Actions have the names of the skills that do them. `Not observed` before the first.
+    A line is `time;action;agent_name;description`; actions have the names of their skills. `Not
+    observed` if there are none.
     """
     perceived = branch.state.events
     if not perceived:
@@ -239,11 +242,11 @@ def events(branch: BranchView) -> str:
 
 @filter("events_and_visibilities")
 def events_and_visibilities(branch: BranchView, me: str | None = None) -> str:
-    """Perceived actions, who else perceived each, and when each agent was last seen or heard of.
+    """Return perceived actions with their other witnesses, and the last sightings of agents.
 
-    `me` is an agent whose perspective is taken instead of the owner's, as the owner
-    believes it to be. `perceived_by` names the others that `me` credits with it. Where an agent
-    is only said to be is `heardOf`.
+    `me` is an agent whose perspective replaces the owner's, as the owner believes it to be.
+    `perceived_by` lists the other agents that, in this perspective, perceived the action.
+    Sightings are `visible` (seen now), `lastSeen`, or `heardOf` (known from speech only).
     """
     mine = branch if me is None else branch.child(_known(branch, me))
     state = mine.state
@@ -277,7 +280,7 @@ def _witnesses(event: PerceivedEvent, others: Mapping[str, State]) -> str:
 
 
 def _sightings(state: State, names: Iterable[str]) -> list[tuple[str, int, str, str]]:
-    """Return the agent, tick, how its place is known, and that place."""
+    """Return name, tick, manner and position of the last sighting of each agent."""
     return [
         (name, believed.basis.observed_at, _how_known(believed), text.point(believed.position))
         for name, believed in ((name, state.agents[name]) for name in names)
@@ -293,7 +296,7 @@ def _how_known(believed: AgentBelief) -> str:
 
 
 def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[Position]]:
-    """Name to positions of known blocks, in order of position; a name without any stays."""
+    """Return positions of known blocks by name, sorted; requested names may have none."""
     if names is None:
         grouped: dict[str, list[Position]] = {}
         for at in state.blocks:
@@ -309,7 +312,7 @@ def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[P
 
 
 def _strings(values: Iterable[str]) -> list[str]:
-    """Return names a template gave; one name may stand without its list."""
+    """Return a list of names; a template may give one name without a list."""
     if isinstance(values, str):
         return [values]
     return list(values)
@@ -333,4 +336,4 @@ BUILT_IN = FilterSet.of(
         *FILTERS,
     ]
 )
-"""The filters of interface.md, and those of our own default template."""
+"""Filters of interface.md, and those of the default template."""

@@ -1,4 +1,4 @@
-"""A small belief made by hand: for the filter reference, and to try one's own filters on."""
+"""A small hand-made belief for the filter reference and for trying out filters."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -30,11 +30,11 @@ _SIGN: Position = (4, -51, -4)
 
 @dataclass(frozen=True)
 class ExampleBlocks:
-    """Believed blocks written down one by one; the rest of the box is unknown.
+    """Believed blocks given one by one; the rest of the box is unknown.
 
     Attributes:
-        box: The part of space.
-        known: Position to canonical block state text.
+        box: Region of the scenario.
+        known: Canonical block state texts by position.
         visible: Positions that are seen at this tick.
     """
 
@@ -43,7 +43,7 @@ class ExampleBlocks:
     visible: frozenset[Position] = frozenset()
 
     def __getitem__(self, position: Position) -> str | None:
-        """Return the block state text, or None where unknown.
+        """Return the block state text; None if the block is unknown.
 
         Raises:
             PositionError: The position is outside the box.
@@ -62,7 +62,7 @@ class ExampleBlocks:
         return width * height * depth
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
-        """Return known blocks whose name is one of `names`, in order of position."""
+        """Return the known blocks with one of the names, in order of position."""
         return {
             at: block
             for at, block in sorted(self.known.items())
@@ -82,23 +82,23 @@ class ExampleBlocks:
         return position in self.visible
 
     def basis(self, position: Position) -> Basis | None:
-        """Seen at tick 0, if known."""
+        """Return "seen at tick 0" for known blocks, None for others."""
         return Basis(0, Source.SEEN) if position in self.known else None
 
 
 @dataclass(frozen=True)
 class ExampleBranch:
-    """A simulator that is nothing but its state and those of the beliefs in it."""
+    """A simulator that consists of its state and the nested beliefs only."""
 
     state: FixedState
     children: Mapping[str, "ExampleBranch"] = field(default_factory=dict)
     labels: Mapping[Position, str] = field(default_factory=dict)
 
     def child(self, agent: str) -> "ExampleBranch":
-        """Return the belief of an agent in it; the owner's is this one.
+        """Return the belief of an agent; for the owner, this belief itself.
 
         Raises:
-            PathError: No belief of that agent was written down.
+            PathError: The example has no belief of that agent.
         """
         if agent == self.state.owner:
             return self
@@ -108,7 +108,7 @@ class ExampleBranch:
 
 
 def example_branch() -> ExampleBranch:
-    """What Sally believes at tick 240, and what she believes that Anne believes."""
+    """Return Sally's belief at tick 240, and her belief about Anne's belief."""
     deposit = PerceivedEvent(
         69,
         EventKind.DEPOSIT_ITEM_INTO_CHEST,

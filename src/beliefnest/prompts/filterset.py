@@ -1,4 +1,4 @@
-"""Prompt filters by name: the built-in ones, installed ones and the user's own."""
+"""Sets of prompt filters: built-in, installed and user-defined ones."""
 
 import functools
 from collections.abc import Callable, Iterable, Mapping
@@ -12,7 +12,8 @@ from beliefnest.errors import InputError
 __all__ = ["FILTER_GROUP", "FilterSet", "PromptFilter", "filter", "installed_filters"]
 
 FILTER_GROUP = "beliefnest.filters"
-"""Entry points of this group, each a `PromptFilter`, are found when a prompt is rendered."""
+"""Group of entry points for installed filters. Each entry point is a `PromptFilter`; it is
+loaded when a prompt is rendered."""
 
 
 P = ParamSpec("P")
@@ -20,13 +21,13 @@ P = ParamSpec("P")
 
 @dataclass(frozen=True)
 class PromptFilter(Generic[P]):
-    """A function that templates can call, under a name.
+    """A function that templates can call by name.
 
     Attributes:
         name: Name in templates.
-        function: Called with what stands before the bar and the arguments in brackets;
-            returns the text to print.
-        override: Whether it may take the place of a filter of the same name.
+        function: Function that receives the value before the bar and the arguments in brackets,
+            and returns the text to print.
+        override: True if it may replace a filter of the same name.
     """
 
     name: str
@@ -39,45 +40,45 @@ class PromptFilter(Generic[P]):
 
 
 def filter(name: str, *, override: bool = False) -> Callable[[Callable[P, str]], PromptFilter[P]]:
-    """Make a function a prompt filter.
+    """Decorate a function to make it a prompt filter.
 
     Args:
         name: Name in templates: letters, digits and `_`.
-        override: Whether it may take the place of a filter of the same name.
+        override: True if it may replace a filter of the same name.
 
     Raises:
-        InputError: The name cannot be written in a template.
+        InputError: The name is not valid in a template.
     """
     if not name.isidentifier():
-        raise InputError(f"{name!r} cannot be a filter's name; use letters, digits and _")
+        raise InputError(f"{name!r} is not a valid name of a filter; use letters, digits and _")
     return lambda function: PromptFilter(name, function, override)
 
 
 @dataclass(frozen=True)
 class FilterSet:
-    """Filters by name; a value, so that two nests can have different ones.
+    """Immutable set of filters, so that two nests can have different filters.
 
     Attributes:
-        filters: Name to filter, in order of name.
+        filters: Filters by name, in order of names.
     """
 
     filters: Mapping[str, PromptFilter[Any]]
 
     @staticmethod
     def of(filters: Iterable[PromptFilter[Any]]) -> "FilterSet":
-        """Return a set of these filters alone.
+        """Return a set with exactly these filters.
 
         Raises:
-            InputError: Two have one name.
+            InputError: Two filters have the same name.
         """
         return FilterSet(MappingProxyType({})).extended(filters)
 
     def extended(self, filters: Iterable[PromptFilter[Any]]) -> "FilterSet":
-        """This set with further filters.
+        """Return this set with further filters added.
 
         Raises:
-            InputError: A name is taken and the new filter has not `override=True`, or
-                something is not a filter.
+            InputError: A name is in use and the new filter lacks `override=True`, or an element
+                is not a filter.
         """
         merged = dict(self.filters)
         for added in filters:
@@ -95,10 +96,10 @@ class FilterSet:
 
 
 def installed_filters(built_in: FilterSet) -> FilterSet:
-    """Return the built-in filters and those that installed packages offer.
+    """Return the built-in filters and those of installed packages.
 
     Raises:
-        InputError: An installed package's filter cannot be loaded or its name is taken.
+        InputError: An installed filter cannot be loaded, or its name is in use.
     """
     found = sorted(entry_points(group=FILTER_GROUP), key=lambda entry: (entry.name, entry.value))
     return functools.reduce(_with_entry, found, built_in)

@@ -1,4 +1,4 @@
-"""Filters that tell what is known from what is not, how old a memory is and where it came from."""
+"""Filters that separate known from unknown values, with the age and source of memories."""
 
 from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.belief.view import State
@@ -16,11 +16,11 @@ _SAYINGS = frozenset({EventKind.CHAT, EventKind.THINK})
 
 @filter("containers")
 def containers(branch: BranchView) -> str:
-    """Return known containers, one a line: what is known of each, and where that comes from.
+    """Return known containers, one line each: known contents, their age and their source.
 
-    What a container holds is `known`, `known in part` (there may be more in it) or `unknown`.
-    What it is called and looks as if it held is told if the scenario says `labels: true`.
-    `Not observed` when no container is known.
+    Contents are `known`, `known in part` (there may be more) or `unknown`. If the scenario has
+    `labels: true`, the label of a container is added: its name and appearance. `Not observed` if
+    no container is known.
     """
     state = branch.state
     lines = [_container(branch, at, state.containers[at]) for at in sorted(state.containers)]
@@ -46,9 +46,10 @@ def _holds(state: State, content: ContainerBelief) -> str:
 
 @filter("whereabouts")
 def whereabouts(branch: BranchView) -> str:
-    """Every agent but the owner, one a line: where it is believed to be, and where that comes from.
+    """Return one line for each agent but the owner: believed position, its age and its source.
 
-    With what it holds in its hand and is known to have. `unknown` for a place never learnt of.
+    The line also lists the item in its hand and its known items. `unknown` if its position was
+    never known.
     """
     state = branch.state
     return "\n".join(
@@ -71,10 +72,10 @@ def _agent(state: State, agent: AgentBelief) -> str:
 
 @filter("mechanisms")
 def mechanisms(branch: BranchView) -> str:
-    """Known doors, trapdoors, gates, levers and buttons, one a line: open or shut, on or off.
+    """Return known doors, trapdoors, gates, levers and buttons, one line each, with their state.
 
-    With where that comes from, and who was last perceived to use it. `Not observed` when none
-    is known.
+    The line also has the age and the source of this knowledge, and the last perceived use. `Not
+    observed` if none is known.
     """
     state = branch.state
     lines = []
@@ -92,10 +93,10 @@ def mechanisms(branch: BranchView) -> str:
 
 @filter("signs")
 def signs(branch: BranchView) -> str:
-    """Return known signs, one a line: what is written on each, and where that comes from.
+    """Return known signs, one line each: the text, its age and its source.
 
-    Lines of a sign are split by `/`; a sign on which nothing is written says so. With who was last
-    perceived to write on it. `Not observed` when none is known.
+    `/` separates the lines of a sign; empty signs are marked. The line also names the agent that
+    was last perceived to write on the sign. `Not observed` if no sign is known.
     """
     state = branch.state
     lines = []
@@ -118,7 +119,10 @@ def _memory_of_block(state: State, at: Position, basis: Basis) -> str:
 
 
 def _stands(block: str) -> str | None:
-    """Whether a door is open or a switch on; None for another block, or a door's upper half."""
+    """Return the state of a door or switch in a word.
+
+    None for other blocks, and for the upper half of a door.
+    """
     name, properties = text.block_name(block), text.block_properties(block)
     if is_door(name):
         upper = properties.get("half") == "upper" and "hinge" in properties
@@ -142,7 +146,7 @@ def _is_use(event: PerceivedEvent, at: Position) -> bool:
 
 
 def memory(state: State, basis: Basis, *, current: bool) -> str:
-    """Where what a state holds comes from and how old that is, as `seen 2 s ago`."""
+    """Return the source and the age of an entry in words, as `seen 2 s ago`."""
     if current:
         return "seen now"
     age = _age(state, basis.observed_at)
@@ -160,7 +164,7 @@ def memory(state: State, basis: Basis, *, current: bool) -> str:
 
 
 def _heard(state: State, basis: Basis) -> str:
-    """How a state's owner came by hearsay; in a model of the speaker these are its own words."""
+    """Return the source of hearsay in words; a speaker's own words are `said`."""
     if basis.speaker is None:
         return "heard"
     return "said" if basis.speaker == state.owner else f"heard from {basis.speaker}"
@@ -171,4 +175,4 @@ def _age(state: State, tick: int) -> str:
 
 
 FILTERS = (containers, whereabouts, mechanisms, signs)
-"""The filters of this module."""
+"""Filters of this module."""

@@ -1,6 +1,6 @@
-"""The filter reference of the documentation, written from the filters themselves.
+"""Generator of the filter reference, docs/filters.md, from the filters themselves.
 
-`python -m beliefnest.prompts.reference` prints docs/filters.md.
+`python -m beliefnest.prompts.reference` prints it.
 """
 
 import inspect
@@ -40,23 +40,25 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "signs": ("{{ branch | signs }}",),
     "thought": ("{{ branch | thought }}",),
 }
-"""Filter to the templates that show it."""
+"""Example templates for each filter."""
 
 _HEAD = """\
 # Prompt filters
 
 <!-- Written by `python -m beliefnest.prompts.reference`; change the docstrings, not this. -->
 
-A prompt template is a Jinja2 text. `branch` is the simulator that is rendered; a filter
-turns it into text. All examples are run against one belief, Sally's at tick 240
-(`beliefnest.prompts.example`). Only what is truly unknown prints as `No data`,
-`Cannot be seen`, `Not observed`, `No chats`, `No thought` or `Empty`; an unknown filter,
-variable or agent is an error that names the line. Numbers have at most three decimals.
-Templates read: they cannot call a simulator's methods. What one prints without a filter
-has characters that control a terminal or turn the direction of text written out.
+A prompt template is a Jinja2 text. The variable `branch` is a simulator; a filter turns
+it into text. The examples on this page show one belief: Sally's at tick 240
+(`beliefnest.prompts.example`). Numbers have at most three decimals.
 
-`$$LAST_CODE$$` and `$$LAST_ERROR$$` stand for the variables `last_code` and `last_error`,
-the program of the round before and how it failed; without them they print
+A filter prints `No data`, `Cannot be seen`, `Not observed`, `No chats`, `No thought` or
+`Empty` only if the value is truly unknown or empty. An unknown filter, variable or agent is
+an error that names the line. Templates can read a simulator, but cannot call its methods.
+Values that a template prints without a filter have control characters and marks of text
+direction escaped.
+
+`$$LAST_CODE$$` and `$$LAST_ERROR$$` stand for the variables `last_code` and `last_error`:
+the program of the previous round and its error. If these are not set, the markers print
 `No code was executed` and `No error`.
 
 ## Your own filters
@@ -75,8 +77,8 @@ with bn.Nest(world) as nest:
     print(render('{{ branch | greeting("Hi") }}', nest["/sally"], {}, filters))  # Hi, sally!
 ```
 
-To replace a built-in filter, write `@filter("chests", override=True)`. A package offers
-its filters to every template by entry points of the group `beliefnest.filters`:
+To replace a built-in filter, write `@filter("chests", override=True)`. To offer the filters
+of a package to every template, add entry points of the group `beliefnest.filters`:
 
 ```toml
 [project.entry-points."beliefnest.filters"]

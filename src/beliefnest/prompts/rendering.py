@@ -1,4 +1,4 @@
-"""From a template and a simulator to the text of a prompt."""
+"""Rendering of prompts from a template and a simulator."""
 
 import functools
 from collections.abc import Iterable, Mapping
@@ -33,11 +33,10 @@ NO_ERROR = "No error"
 LAST_CODE = "$$LAST_CODE$$"
 LAST_ERROR = "$$LAST_ERROR$$"
 
-"""What programs and errors of several lines are set with."""
 
 _MARKERS = {LAST_CODE: "{{ last_code }}", LAST_ERROR: "{{ last_error }}"}
 _MOST_TEMPLATES = 64
-"""That are kept compiled."""
+"""Greatest number of compiled templates that a renderer keeps."""
 
 _PLAIN_TYPES = (str, bytes, int, float, list, tuple, dict, set, frozenset)
 
@@ -48,19 +47,21 @@ def render(
     variables: Mapping[str, Any],
     filters: FilterSet | None = None,
 ) -> str:
-    """Return the text of a prompt; `Renderer` compiles a template once that is rendered often.
+    """Return the text of a prompt.
+
+    A `Renderer` is faster if you render a template often, because it compiles it only once.
 
     Args:
-        template: A template, the path of a file that holds one, or Jinja2 source.
-        branch: The simulator that the template's `branch` stands for.
-        variables: The template's other variables. `last_code` and `last_error` are what
-            `$$LAST_CODE$$` and `$$LAST_ERROR$$` stand for; absent or None they print
-            as `No code was executed` and `No error`.
-        filters: Filters by name; None: the built-in and the installed ones.
+        template: A template, the path of a template file, or Jinja2 source.
+        branch: The simulator for the template's variable `branch`.
+        variables: The template's other variables. `last_code` and `last_error` are the values of
+            `$$LAST_CODE$$` and `$$LAST_ERROR$$`. If they are absent or None, these print `No
+            code was executed` and `No error`.
+        filters: Filters by name; None for the built-in and the installed ones.
 
     Raises:
-        TemplateError: The template cannot be read or parsed, names a filter or a variable
-            that does not exist, or a filter failed; the message names the line.
+        TemplateError: The template cannot be read or parsed, names an unknown filter or
+            variable, or a filter failed; the message names the line.
         InputError: An installed filter cannot be used.
     """
     return Renderer(filters).render(template, branch, variables)
@@ -68,10 +69,10 @@ def render(
 
 @functools.cache
 def instructions(skills: tuple[object, ...]) -> str:
-    """Return the text of the built-in template `instructions`, which is about no simulator.
+    """Return the text of the built-in template `instructions`, which needs no simulator.
 
     Args:
-        skills: What a program can call, each with its `signature` and `description`.
+        skills: Skills that a program can call, each with a `signature` and a `description`.
     """
     compiled = _compiled(_environment(BUILT_IN), built_in_template("instructions"))
     return compiled.template.render(skills=skills)
@@ -79,13 +80,13 @@ def instructions(skills: tuple[object, ...]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Compiled:
-    """A template that was parsed and checked, ready to be filled.
+    """A parsed, checked and compiled template.
 
     Attributes:
-        name: What messages call it.
-        filename: What traces call it.
-        tree: Its syntax.
-        template: Its code.
+        name: Name in messages.
+        filename: File name in tracebacks.
+        tree: Syntax tree.
+        template: Compiled code.
     """
 
     name: str
@@ -95,10 +96,10 @@ class _Compiled:
 
 
 class Renderer:
-    """Fills templates, compiling each but once; it may serve one nest after the other.
+    """Renderer that compiles each template only once; several nests may use it in turn.
 
     Args:
-        filters: Filters by name; None: the built-in and the installed ones.
+        filters: Filters by name; None for the built-in and the installed ones.
     """
 
     def __init__(self, filters: FilterSet | None = None) -> None:
@@ -108,7 +109,7 @@ class Renderer:
     def render(
         self, template: Template | Path | str, branch: BranchView, variables: Mapping[str, Any]
     ) -> str:
-        """Return the text of a prompt; arguments and errors are those of the function `render`."""
+        """Return the text of a prompt; arguments and errors as of the function `render`."""
         compiled = self._ready(_as_template(template))
         values = {
             **variables,
@@ -171,17 +172,17 @@ def _or_word(value: object, word: str) -> object:
 
 
 def _with_markers(text: str) -> str:
-    """Return the paper's two markers as variables, so that what they stand for is never parsed."""
+    """Replace the paper's two markers by variables, so that their values are never parsed."""
     for marker, expression in _MARKERS.items():
         text = text.replace(marker, expression)
     return text
 
 
 class _ReadingEnvironment(ImmutableSandboxedEnvironment):
-    """A sandbox in which a template reads simulators and cannot act through them."""
+    """Sandbox in which a template can read simulators but not act through them."""
 
     def is_safe_callable(self, obj: object) -> bool:
-        """Only macros, Jinja's own globals, and methods of plain values may be called."""
+        """Allow only macros, Jinja's own globals and methods of plain values."""
         if not super().is_safe_callable(obj):
             return False
         bound_to = getattr(obj, "__self__", None)
@@ -193,7 +194,7 @@ class _ReadingEnvironment(ImmutableSandboxedEnvironment):
 
 
 def _printed(value: object) -> object:
-    """What `{{ }}` prints, whoever wrote it: lines stay, what controls text is written out."""
+    """Return a value for `{{ }}`: lines stay, control characters are escaped."""
     if not isinstance(value, str) or (value.isascii() and value.isprintable()):
         return value
     return visible(value)
@@ -212,7 +213,7 @@ def _environment(filters: FilterSet) -> jinja2.Environment:
 
 
 def _built_in_source(name: str) -> str | None:
-    """Source for `{% include "instructions" %}`."""
+    """Return the source for `{% include "instructions" %}`."""
     if name not in BUILT_IN_TEMPLATES:
         return None
     return _with_markers(built_in_template(name).text)
@@ -239,7 +240,7 @@ def _refuse(template: str, line: int, kind: str, name: str, known: Iterable[str]
 
 
 def _line_of(error: BaseException, filename: str) -> int:
-    """Line of the template that was being rendered when an error was raised."""
+    """Return the line of the template that was rendered when an error was raised."""
     line = 1
     trace: TracebackType | None = error.__traceback__
     while trace is not None:
@@ -250,7 +251,7 @@ def _line_of(error: BaseException, filename: str) -> int:
 
 
 def _unknown_variables(tree: nodes.Template, line: int, known: set[str]) -> str:
-    """What comes near the unknown variables of a line, for the end of a message."""
+    """Return the end of a message: names similar to the unknown variables of a line."""
     missing = meta.find_undeclared_variables(tree) - known
     here = {name.name for name in tree.find_all(nodes.Name) if name.lineno == line} & missing
     variables = sorted(known - set(jinja2.defaults.DEFAULT_NAMESPACE))
@@ -258,7 +259,7 @@ def _unknown_variables(tree: nodes.Template, line: int, known: set[str]) -> str:
 
 
 def _words(error: Exception) -> str:
-    """Return the message of an error, with its kind unless the message was written to be read."""
+    """Return an error's message; add the type unless the message is written for users."""
     if isinstance(error, jinja2.TemplateError):
         return error.message or type(error).__name__
     if isinstance(error, BeliefNestError):

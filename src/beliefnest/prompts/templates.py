@@ -1,4 +1,4 @@
-"""Prompt templates: a text with a name that messages can quote, and the ones we ship."""
+"""Prompt templates: named Jinja2 texts, built-in or from files."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -12,9 +12,10 @@ from beliefnest.prompts.text import nearest
 __all__ = ["BUILT_IN_TEMPLATES", "Template", "built_in_template", "load_template"]
 
 BUILT_IN_TEMPLATES = ("answering", "default", "instructions", "paper", "question")
-"""`default`: our own, complete; `instructions`: its part on how to answer, which serves as
-a system message beside other templates; `paper`: the one of the paper's appendix; `question`: a
-question and what is known, with `answering`, on how to answer one, as its system message."""
+"""Names of the built-in templates. `default`: complete prompt for a program. `instructions`: its
+part about the form of the answer, used as a system message with other templates. `paper`:
+template of the paper's appendix. `question`: a question and the relevant knowledge. `answering`:
+the system message for questions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +23,7 @@ class Template:
     """A prompt template.
 
     Attributes:
-        name: What messages call it: the name of a built-in one, or a file.
+        name: Name in messages: that of a built-in template, or a file.
         text: Jinja2 source.
     """
 
@@ -32,10 +33,10 @@ class Template:
 
 @cache
 def built_in_template(name: str) -> Template:
-    """Return a template that comes with the package, which is read once.
+    """Return a built-in template; each is read once.
 
     Raises:
-        TemplateError: There is none of that name.
+        TemplateError: There is no built-in template of that name.
     """
     if name not in BUILT_IN_TEMPLATES:
         raise TemplateError(f"no built-in template {name!r}{nearest(name, BUILT_IN_TEMPLATES)}")
@@ -44,7 +45,7 @@ def built_in_template(name: str) -> Template:
 
 
 def load_template(path: Path) -> Template:
-    """Return a template from a file (UTF-8).
+    """Load a template from a UTF-8 file.
 
     Raises:
         TemplateError: The file cannot be read.

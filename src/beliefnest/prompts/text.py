@@ -1,4 +1,4 @@
-"""How values are written in prompts; the formats of the paper's appendix."""
+"""Formats of values in prompts, as in the paper's appendix."""
 
 import difflib
 import json
@@ -35,7 +35,7 @@ EMPTY: Final = "Empty"
 
 
 def number(value: float) -> str:
-    """Return a number with at most three decimals, without trailing zeros or a negative zero."""
+    """Return a number with at most three decimals, without trailing zeros or `-0`."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
@@ -56,29 +56,29 @@ def mapping(values: Mapping[str, object]) -> str:
 
 
 def as_json(value: object) -> str:
-    """Return a value as JSON over several lines, two spaces a level."""
+    """Return a value as JSON on several lines, indented by two spaces."""
     return json.dumps(value, indent=2, ensure_ascii=False)
 
 
 def one_line(text: str) -> str:
-    """Return a text that agents made, on one line, so that it cannot pass for another section."""
+    """Return an agent's text on one line, so that it cannot imitate a section of the prompt."""
     return on_one_line(text)
 
 
 def block_name(block: str) -> str:
-    """`lever` of `lever[face=floor,powered=true]`, a canonical block state text."""
+    """Return the name of a canonical block state text: `lever` of `lever[powered=true]`."""
     return block.partition("[")[0]
 
 
 def block_properties(block: str) -> dict[str, str]:
-    """Return the property name to value of a canonical block state text."""
+    """Return the properties of a canonical block state text by name."""
     inner = block.partition("[")[2].removesuffix("]")
     pairs = (pair.partition("=") for pair in inner.split(",") if pair)
     return {name: value for name, _, value in pairs}
 
 
 def nearest(name: str, names: Iterable[str]) -> str:
-    """Return the end of a message about an unknown name: what comes near it, or what there is."""
+    """Return the end of a message about an unknown name: similar names, or else all names."""
     known = sorted(names)
     close = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
     if close:

@@ -1,4 +1,4 @@
-"""What prompts need of a simulator: its state, and the beliefs of the agents in it."""
+"""Read-only view of simulators for prompts: states, and beliefs of agents."""
 
 from collections.abc import Mapping
 from typing import Protocol
@@ -13,25 +13,25 @@ __all__ = ["BranchView", "belief_of", "believed_agent", "owner_of"]
 
 
 class BranchView(Protocol):
-    """A simulator as prompts read it: `branch` in a template."""
+    """A simulator as prompts see it: `branch` in a template."""
 
     @property
     def state(self) -> State:
-        """The simulator's state."""
+        """State of the simulator."""
 
     @property
     def labels(self) -> Mapping[Position, str]:
-        """What containers are called and look as if they held, where prompts may say so."""
+        """Labels of containers (name and appearance), if prompts may show them."""
 
     def child(self, agent: str) -> "BranchView":
-        """Return the belief simulator of an agent in this one; the owner's own is this one."""
+        """Return the simulator of an agent's belief; for the owner, this simulator itself."""
 
 
 def owner_of(state: State) -> str:
-    """Return the agent whose belief a state is.
+    """Return the agent that holds a belief.
 
     Raises:
-        InputError: It is the real world, which is nobody's belief.
+        InputError: The state is that of the real world.
     """
     if state.owner is None:
         raise InputError(
@@ -42,7 +42,7 @@ def owner_of(state: State) -> str:
 
 
 def believed_agent(state: State, agent: str | None) -> AgentBelief:
-    """What a state says of an agent; without a name, of its owner.
+    """Return the entry of an agent in a state; without a name, that of the owner.
 
     Raises:
         InputError: No name was given in the real world.
@@ -55,7 +55,7 @@ def believed_agent(state: State, agent: str | None) -> AgentBelief:
 
 
 def belief_of(branch: BranchView, agent: str) -> State:
-    """Return the state that an agent in a simulator believes.
+    """Return the state of an agent's belief in a simulator.
 
     Raises:
         UnknownNameError: The scenario has no such agent.
