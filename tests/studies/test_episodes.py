@@ -243,7 +243,7 @@ def test_a_model_that_cannot_be_asked_is_no_result(here: Path, monkeypatch: Any)
         ("policies: [random]\nmax_cost: -1", "study.yaml:3: max_cost: max_cost is -1"),
         ("policies: [{}]", "study.yaml:2: policies: policies has {}"),
         ("policies: [random]\ntemplates: [paper]", "templates cannot stand beside tasks"),
-        ("policies: [random]\nvariations: 3", "variations of tasks are lists"),
+        ("policies: [random]\nvariations: 3", "variations of tasks must be lists"),
         ("policies: [random, random]", "'random' is named twice"),
         ("policies: ['program:none.js']", "none.js cannot be read"),
     ],

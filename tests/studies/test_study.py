@@ -306,7 +306,7 @@ def test_a_constraint_that_breaks_is_listed_with_its_error(tmp_path):
 
 def test_what_rows_could_not_tell_apart_is_refused(tmp_path):
     own = SMALL.replace("parameters:\n", "parameters:\n  task: {default: 1, values: [1, 2]}\n")
-    with pytest.raises(bn.InputError, match="'task' is called as a column of the table"):
+    with pytest.raises(bn.InputError, match="'task' has the name of a column of the table"):
         bn.Study(small_in(tmp_path, own), variations={"task": [1, 2]}).plan()
     one, other = tmp_path / "one", tmp_path / "other"
     for folder in (one, other):

@@ -1,1 +1,1 @@
-"""Studies: many variations of scenarios with several models, to one table with intervals."""
+"""Studies: play many variations of scenarios with several models; tabulate with intervals."""

@@ -1,4 +1,4 @@
-"""Whether a cell's seed bears on what comes of it."""
+"""Detection of cells whose result depends on their seed."""
 
 from collections.abc import Iterable, Mapping
 
@@ -11,13 +11,13 @@ __all__ = ["episode_draws", "scenario_draws"]
 
 
 def scenario_draws(scenario: Scenario, models: Iterable[str]) -> bool:
-    """Return True if anything in a scenario is drawn, but for what the world itself draws.
+    """Return True if a scenario draws random numbers, apart from those of the world itself.
 
     Args:
         scenario: The scenario.
-        models: Names of all models that are asked.
+        models: Names of all models that the cell asks.
     """
-    # The options of a question are shuffled by the seed.
+    # The seed shuffles the options of a question.
     asked = (question for probe in scenario.probes for question in probe.questions)
     return (
         any(is_of_provider(model) for model in models)
@@ -27,12 +27,12 @@ def scenario_draws(scenario: Scenario, models: Iterable[str]) -> bool:
 
 
 def episode_draws(task: Task, policies: Mapping[str, str], texts: Iterable[str]) -> bool:
-    """Whether anything in an episode is drawn, but for its instance and what the world draws.
+    """Return True if an episode draws random numbers, apart from its instance and the world.
 
     Args:
-        task: The instance, whose own policies play those that `policies` does not name.
-        policies: By agent, who plays it.
-        texts: What these policies are read from.
+        task: Instance of the task; its own policies play agents that `policies` does not name.
+        policies: Names of policies by agent.
+        texts: Texts of the files that define these policies.
     """
     names = {**task.form.policies, **policies}.values()
     return (
@@ -48,5 +48,5 @@ def _script_draws(scenario: Scenario) -> bool:
 
 
 def _may_draw(program: str) -> bool:
-    """Return True if a program may draw; one that only speaks of it is taken to."""
+    """Return True if a program may draw random numbers; a mention in a text counts as well."""
     return "random" in program

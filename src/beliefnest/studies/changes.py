@@ -1,4 +1,4 @@
-"""What becomes of the values of a scenario in a mirrored or turned scene, or under other names."""
+"""Changes of a scenario's values: mirrored and turned scenes, and renamed agents and items."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -22,18 +22,22 @@ _DIRECTIONAL = re.compile(r"\b(north|south|east|west|left|right)\b", re.IGNORECA
 
 @dataclass(frozen=True, slots=True)
 class MovedBySymmetry:
-    """Everything where a symmetry puts it.
+    """Change that moves and turns everything by a symmetry.
 
     Attributes:
         placing: The symmetry and the box.
-        registry: Knows which block states there are.
+        registry: Registry of block states.
     """
 
     placing: Placing
     registry: Registry
 
     def value(self, kind: Kind, value: Any) -> Any:
-        """The new value; InputError if a text names a direction, or a program computes with one."""
+        """Return the moved value.
+
+        Raises:
+            InputError: A text names a direction, or a program computes with one.
+        """
         change = self._changes().get(kind)
         return value if change is None else change(value)
 
@@ -69,7 +73,7 @@ class MovedBySymmetry:
         return self._place(vector)
 
     def _place(self, place: tuple[Any, Any, Any]) -> tuple[float, float, float]:
-        """Whole coordinates are a block's, others a point's, as in scenario files."""
+        """Move a place: a block if all coordinates are whole, else a point, as in files."""
         if all(isinstance(part, int) for part in place):
             return self.placing.block(place)
         return self.placing.point(place)
@@ -77,7 +81,7 @@ class MovedBySymmetry:
     def _told(self, text: str) -> str:
         if found := _DIRECTIONAL.search(text):
             raise InputError(
-                f"says {found[0]!r}, which is elsewhere in a scene that is {self._name}; "
+                f"says {found[0]!r}, which is another direction in a scene that is {self._name}; "
                 "name places by parameters"
             )
         return self._text(text)
@@ -95,11 +99,11 @@ class MovedBySymmetry:
 
 
 def _in_template(source: str, change: Callable[[str], str]) -> str:
-    """A template with all it prints as written, and all texts in its expressions, changed."""
+    """Return a template with its literal text and all texts in its expressions changed."""
     try:
         tokens = [(kind, text) for _, kind, text in Environment().lex(source)]
     except TemplateSyntaxError:
-        # Rendering tells what is wrong.
+        # Leave a template with wrong syntax as it is: rendering reports the error.
         return source
     parts = []
     for kind, text in tokens:
@@ -117,18 +121,18 @@ def _triple(value: Any) -> tuple[Any, Any, Any]:
 
 @dataclass(frozen=True, slots=True)
 class Renamed:
-    """Agents and items under other names, everywhere, in the texts of tasks as well.
+    """Change that renames agents and items everywhere, including the texts of tasks.
 
     Attributes:
-        agents: Old name to new one.
-        items: Old name to new one.
+        agents: New names of agents, by old name.
+        items: New names of items, by old name.
     """
 
     agents: Mapping[str, str]
     items: Mapping[str, str]
 
     def value(self, kind: Kind, value: Any) -> Any:
-        """Return the new value; InputError if a program cannot be read."""
+        """Return the renamed value; raise InputError if a program cannot be parsed."""
         change = self._changes().get(kind)
         return value if change is None else change(value)
 
@@ -147,7 +151,7 @@ class Renamed:
         return self.agents.get(key, self.items.get(key, key))
 
     def _written(self, text: str) -> str:
-        """Return a text in a program: a name alone, or something that is said."""
+        """Return a renamed text of a program: a name alone, or an utterance."""
         return self._key(text) if text in {*self.agents, *self.items} else self._told(text)
 
     def _told(self, text: str) -> str:
@@ -164,7 +168,7 @@ class Renamed:
 
 
 def _spellings(names: Mapping[str, str], space: str) -> dict[str, str]:
-    """How names stand in sentences: as they are, with a capital letter, items with spaces."""
+    """Return new spellings by old ones: as written, capitalized, and items with spaces."""
     found: dict[str, str] = {}
     for old, new in names.items():
         told = new.replace("_", space)
@@ -176,7 +180,7 @@ def _spellings(names: Mapping[str, str], space: str) -> dict[str, str]:
 
 
 def _with_article(article: str, word: str) -> str:
-    """`a diamond` becomes `an apple`."""
+    """Return a word with the article that fits it: `a diamond`, `an apple`."""
     if not article:
         return word
     right = "an " if word[:1].lower() in "aeiou" else "a "

@@ -1,4 +1,4 @@
-"""What is wrong with what a study is asked to combine, by its key."""
+"""Checks of a study's keys; each error names the key."""
 
 import json
 import math
@@ -26,11 +26,11 @@ __all__ = [
 
 
 class StudyKeyError(InputError):
-    """What is asked for under a key of a study is wrong.
+    """Error in the value of a study's key.
 
     Args:
-        key: The key, which is also the name of the argument, or the keys down to what is wrong.
-        message: What was found, and what to do.
+        key: The key, which is also the name of the argument, or the keys down to the wrong value.
+        message: What is wrong, and what to do.
     """
 
     def __init__(self, key: str | tuple[str, ...], message: str) -> None:
@@ -39,10 +39,10 @@ class StudyKeyError(InputError):
 
 
 def several(key: str, names: object) -> tuple[str, ...]:
-    """Return names or paths; one alone is a list of one.
+    """Return a name, or a list of names or paths, as a tuple.
 
     Raises:
-        StudyKeyError: It is neither.
+        StudyKeyError: `names` is neither.
     """
     found = [names] if isinstance(names, str | os.PathLike) else names
     if isinstance(found, Sequence) and all(isinstance(each, str | os.PathLike) for each in found):
@@ -51,11 +51,11 @@ def several(key: str, names: object) -> tuple[str, ...]:
 
 
 def checked_columns(names: object, known: Sequence[str]) -> list[str]:
-    """Return names of columns, as they are; one alone is a list of one.
+    """Return one or several names of columns as a list.
 
     Raises:
-        StudyKeyError: It is neither.
-        InputError: There is no such column.
+        StudyKeyError: `names` is neither a name nor a list of names.
+        InputError: A column does not exist.
     """
     chosen = several("by", names)
     for name in chosen:
@@ -65,11 +65,11 @@ def checked_columns(names: object, known: Sequence[str]) -> list[str]:
 
 
 def checked_conditions(conditions: object) -> tuple[int, ...] | None:
-    """Return numbers of conditions, also as texts; one alone is a list of one, None stays None.
+    """Return one or several numbers of conditions, also given as texts; None stays None.
 
     Raises:
-        StudyKeyError: It is neither, or an empty list.
-        ScenarioError: One of them is no number.
+        StudyKeyError: `conditions` is neither, or an empty list.
+        ScenarioError: A condition is no number.
     """
     if conditions is None:
         return None
@@ -83,7 +83,7 @@ def checked_conditions(conditions: object) -> tuple[int, ...] | None:
 
 
 def check_once(key: str, values: Sequence[Any], what: str = "") -> None:
-    """Refuse lists with a value in them twice; StudyKeyError names it."""
+    """Raise StudyKeyError if a list contains a value twice."""
     twice = [value for value in values if values.count(value) > 1]
     if twice:
         told = f"{what or key}: {twice[0]!r} is named twice; use repeats to do it again"
@@ -91,33 +91,33 @@ def check_once(key: str, values: Sequence[Any], what: str = "") -> None:
 
 
 def check_count(key: str, number: object) -> None:
-    """Refuse what is no number of times; StudyKeyError says so."""
+    """Raise StudyKeyError unless a value is a whole number, at least 1."""
     if not is_count(number):
         raise StudyKeyError(key, f"{key} is {number!r}; it must be a whole number, at least 1")
 
 
 def is_whole(number: object) -> TypeGuard[int]:
-    """Return True if it is a whole number."""
+    """Return True if a value is a whole number."""
     return isinstance(number, int) and not isinstance(number, bool)
 
 
 def is_amount(number: object) -> TypeGuard[float]:
-    """Return True if it is a finite number that is not below 0."""
+    """Return True if a value is a finite number that is not below 0."""
     if isinstance(number, bool) or not isinstance(number, int | float):
         return False
     return math.isfinite(number) and number >= 0
 
 
 def is_count(number: object) -> bool:
-    """Return True if it is a whole number, at least 1."""
+    """Return True if a value is a whole number, at least 1."""
     return is_whole(number) and number >= 1
 
 
 def checked_limits(max_tokens: int | None, max_cost: float | None) -> RunLimits:
-    """What a study may spend; None: no limit.
+    """Return the limits of a study's tokens and cost; None: no limit.
 
     Raises:
-        StudyKeyError: It is no amount.
+        StudyKeyError: A limit is no amount.
     """
     if max_tokens is not None and not is_count(max_tokens):
         raise StudyKeyError(
@@ -130,10 +130,10 @@ def checked_limits(max_tokens: int | None, max_cost: float | None) -> RunLimits:
 
 
 def checked_lists(variations: Mapping[str, Sequence[Any]]) -> None:
-    """Refuse what is no list of different values that can stand in a file.
+    """Check that variations are lists of different plain values.
 
     Raises:
-        StudyKeyError: It is none, or empty.
+        StudyKeyError: A value is no such list, or is empty.
     """
     for name, values in variations.items():
         if isinstance(values, str) or not isinstance(values, Sequence) or not values:
@@ -149,7 +149,7 @@ def checked_lists(variations: Mapping[str, Sequence[Any]]) -> None:
 
 
 def _is_plain(value: object) -> bool:
-    """Return True if it can stand in a file."""
+    """Return True if a value consists of numbers, texts, lists and mappings, as in files."""
     if isinstance(value, Mapping):
         return all(isinstance(key, str) and _is_plain(inner) for key, inner in value.items())
     if isinstance(value, list | tuple):

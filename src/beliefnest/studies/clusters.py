@@ -1,7 +1,7 @@
 """Intervals and tests for rows that come in clusters, such as the rows of one variation.
 
-Rows of one variation are not independent: they share the scene. What is independent is the
-variation, so that intervals resample variations, and tests exchange the levels of whole variations.
+Rows of one variation are not independent: they share the scene. The independent unit is the
+variation. Intervals therefore resample variations, and tests exchange levels of whole variations.
 """
 
 from collections.abc import Sequence
@@ -18,15 +18,16 @@ _DRAWS = 2_000
 def mean_interval(
     clusters: Sequence[Sequence[float]],
 ) -> tuple[float, float] | tuple[None, None]:
-    """Compute the 95 % interval of the mean of all values, the same each time.
+    """Compute the 95 % interval of the mean of all values, reproducibly.
+
+    The method is the cluster bootstrap of Field and Welsh (2007): clusters are drawn with
+    replacement, and the interval consists of percentiles of the means (Efron, 1979).
 
     Args:
         clusters: Values by cluster, at least one in each.
 
     Returns:
-        Lowest and highest mean; None for both where there are fewer than two clusters. Source:
-        Field and Welsh (2007), the cluster bootstrap: clusters are drawn with replacement, and
-        the interval is given by the percentiles of the means (Efron, 1979).
+        Lowest and highest mean; None for both if there are fewer than two clusters.
     """
     if len(clusters) < 2:
         return None, None
@@ -45,10 +46,10 @@ def rate_interval(clusters: Sequence[Sequence[bool]]) -> tuple[float, float, str
         clusters: Values by cluster, at least one cluster with at least one value in each.
 
     Returns:
-        Lowest share, highest share, and `wilson` or `bootstrap`. It is the interval of Wilson
-        where each cluster has one value. It is that of the cluster bootstrap where a cluster has
-        several. Where all clusters have the same share the bootstrap has nothing to draw from;
-        then it is Wilson's for as many values as there are clusters.
+        Lowest share, highest share, and the method, `wilson` or `bootstrap`. The method is
+        Wilson's interval if each cluster has one value, else the cluster bootstrap. If all
+        clusters have the same share, every bootstrap mean is the same; the method then is
+        Wilson's interval for as many values as there are clusters.
     """
     shares = {sum(values) / len(values) for values in clusters}
     if all(len(values) == 1 for values in clusters) or len(shares) == 1:
@@ -62,19 +63,19 @@ def rate_interval(clusters: Sequence[Sequence[bool]]) -> tuple[float, float, str
 def exchange_p(differences: Sequence[int]) -> float:
     """Compute the two-sided p of an exact permutation test on paired clusters.
 
-    In each cluster the two levels are exchanged or not, which turns the sign of its difference.
+    Each permutation exchanges the two levels in some clusters, which negates their differences.
     With one pair in each cluster this is McNemar's exact test.
 
     Args:
-        differences: For each cluster, how many pairs are right with one level only, less those
-            that are right with the other only.
+        differences: For each cluster, the number of pairs that are right with one level only,
+            minus the number of pairs that are right with the other level only.
 
     Returns:
-        Share of all exchanges with a total that is as far from zero as the one found.
+        Share of all permutations whose total is at least as far from zero as the observed total.
     """
     sizes = [abs(each) for each in differences if each]
     reach = sum(sizes)
-    # Share of exchanges by total; the total 0 is in the middle.
+    # Share of permutations by total; the total 0 is at the middle index.
     shares = np.zeros(2 * reach + 1)
     shares[reach] = 1.0
     for size in sizes:

@@ -1,7 +1,7 @@
-"""Rows that are copies: the same once more, with another seed on which nothing depends.
+"""Rows that are copies of others: they differ only by a seed on which nothing depends.
 
-Intervals and tests take results for independent. Who plays the very same again has learnt nothing
-new; so one of such rows is counted, and the others are told apart from it by `copy_of`.
+Intervals and tests assume independent results. A copy adds no evidence, so that only one of such
+rows is counted. The column `copy_of` marks the others.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -13,7 +13,7 @@ from beliefnest.studies.store import StudyFolder
 __all__ = ["rows_with_copies", "text_of_copies"]
 
 _OWN = ("key", "seed", "run")
-"""What a cell's file says of which cell it is, and not of what came of it."""
+"""Keys of a cell's file that identify the cell and are no part of its result."""
 
 
 def rows_with_copies(
@@ -23,13 +23,14 @@ def rows_with_copies(
 ) -> Iterator[dict[str, Any]]:
     """Yield the rows of all planned cells that have been tried, in the order of the plan.
 
-    The `copy_of` of a row names the first of the cells that are `alike`; None: it is no copy. All
-    of them have to have come to the same in everything: where they have not, the world drew.
+    The `copy_of` of a row names the first of the cells that are `alike`; None: the row is no
+    copy. Cells count as copies only if all their results are the same. If results differ, the
+    world itself drew random numbers.
 
     Args:
-        folder: Of the study.
-        plan: What was planned last.
-        rows_of: The rows of a cell, by what the plan says of it and what came of it.
+        folder: Folder of the study.
+        plan: Latest plan of the study.
+        rows_of: Function that returns the rows of a cell, from its entry in the plan and its file.
     """
     rows: list[dict[str, Any]] = []
     alike: dict[str, dict[str, str]] = {}
@@ -37,7 +38,7 @@ def rows_with_copies(
         found = folder.cell(cell["name"])
         if found is None:
             continue
-        # The plan of an earlier version says nothing of it.
+        # Plans of earlier versions do not have this key.
         if cell.get("alike") is not None and found["error"] is None:
             alike.setdefault(cell["alike"], {})[cell["name"]] = _what_came(found)
         rows += rows_of(cell, found)
@@ -52,10 +53,10 @@ def rows_with_copies(
 
 
 def text_of_copies(count: int) -> str:
-    """What people are told of so many copies."""
+    """Return the note for readers about the number of copies."""
     return (
-        f"{count} rows are copies (column copy_of): nothing in them depends on the seed by which "
-        "they differ from another row; of each row and its copies one is counted"
+        f"{count} rows are copies (column copy_of): they differ from another row only by a seed on "
+        "which nothing depends; each row is counted once, without its copies"
     )
 
 

@@ -1,4 +1,4 @@
-"""Accuracies with intervals, and differences of pairs, from the rows of a study."""
+"""Accuracies with intervals, and paired differences, computed from the rows of a study."""
 
 import itertools
 import math
@@ -20,24 +20,24 @@ _Z95 = 1.959963984540054
 def count_rows(
     rows: Sequence[Row], by: Sequence[str], means: Mapping[str, bool] | None = None
 ) -> list[dict[str, Any]]:
-    """Return the count for each group the rows that are right, and compute how sure their share is.
+    """Count the right rows of each group, and compute their accuracy with its interval.
 
-    Rows in which nothing was expected, or which have no result, are counted and not judged. Of a
-    row and its copies (`copy_of`) one is counted; `copies` are those that are left out. Intervals
-    are clustered by the column `variation`; rows without it are clusters of their own.
+    Rows without expectations or without a result are counted but not judged. A row and its copies
+    (`copy_of`) count as one row; `copies` is the number of rows left out. Intervals are clustered
+    by the column `variation`; a row without it is a cluster of its own.
 
     Args:
-        rows: Of a study.
-        by: Columns that tell the groups apart.
-        means: Columns whose means are told; True: of what is right alone.
+        rows: Rows of a study.
+        by: Columns that define the groups.
+        means: Columns to average; True: over right rows only.
 
     Returns:
-        One mapping for each group, in the order in which they come: the columns of `by`; `rows`;
-        `copies`; `judged`; `variations` (independent ones among the judged rows); `right`;
+        One mapping for each group, in order of appearance: the columns of `by`; `rows`; `copies`;
+        `judged`; `variations` (number of independent variations among the judged rows); `right`;
         `accuracy`, `low` and `high` (its 95 % interval) and `interval` (`wilson` or `bootstrap`,
-        see `rate_interval`), None where none is judged; each outcome with its count; `tokens`,
-        `cost` (None if not known); of each of `means` the mean, and its 95 % interval as
-        `NAME_low`, `NAME_high` (None: fewer than two variations have a value).
+        see `rate_interval`), all None if no row is judged; the count of each outcome; `tokens`;
+        `cost` (None if not known); for each column of `means`, its mean, and the 95 % interval as
+        `NAME_low` and `NAME_high` (None if fewer than two variations have a value).
     """
     groups: dict[tuple[Any, ...], list[tuple[Row, _Origin]]] = {}
     for row, origin in zip(rows, _origins(rows), strict=True):
@@ -52,7 +52,7 @@ _Origin = tuple[object, int]
 
 
 def _origins(rows: Iterable[Row]) -> Iterator[_Origin]:
-    """Yield what tells rows apart: cell and place in it, of a copy those of the original."""
+    """Yield the identity of each row: its cell and place in it; for a copy, the original's."""
     places: Counter[object] = Counter()
     for number, row in enumerate(rows):
         cell = row.get("cell", number)
@@ -112,13 +112,13 @@ def _means(rows: Mapping[_Origin, Row], means: Mapping[str, bool]) -> dict[str, 
 
 @dataclass(frozen=True, slots=True)
 class Pairs:
-    """Two levels of one column, compared on what is the same otherwise.
+    """Two levels of one column, compared on rows that are the same otherwise.
 
     Attributes:
         one: A value of the column.
-        other: Another one.
-        clusters: For each independent variation its pairs: whether each is right with `one`, and
-            whether it is with `other`. Copies of a pair are left out.
+        other: Another value of the column.
+        clusters: Pairs of each independent variation. A pair is (True if right with `one`, True
+            if right with `other`). Copies of a pair are left out.
     """
 
     one: Any
@@ -137,17 +137,17 @@ class Pairs:
 
     @property
     def both(self) -> int:
-        """Pairs that are right with both."""
+        """Number of pairs that are right with both levels."""
         return self._count(True, True)
 
     @property
     def only_one(self) -> int:
-        """Pairs that are right with `one` only."""
+        """Number of pairs that are right with `one` only."""
         return self._count(True, False)
 
     @property
     def only_other(self) -> int:
-        """Pairs that are right with `other` only."""
+        """Number of pairs that are right with `other` only."""
         return self._count(False, True)
 
     def _count(self, one: bool, other: bool) -> int:
@@ -155,18 +155,18 @@ class Pairs:
 
     @property
     def difference(self) -> float:
-        """Accuracy of `one` less that of `other`."""
+        """Accuracy with `one` minus accuracy with `other`."""
         return (self.only_one - self.only_other) / self.pairs
 
     @property
     def interval(self) -> tuple[float, float]:
         """The 95 % interval of the difference.
 
-        With one pair in each variation, it is that of Bonett and Price (2012): Wald's interval
-        with one added to either kind of discordant pairs, which holds for few pairs too. With
-        several it is that of the cluster bootstrap. Where all variations have the same difference,
-        the bootstrap has nothing to draw from; then it is Bonett and Price's for as many pairs
-        as there are variations.
+        With one pair in each variation, the method is that of Bonett and Price (2012): Wald's
+        interval after adding one to both counts of discordant pairs, which is valid for few pairs
+        too. With several pairs, it is the cluster bootstrap. If all variations have the same
+        difference, every bootstrap mean is the same; the method then is Bonett and Price's for
+        as many pairs as there are variations.
         """
         differences = [[one - other for one, other in cluster] for cluster in self.clusters]
         several = any(len(cluster) > 1 for cluster in differences)
@@ -183,23 +183,23 @@ class Pairs:
 
     @property
     def p(self) -> float:
-        """Probability of so great a difference by chance: `exchange_p` of the variations."""
+        """Probability of at least this difference by chance: `exchange_p` of the variations."""
         return exchange_p([sum(one - other for one, other in each) for each in self.clusters])
 
 
 def paired_rows(
     rows: Sequence[Row], column: str, identity: Sequence[str], same: Sequence[str] = ()
 ) -> list[Pairs]:
-    """Pair rows that are the same in all but one column, for any two levels of it.
+    """Pair rows that are the same in all but one column, for any two levels of that column.
 
     Args:
-        rows: Of a study.
-        column: Whose values are compared.
-        identity: Columns that say which row it is, and not what came of it.
-        same: Those of them that say the same as the column in other words.
+        rows: Rows of a study.
+        column: Column whose levels are compared.
+        identity: Columns that identify a row, as opposed to its results.
+        same: Columns of `identity` that carry the same information as `column`.
 
     Raises:
-        InputError: The column is none of them.
+        InputError: The column is not in `identity`.
     """
     if column not in identity:
         raise InputError(
@@ -222,12 +222,12 @@ def _pairs(table: Iterable[Mapping[Any, tuple[Row, _Origin]]], one: Any, other: 
     for each in table:
         if one in each and other in each:
             (first, a), (second, b) = each[one], each[other]
-            # A row and its own copy are no pair.
+            # A row does not form a pair with its own copy.
             if a != b:
                 found[a, b] = (first, second)
     clusters: dict[tuple[object, object], list[tuple[bool, bool]]] = {}
     for (a, b), (first, second) in found.items():
-        # Where the column is part of the variation, the two rows have two variations.
+        # If the column is part of the variation, the two rows belong to two variations.
         cluster = _variation(first, a), _variation(second, b)
         clusters.setdefault(cluster, []).append((first["ok"], second["ok"]))
     return Pairs(one, other, tuple(map(tuple, clusters.values())))

@@ -1,4 +1,4 @@
-"""What a study of scenarios combines, checked."""
+"""Checked design of a study of scenarios: the values that it combines."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -31,27 +31,28 @@ from beliefnest.studies.variation import CHANGES, Variation
 __all__ = ["Constraint", "Design", "Template", "template_named"]
 
 Constraint = str | Callable[[Mapping[str, Any]], bool]
-"""An expression over a variation's values, or a function of them, that has to hold."""
+"""Condition on a variation's values: an expression, or a function of them."""
 
 
 @dataclass(frozen=True)
 class Design:
-    """What a study combines.
+    """Design of a study of scenarios.
 
     Attributes:
         scenarios: Names of built-in scenarios, or paths of files.
         models: Names of models.
-        templates: Prompt templates in place of those that scenarios name; empty: theirs.
-        repeats: How often each cell is played, each time with another seed.
-        seed: Decides which variations are drawn, and with the cell about its seed.
-        variations: Lists of values, of which all combinations are cells; or how many are drawn.
+        templates: Prompt templates that replace those of the scenarios; empty: no replacement.
+        repeats: Number of times that each cell is played, each time with another seed.
+        seed: Seed of the drawn variations; seeds of cells are derived from it.
+        variations: Lists of values, all of whose combinations are played; or the number of
+            variations to draw.
         conditions: Numbers of conditions; None: all.
-        constraints: What has to hold of a variation's values.
+        constraints: Conditions on a variation's values.
         world: Name of the world.
-        attempts: How often a model is asked for one probe at most.
-        temperature: How answers are drawn; None leaves it to the provider.
-        limits: What the whole study may spend.
-        claims_from: Name of the model that reads claims out of what is said; None: nobody.
+        attempts: Greatest number of requests to a model for one probe.
+        temperature: Sampling temperature; None: the provider's default.
+        limits: Limits of tokens and cost of the whole study.
+        claims_from: Name of the model that extracts claims from utterances; None: no extraction.
     """
 
     scenarios: tuple[str, ...]
@@ -104,7 +105,7 @@ class Design:
 
     @property
     def setting(self) -> dict[str, Any]:
-        """What decides about the result of every cell."""
+        """Return the settings that affect the results of all cells."""
         return {
             "seed": self.seed,
             "world": self.world,
@@ -114,7 +115,7 @@ class Design:
         }
 
     def plain(self) -> dict[str, Any]:
-        """What a study's plan says of it."""
+        """Return the design as plain values for the study's plan."""
         return {
             "scenarios": list(self.scenarios),
             "models": list(self.models),
@@ -130,7 +131,7 @@ class Design:
     def broken_constraint(
         self, document: Document, condition: int | None, variation: Variation
     ) -> BeliefNestError | None:
-        """What says that a variation does not keep a constraint of the study; None: it does.
+        """Return an error for the first constraint that a variation breaks; None: none.
 
         Raises:
             InputError: A constraint cannot be computed.
@@ -150,7 +151,7 @@ def _holds(constraint: Constraint, told: str, values: Mapping[str, Any]) -> bool
         return bool(evaluate(constraint, values))
     try:
         return bool(constraint(values))
-    except Exception as error:  # a user's function may raise anything; it is told
+    except Exception as error:  # a user's function may raise anything; report it
         raise InputError(
             f"the constraint {told!r} raised {type(error).__name__}: {error}"
         ) from error

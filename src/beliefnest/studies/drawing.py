@@ -1,4 +1,4 @@
-"""Drawing variations of a scenario by a seed: parameters, symmetries, names."""
+"""Random variations of a scenario: parameters, symmetries, and names."""
 
 import itertools
 import math
@@ -26,31 +26,32 @@ _THINGS = (
     *("diamond", "emerald", "bone", "book", "carrot", "feather", "stick", "potato", "apple"),
     *("gold_ingot", "iron_ingot", "clock", "compass", "bowl", "bucket"),
 )
-"""Items that do nothing but be carried, so that one is as good as another."""
+"""Items without any effect, which can replace one another."""
 _MISSES = 200
-"""Draws in a row that give nothing new, after which what is left is listed."""
+"""Draws in a row without a new variation, after which the remaining ones are listed."""
 _MOST_LISTED = 100_000
-"""Combinations that are listed one by one, to find those that were not drawn."""
+"""Greatest number of combinations to list in search of variations that were not drawn."""
 
 
 def drawn_variations(
     document: Document, count: int, seed: str, keeps: Callable[[Variation], bool] | None = None
 ) -> list[Variation]:
-    """Draw so many different variations of a scenario.
+    """Draw different variations of a scenario.
 
-    What varies: parameters that it declares; the symmetries that it can be put into; the names of
-    its agents, and of items that are only carried, unless a parameter has them as values. Which
-    come first does not depend on how many are drawn, so that a study can be extended.
+    A variation changes the scenario's parameters, its symmetry, the names of its agents, and the
+    names of items that are only carried. Names that are values of parameters stay. The first
+    variations do not depend on `count`, so that a study can be enlarged.
 
     Args:
         document: The scenario.
-        count: How many.
-        seed: Decides which.
-        keeps: Whether a variation is wanted; None: all are that keep the scenario's constraints.
+        count: Number of variations.
+        seed: Seed of the draws.
+        keeps: Function that returns True for wanted variations; None: all that keep the
+            scenario's constraints.
 
     Raises:
         ScenarioError: A declaration or constraint is wrong.
-        InputError: There are not as many, or the constraints leave next to nothing.
+        InputError: There are fewer variations, or almost none keeps the constraints.
     """
     drawing = _Drawing.of(document)
     draws = _draws(document, drawing, random.Random(seed), keeps or (lambda _: True))
@@ -96,15 +97,15 @@ def _is_kept(document: Document, found: Variation, keeps: Callable[[Variation], 
 
 @dataclass(frozen=True)
 class _Drawing:
-    """What there is to draw from.
+    """Space of variations of a scenario.
 
     Attributes:
-        lists: Parameter to its values; None: any number in its range.
-        ranges: Parameter to its lowest and highest value.
+        lists: Values of parameters, by name; None: any number in the range.
+        ranges: Lowest and highest value of parameters, by name.
         symmetries: Names of symmetries.
-        agents: Names of agents that are drawn anew.
-        items: Names of items that are drawn anew.
-        taken: Names of agents and items that are not given to others.
+        agents: Names of agents that get new names.
+        items: Names of items that get new names.
+        taken: Names that cannot be given to other agents and items.
     """
 
     lists: Mapping[str, Sequence[Any] | None]
@@ -116,7 +117,7 @@ class _Drawing:
 
     @classmethod
     def of(cls, document: Document) -> "_Drawing":
-        """What a document offers."""
+        """Return the space of variations of a document."""
         declared = declared_in(document)
         content: Any = plain(document.root)
         taken = frozenset(_words(content))
@@ -133,7 +134,7 @@ class _Drawing:
         )
 
     def draw(self, chance: random.Random) -> Variation:
-        """Return one variation, which may break a constraint."""
+        """Draw one variation, which may break a constraint."""
         values: dict[str, Any] = {
             name: chance.choice(listed)
             if listed is not None
@@ -147,14 +148,14 @@ class _Drawing:
         return Variation(values)
 
     def _renamed(self) -> Iterator[tuple[str, tuple[str, ...], list[str]]]:
-        """Yield what is drawn anew: its kind, the names as written, the names to draw from."""
+        """Yield for agents and items: the kind, the names as written, the names to draw from."""
         for kind, own, pool in (("agents", self.agents, _NAMES), ("items", self.items, _THINGS)):
             if own:
                 yield kind, own, _free(pool, self.taken)
 
     @property
     def _sizes(self) -> dict[str, float]:
-        """Numbers of values, by what varies; infinite for any number in a range."""
+        """Return the number of values of each dimension; infinite for a range of numbers."""
         sizes: dict[str, float] = {
             name: math.inf if listed is None else len(listed) for name, listed in self.lists.items()
         }
@@ -163,16 +164,16 @@ class _Drawing:
 
     @property
     def size(self) -> float:
-        """Number of all variations, also those that break a constraint."""
+        """Return the number of all variations, including those that break a constraint."""
         return math.prod(self._sizes.values())
 
     @property
     def text(self) -> str:
-        """What varies, with numbers of values, for messages."""
+        """Return the dimensions with their numbers of values, for messages."""
         return ", ".join(f"{name} ({size:,})" for name, size in self._sizes.items())
 
     def all(self) -> Iterator[Variation]:
-        """Yield all variations, also those that break a constraint, of finitely many."""
+        """Yield all variations of a finite space, including those that break a constraint."""
         choices: dict[str, Iterable[Any]] = {
             name: listed for name, listed in self.lists.items() if listed is not None
         }
@@ -188,7 +189,7 @@ class _Drawing:
 
 
 def _symmetries(document: Document) -> tuple[str, ...]:
-    """Name the symmetries that the scenario can be put into, under all its conditions."""
+    """Return the names of the symmetries that are possible under all conditions."""
     names = (symmetry.name for symmetry in SYMMETRIES)
     return tuple(name for name in names if _is_possible(document, {"symmetry": name}))
 
@@ -200,7 +201,7 @@ def _free(pool: Sequence[str], taken: Collection[str]) -> list[str]:
 def _renamable(
     document: Document, kind: str, names: Sequence[str], free: Sequence[str]
 ) -> tuple[str, ...]:
-    """Choose the names of agents or items that are drawn anew; none if the scenario forbids it."""
+    """Return the agents or items that can be renamed; none if the scenario forbids it."""
     new = dict(zip(names, free, strict=False))
     return tuple(new) if new and _is_possible(document, {kind: new}) else ()
 
@@ -218,28 +219,28 @@ def _is_possible(document: Document, changes: Mapping[str, Any]) -> bool:
 
 
 def _proper_names(content: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return agents whose names are no words of the tasks, as that of a seller would be."""
+    """Return agents whose names are not ordinary words in the tasks, as `seller` would be."""
     told = " ".join(str(probe.get("task", "")) for probe in content.get("probes", ()))
     words = set(re.findall(r"\w+", told))
     return tuple(name for name in content["agents"] if name not in words)[: len(_NAMES) // 2]
 
 
 def _carried(content: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return items that agents carry or containers hold at the start, and that do nothing."""
+    """Return items without effects that agents carry or containers hold at the start."""
     held = [agent.get("inventory") or {} for agent in content["agents"].values()]
     held += [container.get("items") or {} for container in content.get("containers", ())]
     return tuple(dict.fromkeys(name for items in held for name in items if name in _THINGS))
 
 
 def _named_by_parameters(content: Mapping[str, Any]) -> frozenset[str]:
-    """Words of the parameters' values: their columns say them, so that they are not changed."""
+    """Return the words in values of parameters; these stay, as columns of the table show them."""
     conditions = content.get("conditions") or {}
     entries = [content, *(each for each in conditions.values() if isinstance(each, Mapping))]
     return frozenset(word for each in entries for word in _words(each.get("parameters")))
 
 
 def _words(content: object) -> Iterator[str]:
-    """Yield all words of all texts."""
+    """Yield all words of all texts in plain content."""
     if isinstance(content, Mapping):
         for key, inner in content.items():
             yield from _words(str(key))

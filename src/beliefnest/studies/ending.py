@@ -1,4 +1,4 @@
-"""The end of processes that would outlive the one that they work for."""
+"""End of worker processes whose owner has ended."""
 
 import os
 import threading
@@ -10,19 +10,20 @@ _EVERY_S = 0.5
 
 
 def end_with(owner: int) -> None:
-    """End this process once the one that started it is gone, however that ended.
+    """End this process when its owner has ended, in whatever way.
 
-    Who is killed ends nobody, and a pool's workers wait for minutes for what is to be done next.
-    Nothing is lost: what a worker came to is kept by its owner alone.
+    A killed owner cannot end its workers, and a pool's workers wait minutes for further work.
+    Ending them loses nothing: only the owner keeps results.
 
     Args:
-        owner: Process that started this one.
+        owner: Id of the process that started this one.
     """
     threading.Thread(target=_watch, args=(owner,), name="owner", daemon=True).start()
 
 
 def _watch(owner: int) -> None:
-    # A process whose parent ended gets another parent. There is no way to be told of it everywhere.
+    # A process whose parent has ended gets another parent. Poll for it: no notification of it
+    # works on all systems.
     while os.getppid() == owner:
         time.sleep(_EVERY_S)
     os._exit(1)

@@ -1,4 +1,4 @@
-"""What a study of episodes combines, checked."""
+"""Checked design of a study of episodes: the values that it combines."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -28,17 +28,17 @@ __all__ = [
 
 Order = int | Literal["omniscient"]
 Policies = str | Mapping[str, str]
-"""A policy of all players, or of each agent by its name."""
+"""Name of a policy for all players, or names of policies by agent."""
 
 
 @dataclass(frozen=True, slots=True)
 class Player:
-    """Who plays.
+    """Player of a study: a policy at an order.
 
     Attributes:
-        name: `search`, `model:MODEL`, or a policy as it was named.
-        order: Order of Theory of Mind; None: the name says all.
-        policies: What the command line calls it.
+        name: `search`, `model:MODEL`, or the name of a policy.
+        order: Order of Theory of Mind; None: the name is complete without it.
+        policies: Policies as the command line takes them.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Player:
 
     @property
     def text(self) -> str:
-        """All of it as one text."""
+        """Return the policies as one text."""
         if isinstance(self.policies, str):
             return self.policies
         return ",".join(f"{agent}={policy}" for agent, policy in self.policies.items())
@@ -55,21 +55,21 @@ class Player:
 
 @dataclass(frozen=True)
 class EpisodeDesign:
-    """What a study of episodes combines.
+    """Design of a study of episodes.
 
     Attributes:
         tasks: Names of built-in tasks or scenarios, or paths of files of either.
-        policies: Of all players, or mappings from agent to policy. `search` stands for `search` of
-            each of the `orders`; all others are as on the command line.
+        policies: Policies of all players, or mappings from agent to policy. `search` stands for
+            search at each of the `orders`; other names are as on the command line.
         models: Names of models that play, each at each of the `orders`.
         orders: Orders of Theory of Mind; `omniscient` is an upper bound.
-        seeds: Which instances; of the first repeat also the seeds of the episodes.
-        repeats: How often each cell is played.
-        variations: Lists of values of parameters, of which all combinations are cells.
-        conditions: Numbers of conditions of scenarios; None: as written.
+        seeds: Numbers of instances; in the first repeat, they are also the seeds of episodes.
+        repeats: Number of times that each cell is played.
+        variations: Lists of values of parameters; all combinations are played.
+        conditions: Numbers of conditions of scenarios; None: the scenario as written.
         world: Name of the world.
-        help: Whether help is measured, for which branches are played.
-        limits: What the whole study may spend.
+        help: Measure help, which plays further branches.
+        limits: Limits of tokens and cost of the whole study.
     """
 
     tasks: tuple[str, ...]
@@ -118,7 +118,7 @@ class EpisodeDesign:
 
     @property
     def players(self) -> tuple[Player, ...]:
-        """Everybody who plays, in order."""
+        """Return all players in order."""
         return tuple(self._players())
 
     def _players(self) -> Iterator[Player]:
@@ -136,11 +136,11 @@ class EpisodeDesign:
 
     @property
     def setting(self) -> dict[str, Any]:
-        """What decides about the result of every cell."""
+        """Return the settings that affect the results of all cells."""
         return {"world": self.world, **({"help": True} if self.help else {})}
 
     def plain(self) -> dict[str, Any]:
-        """What a study's plan says of it."""
+        """Return the design as plain values for the study's plan."""
         return {
             "tasks": list(self.tasks),
             "players": [player.text for player in self.players],
@@ -165,22 +165,22 @@ def _check_policies(policies: object) -> None:
 
 
 def listed(policies: Sequence[Policies] | Policies) -> tuple[Policies, ...]:
-    """Return policies of all players, or a mapping, alone are a list of one."""
+    """Return one or several policies as a tuple."""
     return (policies,) if isinstance(policies, str | Mapping) else tuple(policies)
 
 
 def policy_named(player: str, order: str) -> str:
-    """What the command line calls who plays; without an order, the name says all."""
+    """Return a player's policy as the command line takes it; an empty order adds nothing."""
     if (player, order) == ("search", "omniscient"):
         return "omniscient:search"
     return f"{player}:{order}" if order else player
 
 
 def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
-    """Which instances are played: so many from the first on, or those that are listed.
+    """Return the numbers of instances: `seeds` many from `first` on, or the listed ones.
 
     Raises:
-        InputError: It is no number of them.
+        InputError: `seeds` is neither a count nor a list of whole numbers.
     """
     if isinstance(seeds, int):
         if not is_count(seeds):
@@ -190,10 +190,10 @@ def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
 
 
 def check_scenarios_alone(policies: object, orders: object, seeds: object, help: object) -> None:
-    """Refuse what a study of scenarios does not combine.
+    """Refuse keys that only studies of tasks have.
 
     Raises:
-        StudyKeyError: Something of it is given.
+        StudyKeyError: Such a key is given.
     """
     given = {"policies": policies, "orders": orders, "seeds": seeds != 1, "help": help}
     for name, value in given.items():
@@ -208,10 +208,10 @@ def check_episodes_alone(
     constraints: object,
     claims_from: str | None,
 ) -> None:
-    """Refuse what a study of episodes does not combine.
+    """Refuse keys that only studies of scenarios have.
 
     Raises:
-        InputError: Something of it is given.
+        StudyKeyError: Such a key is given.
     """
     given = {
         "scenarios": scenarios,
@@ -221,4 +221,4 @@ def check_episodes_alone(
     }
     for name, value in given.items():
         if value:
-            raise StudyKeyError(name, f"{name} cannot stand beside tasks; make two studies of it")
+            raise StudyKeyError(name, f"{name} cannot stand beside tasks; make two studies")

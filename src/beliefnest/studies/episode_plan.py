@@ -1,4 +1,4 @@
-"""The cells of a study of episodes."""
+"""Plan of a study of episodes: its cells."""
 
 import itertools
 from collections.abc import Iterator, Mapping
@@ -29,19 +29,19 @@ __all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
 
 @dataclass(frozen=True, slots=True)
 class EpisodeKey:
-    """What tells a cell from all others.
+    """Identity of a cell.
 
     Attributes:
         task: Name of the task.
-        content: A hash of the instance, and of the files that policies are read from.
-        condition: Number of a scenario's condition; None: as written.
+        content: Hash of the instance and of the files that define policies.
+        condition: Number of a scenario's condition; None: the scenario as written.
         variation: Values of parameters.
-        player: What stands in the table for who plays.
-        order: Its order of Theory of Mind, as text; empty: `player` says all.
-        policies: By agent, who plays it, of those that the study names.
-        instance: Which instance of a built-in task.
+        player: Name of the player in the table.
+        order: The player's order of Theory of Mind, as text; empty: part of `player`.
+        policies: Names of the policies that the study gives, by agent.
+        instance: Number of the instance of a built-in task.
         repeat: Number of the repeat, from 1.
-        setting: What else decides about results.
+        setting: Further settings that affect results.
     """
 
     task: str
@@ -57,11 +57,11 @@ class EpisodeKey:
 
     @property
     def name(self) -> str:
-        """Sixteen letters and digits, the same for the same cell on every machine."""
+        """Return sixteen letters and digits, the same for the same cell on every machine."""
         return digest(self.content_json())[:16]
 
     def content_json(self) -> dict[str, Any]:
-        """Return all of it as plain values."""
+        """Return the key as plain values."""
         return {
             "task": self.task,
             "content": self.content,
@@ -77,10 +77,11 @@ class EpisodeKey:
 
     @property
     def seed(self) -> int:
-        """Drives every random number of the cell.
+        """Return the seed of all random numbers of the cell.
 
-        Of one repeat of one instance of one variation all players and conditions have the same.
-        An instance as written has its own number, as with `beliefnest play --seed`.
+        The seed depends on variation, instance and repeat, but not on player and condition. The
+        first repeat of an instance without variation has the instance's number as seed, as with
+        `beliefnest play --seed`.
         """
         if self.variation:
             return cell_seed(self.task, dict(self.variation), self.instance, self.repeat)
@@ -89,12 +90,12 @@ class EpisodeKey:
 
 @dataclass(frozen=True)
 class EpisodeCell:
-    """An instance of a task, to be played by somebody once.
+    """Instance of a task, to be played once by a player.
 
     Attributes:
-        key: What tells it from all others.
+        key: Identity of the cell.
         task: The instance.
-        draws: Whether anything in the episode is drawn by its seed.
+        draws: True if the episode draws random numbers from its seed.
     """
 
     key: EpisodeKey
@@ -102,9 +103,9 @@ class EpisodeCell:
     draws: bool
 
     def plain(self) -> dict[str, Any]:
-        """What a study's plan says of it."""
+        """Return the cell as plain values for the study's plan."""
         key = self.key
-        # What is read from a file has no instances: every one of them is the same.
+        # A task from a file has no instances: all seeds give the same task.
         from_file = self.task.seed is None
         seeds = ("repeat", "instance") if from_file else ("repeat",)
         instance = None if from_file else key.instance
@@ -118,10 +119,12 @@ class EpisodeCell:
 
 
 def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
-    """The plan of a study of episodes; what is done first is a smaller study of the same form.
+    """Return the plan of a study of episodes.
+
+    Cells are in rounds, so that the cells played first form a smaller study of the same design.
 
     Raises:
-        UnknownNameError: There is no such task or policy.
+        UnknownNameError: A task or policy does not exist.
         ScenarioError: A task's file is wrong.
         InputError: A policy's file cannot be read.
     """
@@ -135,7 +138,7 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
         for condition, variation in itertools.product(chosen, listed_variations(design.variations)):
             place = _Place(name, document, condition, variation)
             if condition in there:
-                # As it is written it has to be right: a fault in it is no matter of a variation.
+                # An error without any variation is an error of the file, not an invalid cell.
                 replace(place, variation=Variation()).task(design.seeds[0])
             try:
                 tasks = {seed: place.task(seed) for seed in design.seeds}
@@ -154,13 +157,13 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where a cell stands in a study, but for who plays, and which instance and repeat it is.
+    """Place of cells in a study, without player, instance and repeat.
 
     Attributes:
         name: Name, or path, of a task or scenario.
-        document: What is written in the scenario; None: it is a task.
-        condition: Number of the scenario's condition; None: as written.
-        variation: What varies.
+        document: Document of the scenario; None: a task.
+        condition: Number of the scenario's condition; None: the scenario as written.
+        variation: Values of parameters.
     """
 
     name: str
@@ -177,7 +180,7 @@ class _Place:
         return Task.of(Scenario.varied(self.document, self.condition, varied.parameters, scene))
 
     def invalid(self, why: str) -> Invalid:
-        """It makes no episode."""
+        """Return an entry that says why this place makes no episode."""
         return Invalid(self.name, self.condition, self.variation.values, why)
 
 
@@ -220,13 +223,17 @@ def _policies(task: Task, player: Player) -> dict[str, str]:
 
 
 def _texts(player: Player) -> list[str]:
-    """What the policies of a player are read from; that there is no such policy is told here."""
+    """Return the texts of the files that define a player's policies.
+
+    Raises:
+        UnknownNameError: A policy does not exist.
+    """
     policies = player.policies
     names = [policies] if isinstance(policies, str) else list(policies.values())
     for name in names:
         try:
             resolve_policy(name)
         except ModelError:
-            # The machines of a cluster may have keys that this one has not.
+            # Machines of a cluster may have keys that this machine does not have.
             continue
     return [text_of_policy(name) for name in names]

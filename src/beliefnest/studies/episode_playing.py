@@ -1,4 +1,4 @@
-"""Playing one episode of a study."""
+"""Playing of one episode of a study."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -19,11 +19,11 @@ __all__ = ["play_episode"]
 
 
 def play_episode(cell: EpisodeCell, terms: Terms, worlds: Worlds) -> dict[str, Any]:
-    """What came of an episode, as plain values.
+    """Play an episode and return its result as plain values.
 
     Raises:
-        ModelError: A model could not be asked, or the study may spend no more. A model that was
-            asked and gave no program has lost a round, which is a result.
+        ModelError: A model could not be asked, or the limits of the study are reached. An answer
+            without a program is no error: it loses the round.
     """
     key = cell.key
     connection = terms.connection()
@@ -63,7 +63,7 @@ def play_episode(cell: EpisodeCell, terms: Terms, worlds: Worlds) -> dict[str, A
 
 
 def _why_not(episode: Episode) -> str:
-    """What the goal lacks, in words."""
+    """Return the unmet conditions of the goal, in words."""
     goal, conditions = episode.task.goal, episode.conditions
     count = len(goal.reach)
     broken = [f"not to be: {text}" for text, tick in conditions[count:] if tick is not None]
@@ -75,11 +75,11 @@ def _why_not(episode: Episode) -> str:
 
 @dataclass(frozen=True)
 class _Noting:
-    """A model that notes when it cannot be asked.
+    """Model that notes failed requests.
 
     Attributes:
-        model: Who is asked.
-        failures: What went wrong.
+        model: The model to ask.
+        failures: Errors of failed requests.
     """
 
     model: Model
@@ -87,19 +87,19 @@ class _Noting:
 
     @property
     def name(self) -> str:
-        """Name of the model that is asked."""
+        """Return the name of the model."""
         return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Ask it.
+        """Ask the model.
 
         Raises:
-            ModelError: It cannot be asked.
+            ModelError: The request failed.
         """
         try:
             return self.model.answer(messages, sampling)
         except UnusableAnswerError:
-            # It answered: what came of that is a result.
+            # The model answered, so the outcome is a result.
             raise
         except ModelError as error:
             self.failures.append(error)

@@ -1,4 +1,4 @@
-"""The table of a study of episodes: one row for each episode, from what its folder holds."""
+"""Table of a study of episodes: one row for each episode in the study's folder."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -52,9 +52,9 @@ _COLUMNS = {
     "cell": "string",
     "copy_of": "string",
 }
-"""Columns after `task`, `condition` and those of variations, and their types; what they mean is
-told at `Measures`. `variation` names the independent variation that a row belongs to: of a built-in
-task each instance is one. `needs` is the order that the task needs, `order` that of who plays."""
+"""Columns after `task`, `condition` and those of variations, and their types. `Measures` documents
+most of them. `variation` names the independent variation of a row; each instance of a built-in task
+is one. `needs` is the order that the task needs, `order` the order of the player."""
 
 
 _MEASURED = [
@@ -73,7 +73,7 @@ def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, An
             "task": key["task"],
             "condition": key["condition"],
             **{name: plain_value(key["variation"].get(name)) for name in columns},
-            # The plan of an earlier version has no name for it.
+            # Plans of earlier versions do not have this key.
             "variation": cell.get("variation")
             or variation_id(key["task"], key["variation"], key["instance"]),
             "player": key["player"],
@@ -138,4 +138,4 @@ EPISODES = Table(
         "help_superfluous": False,
     },
 )
-"""Of studies of episodes."""
+"""Table of studies of episodes."""

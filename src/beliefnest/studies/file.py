@@ -1,4 +1,4 @@
-"""The file that describes a study."""
+"""YAML files of studies."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,7 +28,7 @@ __all__ = ["read_design"]
 
 
 class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The form of a study's file; what each key means is told at `Design` and `EpisodeDesign`."""
+    """Form of a study's file; `Design` and `EpisodeDesign` document the keys."""
 
     scenarios: list[str] | str = []
     models: list[str] | str | None = None
@@ -52,7 +52,7 @@ class _StudyFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_design(path: Path) -> Design | EpisodeDesign:
-    """Return the design that a YAML file describes; files that it names are looked for beside it.
+    """Return the design in a YAML file; paths in the file are relative to its folder.
 
     Raises:
         ScenarioError: The file is wrong; the message names file, line and key.
@@ -102,7 +102,7 @@ def _episodes(found: _StudyFile, path: Path, tasks: Sequence[str]) -> EpisodeDes
     check_episodes_alone(found.scenarios, found.templates, found.constraints, found.claims_from)
     if isinstance(found.variations, int):
         raise StudyKeyError(
-            "variations", "variations of tasks are lists; give `seeds` for instances"
+            "variations", "variations of tasks must be lists of values; give `seeds` for instances"
         )
     known = [*Task.names(), *builtin_names()]
     return EpisodeDesign(

@@ -14,17 +14,17 @@ from matplotlib.transforms import Bbox
 __all__ = ["Fitting"]
 
 _NARROW = 4.5
-"""Inches of width below which texts are small, and the legend stands above the bars."""
+"""Width in inches below which texts are small and the legend is above the bars."""
 _LARGE, _SMALL = 10.0, 7.0
-"""Sizes of texts in points."""
+"""Font sizes in points."""
 _FORMS = ((False, 0), (True, 0), (False, 45), (False, 90))
-"""Texts below bars, in one line or in several, and by which degrees they are turned. The first form
-that has room is taken."""
+"""Forms of the texts below bars: True if on several lines, and rotation in degrees. The layout
+uses the first form in which texts do not overlap."""
 _HEADINGS = ("accuracy, 95 % interval", "accuracy")
 
 
 class Fitting(LayoutEngine):
-    """Fits all texts into a figure of one plot, each time that the figure is drawn.
+    """Layout engine that fits all texts into a figure of one plot each time it is drawn.
 
     Args:
         texts: Texts below the bars.
@@ -38,7 +38,7 @@ class Fitting(LayoutEngine):
         self._texts = tuple(texts)
 
     def execute(self, fig: Figure) -> None:
-        """Set sizes and forms of texts, and give room to all of them."""
+        """Set the sizes, forms and positions of all texts."""
         (axes,) = fig.axes
         narrow = fig.get_figwidth() < _NARROW
         size = _SMALL if narrow else _LARGE
@@ -94,7 +94,7 @@ def _place_legend(axes: Axes, figure: Figure, size: float, *, narrow: bool) -> N
             title_fontsize=size,
             ncols=columns,
             loc="lower left" if narrow else "upper left",
-            # The named corner of the legend, in shares of the axes.
+            # Position of the legend's corner, as fractions of the axes.
             bbox_to_anchor=(0.0, 1.0) if narrow else (1.0, 1.0),
         )
         if legend.get_window_extent().width < 0.75 * figure.bbox.width:
@@ -102,7 +102,7 @@ def _place_legend(axes: Axes, figure: Figure, size: float, *, narrow: bool) -> N
 
 
 def _overlap(axes: Axes, degrees: int) -> bool:
-    """Tell whether texts below bars touch one another or the heading, or are cut off."""
+    """Return True if texts below bars overlap each other or the heading, or are cut off."""
     labels = axes.get_xticklabels()
     boxes = [label.get_window_extent() for label in labels]
     heading = axes.yaxis.label.get_window_extent()
@@ -112,7 +112,7 @@ def _overlap(axes: Axes, degrees: int) -> bool:
     dpi = _dpi(axes)
     if not degrees:
         return any(one.x1 + 0.04 * dpi > other.x0 for one, other in pairs)
-    # Parallel lines of text: at least as far apart as they are high.
+    # Rotated texts are parallel lines: their distance must be at least their height.
     height = 1.2 * cast(float, labels[0].get_fontsize()) / 72 * dpi
     return any(
         (other.x1 - one.x1) * math.sin(math.radians(degrees)) < height for one, other in pairs

@@ -1,4 +1,4 @@
-"""The form of a study's files."""
+"""Forms of a study's files, used to check files that are read."""
 
 from typing import Any
 
@@ -97,19 +97,19 @@ class _EpisodesPlan(msgspec.Struct):
 
 
 class SecondsForm(msgspec.Struct):
-    """A line that says how long a cell took."""
+    """Line with the wall time of a cell."""
 
     cell: str
     seconds: float
 
 
 def cell_form(content: dict[str, Any]) -> type[Any]:
-    """Return the form that the content of a cell's file has to have."""
+    """Return the form that the content of a cell's file must have."""
     if content.get("error") is not None:
         return _Failed
     return _Episode if "measures" in content else _Played
 
 
 def plan_form(content: dict[str, Any]) -> type[Any]:
-    """Return the form that a study's plan has to have."""
+    """Return the form that a study's plan must have."""
     return _EpisodesPlan if "tasks" in content else _ScenariosPlan

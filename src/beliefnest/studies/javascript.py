@@ -1,7 +1,7 @@
-"""Agent programs in another scene: positions and texts in them, found by a parser of JavaScript.
+"""Rewriting of positions and texts in agent programs, for another scene.
 
-What is rewritten is what can be told for certain: `new Vec3(...)` of plain numbers, and texts.
-Where a program computes with directions, or holds positions in another form, it is refused.
+A JavaScript parser finds `new Vec3(...)` with plain numbers, and texts. Programs that compute with
+directions, or that hold positions in another form, are refused.
 """
 
 import re
@@ -16,24 +16,24 @@ __all__ = ["Rewriting", "rewritten"]
 _COMPUTED = frozenset(
     ("x", "z", "yaw", "offset", "plus", "minus", "translate", "setControlState", "look", "face")
 )
-"""Properties that stand for a direction or for a part of a position."""
+"""Properties that are a direction or a part of a position."""
 _HELPERS = frozenset(("Move", "goals"))
 _DIRECTIONAL = re.compile(r"\b(north|south|east|west)\b|facing=", re.IGNORECASE)
 _Node = Any
-"""A node of tree-sitter's, which is imported where it is used."""
+"""Node of a tree-sitter tree; tree-sitter is imported only when it is needed."""
 _DIRECTED = frozenset(("exploreUntil",))
-"""Skills whose vector is a direction."""
+"""Skills whose vector argument is a direction."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rewriting:
-    """What becomes of the parts of a program.
+    """Functions that rewrite the parts of a program.
 
     Attributes:
-        vector: New coordinates of `new Vec3(x, y, z)`; whether it is a direction. None: positions
-            stay as they are, and nothing is refused on their account.
-        text: New content of a text.
-        key: New name of a key or a property such as `diamond` in `{diamond: 1}`.
+        vector: Function from the coordinates of `new Vec3(x, y, z)`, and True if it is a
+            direction, to new coordinates. None: positions stay, and are not checked.
+        text: Function from the content of a text to new content.
+        key: Function from a key or property, such as `diamond` in `{diamond: 1}`, to a new one.
     """
 
     vector: Callable[[tuple[float, float, float], bool], tuple[float, float, float]] | None
@@ -46,10 +46,10 @@ def rewritten(program: str, by: Rewriting) -> str:
 
     Args:
         program: JavaScript, the body of an async function or a whole one.
-        by: What becomes of its parts.
+        by: Functions that rewrite its parts.
 
     Raises:
-        InputError: It holds what cannot be rewritten for certain; the message names the line.
+        InputError: A part cannot be rewritten with certainty; the message names the line.
     """
     source = program.encode()
     edits: list[tuple[int, int, str]] = []
@@ -71,7 +71,7 @@ def _tree(source: bytes) -> _Node:
     root = Parser(Language(tree_sitter_javascript.language())).parse(source).root_node
     for node in _nodes(root):
         if node.is_missing or node.type == "ERROR":
-            raise _refused(node, "is not JavaScript that can be read")
+            raise _refused(node, "is not valid JavaScript")
     return root
 
 
@@ -84,7 +84,7 @@ def _nodes(root: _Node) -> Iterator[_Node]:
 
 
 def _edits(node: _Node, by: Rewriting) -> list[tuple[int, int, str]]:
-    """What is replaced at a node itself: first byte, the one after the last, new text."""
+    """Return the edits at a node itself: first byte, end byte (exclusive), new text."""
     kind, text = node.type, node.text.decode()
     if kind == "string_fragment":
         if by.vector is not None and _DIRECTIONAL.search(text):

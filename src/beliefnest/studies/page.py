@@ -1,4 +1,4 @@
-"""The page of a study: its figure, its summary, its rows, and what has no result."""
+"""HTML page of a study: its figure, summary, rows, and cells without a result."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.resources import files
@@ -20,19 +20,19 @@ _MOST_ROWS = 2_000
 
 
 class Counted(Protocol):
-    """What a page shows of a study: `StudyResult` is one."""
+    """Protocol of the results that a page shows; `StudyResult` implements it."""
 
     @property
     def plan(self) -> Mapping[str, Any]:
-        """What was planned last, as plain values."""
+        """Return the latest plan, as plain values."""
 
     @property
     def rows(self) -> Sequence[Mapping[str, Any]]:
-        """The rows of `frame` as plain values."""
+        """Return the rows of `frame` as plain values."""
 
     @property
     def table(self) -> Table:
-        """The form of the rows."""
+        """Return the form of the table."""
 
     def counted(self, by: Sequence[str]) -> Sequence[Mapping[str, Any]]:
         """Return the rows of `summary` as plain values."""
@@ -47,10 +47,10 @@ class Counted(Protocol):
 
 
 def page_text(result: Counted, by: Sequence[str]) -> str:
-    """Return the page, the same text for the same study.
+    """Return the page; the same study gives the same text.
 
     Args:
-        result: What the study came to.
+        result: Results of the study.
         by: Columns of the summary.
     """
     plan, rows, table = result.plan, result.rows, result.table
@@ -83,7 +83,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
 
 
 def _differences(result: Counted) -> Iterator[tuple[str, str, Pairs]]:
-    """Yield column, what it was compared in, pairs: in all, and in each task or scenario."""
+    """Yield column, group and pairs of each comparison: overall, and in each task or scenario."""
     whole = result.table.groups[0]
     several = len({row[whole] for row in result.rows}) > 1
     for column in result.table.compared:
@@ -103,7 +103,7 @@ def _players(plan: Mapping[str, Any]) -> str:
 
 
 def _figure(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> str:
-    """The figure as SVG, without what is said before it in a file; empty without matplotlib."""
+    """Return the figure as an SVG element, without the XML prolog; empty without matplotlib."""
     along = [name for name in by if len({group[name] for group in groups}) > 1] or by[:1]
     try:
         drawn = svg_of(plot_accuracy(groups, along))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from beliefnest.errors import MissingExtraError
 from beliefnest.world.texts import formula_free
 
-if TYPE_CHECKING:  # Tables are an extra, imported when one is made.
+if TYPE_CHECKING:  # pandas and pyarrow are optional, and imported when a table is made.
     import pandas
     import pyarrow
 
@@ -21,7 +21,7 @@ class Typed:
 
     Attributes:
         values: The values; None: missing.
-        kind: `string`, `bool`, `int64` or `float64`; None: that of the values.
+        kind: `string`, `bool`, `int64` or `float64`; None: inferred from the values.
     """
 
     values: Sequence[Any]
@@ -29,7 +29,7 @@ class Typed:
 
     @property
     def found_kind(self) -> str:
-        """The kind, if need be that of the values; `string` where they are mixed, or missing."""
+        """Return the kind, inferred if None; `string` if the values are mixed or all missing."""
         if self.kind is not None:
             return self.kind
         types = {type(value) for value in self.values if value is not None}
@@ -43,8 +43,8 @@ class Typed:
 def plain_frame(columns: Mapping[str, Typed]) -> "pandas.DataFrame":
     """Make a data frame of plain types: `object` for texts, `bool`, `int64`, `float64`.
 
-    Missing is None among texts. Among truth values and whole numbers, whose plain types have no
-    missing value, it is NaN, and the column is `float64`, with 1 and 0 for True and False.
+    A missing text is None. The plain types of truth values and whole numbers have no missing
+    value: a column with one is `float64`, with NaN if missing, and 1 and 0 for True and False.
 
     Raises:
         MissingExtraError: pandas is not installed.
@@ -68,14 +68,14 @@ def _plain(column: Typed) -> tuple[Sequence[Any], str]:
 
 
 def _texts(column: Typed) -> list[str | None]:
-    # What a list of a study mixes becomes text.
+    # Values of mixed types become texts.
     return [value if value is None else str(value) for value in column.values]
 
 
 def write_typed(columns: Mapping[str, Typed], csv: Path, parquet: Path) -> None:
-    """Write a table as CSV and as Parquet; whole numbers stay whole where some are missing.
+    """Write a table as CSV and as Parquet; whole numbers stay whole even if some are missing.
 
-    In the CSV file an apostrophe stands before texts that a spreadsheet would compute.
+    In the CSV file, an apostrophe precedes texts that a spreadsheet would take as formulas.
 
     Raises:
         MissingExtraError: pandas or pyarrow is not installed.
@@ -94,7 +94,7 @@ def write_typed(columns: Mapping[str, Typed], csv: Path, parquet: Path) -> None:
     import pyarrow
     from pyarrow import parquet as files
 
-    # Without notes for pandas, by which it would read other types than plain ones.
+    # Leave out pandas metadata, which would make pandas read other types than plain ones.
     files.write_table(pyarrow.table(arrays), parquet)
 
 

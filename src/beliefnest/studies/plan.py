@@ -1,4 +1,4 @@
-"""What a study consists of: one cell for each combination, with a name of its own and a seed."""
+"""Plan of a study: one cell for each combination, with a unique name and a seed."""
 
 import hashlib
 import json
@@ -35,11 +35,11 @@ __all__ = [
 ]
 
 SEEDS = 2**32
-"""How many seeds of cells there are."""
+"""Number of possible seeds of cells."""
 
 
 class Key(Protocol):
-    """What tells a cell from all others."""
+    """Identity of a cell."""
 
     @property
     def name(self) -> str:
@@ -47,21 +47,21 @@ class Key(Protocol):
 
     @property
     def seed(self) -> int:
-        """Drives every random number of the cell."""
+        """Return the seed of all random numbers of the cell."""
 
     def content_json(self) -> dict[str, Any]:
         """Return all of it as plain values."""
 
 
 class Keyed(Protocol):
-    """A cell of any kind of study."""
+    """Cell of any kind of study."""
 
     @property
     def key(self) -> Key:
-        """What tells it from all others."""
+        """Return the identity of the cell."""
 
     def plain(self) -> dict[str, Any]:
-        """What a study's plan says of it."""
+        """Return the cell as plain values for the study's plan."""
 
 
 C = TypeVar("C", bound=Keyed)
@@ -69,17 +69,18 @@ C = TypeVar("C", bound=Keyed)
 
 @dataclass(frozen=True, slots=True)
 class CellKey:
-    """What tells a cell from all others.
+    """Identity of a cell in a study of scenarios.
 
     Attributes:
         scenario: Name of the scenario.
-        content: A hash of the scenario's file and of the template.
-        condition: Number of the condition; None: there are none.
+        content: Hash of the scenario's file and of the template.
+        condition: Number of the condition; None: the scenario has no conditions.
         variation: Values of parameters and of further changes.
         model: Name of the model.
-        template: Name of the prompt template; empty: what the scenario says.
+        template: Name of the prompt template; empty: that of the scenario.
         repeat: Number of the repeat, from 1.
-        setting: What else decides about results: seed, world, attempts, temperature, and so on.
+        setting: Further settings that affect results: seed, world, attempts, temperature, and so
+            on.
     """
 
     scenario: str
@@ -111,16 +112,16 @@ class CellKey:
 
     @property
     def seed(self) -> int:
-        """Drives every random number of the cell.
+        """Return the seed of all random numbers of the cell.
 
-        Of one repeat of one variation all conditions, models and templates have the same, so
-        that nothing else differs where they are compared.
+        The seed depends on variation and repeat, but not on condition, model and template, so that
+        comparisons between these have the same random numbers.
         """
         return cell_seed(self.scenario, dict(self.variation), self.repeat, self.setting["seed"])
 
     @property
     def title(self) -> str:
-        """What it is, for progress and messages."""
+        """Return a title of the cell for progress lines and messages."""
         parts = [self.scenario]
         if self.condition is not None:
             parts.append(f"condition {self.condition}")
@@ -138,33 +139,33 @@ def cell_seed(*parts: object) -> int:
 
 
 def variation_id(*parts: object) -> str:
-    """Return the name an independent variation by the plain values that tell it from others.
+    """Return a name for an independent variation, from the plain values that identify it.
 
-    The name is the same on every machine and in every shard, and begins with a letter, so that no
-    reader of tables takes it for a number.
+    The name is the same on every machine and in every shard. It begins with a letter, so that no
+    reader of tables parses it as a number.
     """
     return f"v{digest(list(parts))[:10]}"
 
 
 def alike(key: Key, seeds: Collection[str]) -> str:
-    """What cells have in common that differ by their seed alone.
+    """Return a hash that is the same for cells that differ only by their seed.
 
     Args:
-        key: A cell's.
-        seeds: What in it tells nothing but the seed.
+        key: Identity of a cell.
+        seeds: Keys of `content_json` that affect nothing but the seed.
     """
     return digest({k: v for k, v in key.content_json().items() if k not in seeds})[:16]
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A scenario under one condition, varied, to be played with one model once."""
+    """Variation of a scenario under one condition, to be played once with one model."""
 
     key: CellKey
     scenario: Scenario
 
     def plain(self) -> dict[str, Any]:
-        """What a study's plan says of it."""
+        """Return the cell as plain values for the study's plan."""
         key = self.key
         models = [key.model, *filter(None, [key.setting.get("claims_from")])]
         draws = scenario_draws(self.scenario, models)
@@ -190,13 +191,13 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class Invalid:
-    """A combination that makes no scenario.
+    """Combination that makes no valid scenario or episode.
 
     Attributes:
         scenario: Name, or path, of the scenario.
-        condition: Number of the condition; None: there are none.
+        condition: Number of the condition; None: the scenario has no conditions.
         variation: Values of parameters and of further changes.
-        why: What is wrong.
+        why: Reason.
     """
 
     scenario: str
@@ -207,17 +208,17 @@ class Invalid:
 
 @dataclass(frozen=True, slots=True)
 class Plan(Generic[C]):
-    """All cells of a study, in the order of its table, and what is no cell."""
+    """Cells of a study in the order of its table, and its invalid combinations."""
 
     cells: tuple[C, ...]
     invalid: tuple[Invalid, ...]
 
     def shard(self, number: int, count: int) -> "Plan[C]":
-        """Return one of several parts that together are the plan; a cell is always in the same one.
+        """Return one of several disjoint parts of the plan; each cell is always in the same part.
 
         Args:
-            number: From 1.
-            count: How many parts there are.
+            number: Number of the part, from 1.
+            count: Number of parts.
         """
         own = [cell for cell in self.cells if int(cell.key.name, 16) % count == number - 1]
         return replace(self, cells=tuple(own))
@@ -227,12 +228,12 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
     """Return the plan of a study.
 
     Args:
-        design: What is combined.
-        documents: Name or path of every scenario in it, to what is written there.
+        design: Design of the study.
+        documents: Documents of its scenarios, by name or path.
 
     Raises:
-        ScenarioError: A scenario is wrong as it is written, before it is varied.
-        InputError: Two scenarios are called the same.
+        ScenarioError: A scenario is wrong even without any variation.
+        InputError: Two scenarios have the same name.
     """
     cells: list[Cell] = []
     invalid: list[Invalid] = []
@@ -254,23 +255,23 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
                 check_called(called, scenario.name, name)
                 cells += _cells(design, document, asked, variation)
     order = {model: number for number, model in enumerate(design.models)}
-    # Whole rounds: what is done first is a smaller study of the same form.
+    # Order cells in rounds, so that the cells played first form a smaller study of this design.
     cells.sort(key=lambda cell: (cell.key.repeat, order[cell.key.model]))
     return Plan(tuple(cells), tuple(invalid))
 
 
 def check_called(called: dict[str, str], name: str, source: str) -> None:
-    """Note what the scenario or task of a file is called; InputError if another one is so too."""
+    """Note the name of the scenario or task in a file; raise InputError if the name is taken."""
     other = called.setdefault(name, source)
     if other != source:
         raise InputError(
-            f"{other} and {source} are both called {name!r}, so that their rows could not be told "
-            "apart; give one another name"
+            f"{other} and {source} are both called {name!r}, so that their rows would be "
+            "indistinguishable; give one another name"
         )
 
 
 def _variations(design: Design, document: Document) -> Sequence[Variation]:
-    # As written it has to be right: a fault of the file is no matter of a variation.
+    # An error without any variation is an error of the file, not an invalid combination.
     for condition in _conditions(design, document):
         Scenario.varied(document, condition)
     if isinstance(design.variations, int):
@@ -293,7 +294,7 @@ def _conditions(design: Design, document: Document) -> Sequence[int | None]:
 
 
 def _unknown_conditions(design: Design, name: str, document: Document) -> Iterator[Invalid]:
-    """Yield conditions that are asked for, and that a scenario with conditions does not have."""
+    """Yield the wanted conditions that a scenario with conditions does not have."""
     numbers = condition_numbers(document)
     for number in design.conditions or () if numbers != (None,) else ():
         if number not in numbers:
@@ -319,7 +320,7 @@ def _scenario(
 def _by_template(
     design: Design, document: Document, scenario: Scenario, variation: Variation
 ) -> list[tuple[Template | None, Scenario]]:
-    """Return the scenario with each of the study's templates in place of its own."""
+    """Return the scenario once for each template of the study, in place of its own template."""
     if not design.templates:
         return [(None, scenario)]
     return [

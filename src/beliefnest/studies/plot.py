@@ -1,4 +1,4 @@
-"""The figure of a study: accuracies with their intervals."""
+"""Figure of a study: accuracies with their intervals."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -6,20 +6,20 @@ from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import MissingExtraError
 
-if TYPE_CHECKING:  # An extra, imported when something is plotted.
+if TYPE_CHECKING:  # matplotlib is optional, and imported when something is plotted.
     from matplotlib.figure import Figure
 
 __all__ = ["plot_accuracy", "svg_of"]
 
 _COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#000000")
-"""Of Okabe and Ito, told apart by everybody."""
+"""Palette of Okabe and Ito, which colour-blind people can distinguish."""
 
 _LETTER = 0.085
-"""Inches that a letter takes."""
+"""Width of a letter in inches."""
 _WIDEST = 1.6
-"""Inches to which bars are spread for what stands below them; longer texts are turned."""
+"""Greatest spacing of bars in inches to make room for texts below; longer texts are rotated."""
 _MM = 25.4
-"""Millimetres of an inch."""
+"""Millimetres per inch."""
 
 
 def plot_accuracy(
@@ -29,12 +29,12 @@ def plot_accuracy(
 ) -> "Figure":
     """Draw bars from 0 to 1 with 95 % intervals.
 
-    The figure fits its texts into its size whenever it is drawn, also after its size was changed.
+    The figure fits its texts into its size each time it is drawn, also after a change of size.
 
     Args:
-        groups: As `count_rows` gives them.
-        by: The columns they are told apart by: the first along the axis, the others by colour.
-        size: Width and height in millimetres; None: as the bars and texts need.
+        groups: Groups as `count_rows` returns them.
+        by: Columns of the groups: the first is drawn along the axis, the others by colour.
+        size: Width and height in millimetres; None: as much as bars and texts need.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
@@ -73,7 +73,7 @@ def plot_accuracy(
 
 
 def _inches(along: Sequence[str], colours: Sequence[str], title: str) -> tuple[float, float]:
-    """Width and height of a figure in which bars, what stands below them and the legend fit."""
+    """Return width and height of a figure with room for bars, texts below and the legend."""
     width = 0.6 + max(2.6, len(along) * _slot(along, colours))
     if len(colours) < 2:
         return width, 2.8
@@ -81,12 +81,12 @@ def _inches(along: Sequence[str], colours: Sequence[str], title: str) -> tuple[f
 
 
 def _slot(along: Sequence[str], colours: Sequence[str]) -> float:
-    """Return inches along the axis of the bars that stand together."""
+    """Return the width of one group of bars along the axis, in inches."""
     return max(0.5 * max(1, len(colours)), min(_label(along), _WIDEST))
 
 
 def _label(along: Sequence[str]) -> float:
-    """Return inches of the longest text below bars."""
+    """Return the width of the longest text below bars, in inches."""
     return 0.2 + _LETTER * _longest(along)
 
 
@@ -103,7 +103,7 @@ def _told(value: Any) -> str:
 
 
 def svg_of(figure: "Figure") -> str:
-    """Return a figure as SVG, the same text for the same figure."""
+    """Return a figure as SVG; the same figure gives the same text."""
     import matplotlib as mpl
 
     drawn = io.StringIO()

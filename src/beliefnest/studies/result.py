@@ -1,4 +1,4 @@
-"""What a study has come to: tables, intervals, a figure, a page."""
+"""Results of a study: tables, intervals, a figure, a page."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from beliefnest.studies.rows import PROBES, variation_columns
 from beliefnest.studies.store import StudyFolder
 from beliefnest.studies.table import Table
 
-if TYPE_CHECKING:  # Extras, imported when they are asked for.
+if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they are needed.
     import pandas
     from matplotlib.figure import Figure
 
@@ -24,24 +24,28 @@ __all__ = ["StudyResult"]
 _COMPARED = (
     *("one", "other", "pairs", "variations", "both", "only_one", "only_other", "difference"),
 )
-"""What `differences` tells of `Pairs`, in columns of the same names."""
+"""Attributes of `Pairs` that are columns of `differences`."""
 
 
 @dataclass(frozen=True)
 class StudyResult:
-    """What the folder of a study holds.
+    """Results in the folder of a study.
 
     Attributes:
-        folder: The folder.
+        folder: Folder of the study.
     """
 
     folder: StudyFolder
 
     @classmethod
     def read(cls, path: str | Path) -> "StudyResult":
-        """The result in a folder, of a study that has ended or not; InputError if there is none."""
+        """Return the results in a folder, of a study that has ended or not.
+
+        Raises:
+            InputError: The folder holds no study.
+        """
         result = cls(StudyFolder.existing(path))
-        # What is no study is told of here, not at its first use.
+        # Read the plan now, so that a folder without a study is refused here.
         result.folder.plan()
         return result
 
@@ -55,12 +59,12 @@ class StudyResult:
 
     @cached_property
     def table(self) -> Table:
-        """The form of `frame`: of episodes, or of scenarios' probes."""
+        """Form of `frame`: a table of episodes, or of probes of scenarios."""
         return EPISODES if "tasks" in self._plan else PROBES
 
     @cached_property
     def rows(self) -> list[dict[str, Any]]:
-        """The rows of `frame` as plain values."""
+        """Return the rows of `frame` as plain values."""
         return list(self.table.rows(self.folder, self._plan))
 
     @property
@@ -70,14 +74,14 @@ class StudyResult:
 
     @property
     def plan(self) -> dict[str, Any]:
-        """What was planned last, as plain values."""
+        """Return the latest plan, as plain values."""
         return dict(self._plan)
 
     def frame(self) -> "pandas.DataFrame":
         """Return one row for each probe of each cell, or each episode, in the order of the plan.
 
-        The same study gives the same rows, however many jobs it ran with. Wall times, which are
-        not the same twice, are in `seconds`. Types are pandas's plain ones, see `plain_frame`.
+        The same study gives the same rows, for any number of jobs. Wall times vary between runs,
+        and are in `seconds` instead. Types are the plain ones of pandas, see `plain_frame`.
 
         Raises:
             MissingExtraError: pandas is not installed.
@@ -97,34 +101,34 @@ class StudyResult:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the columns of `frame`."""
+        """Return the names of the columns of `frame`."""
         return self.table.names(variation_columns(self._plan))
 
     @property
     def groups(self) -> tuple[str, ...]:
-        """The columns that summaries are made by where nothing else is asked for."""
+        """Return the default columns by which summaries group rows."""
         table = self.table
         return (*table.groups, *self._several(table.further_groups))
 
     def _several(self, columns: Iterable[str]) -> tuple[str, ...]:
-        """Choose the columns that have several values."""
+        """Return those of some columns that have several values."""
         return tuple(name for name in columns if len({row.get(name) for row in self.rows}) > 1)
 
     def summary(self, by: Sequence[str] | str | None = None) -> "pandas.DataFrame":
         """Return for each group its accuracy with a 95 % interval, and counts of all outcomes.
 
-        Rows of one variation are not independent. So the interval is that of Wilson where each
-        variation has one row in the group, and otherwise that of the cluster bootstrap over
-        variations; the column `interval` says which, `variations` how many there are. Of episodes
-        there are also means with their 95 % intervals, by the same bootstrap.
+        Rows of one variation are not independent. The interval is therefore Wilson's if each
+        variation has one row in the group, and else the cluster bootstrap over variations. The
+        column `interval` names the method, and `variations` the number of variations. For
+        episodes there are also means with 95 % intervals by the same bootstrap.
 
-        `accuracy` is of what was judged: rows with the outcome `error` are counted, not judged.
+        `accuracy` is over judged rows: rows with the outcome `error` are counted, not judged.
 
         Args:
-            by: Columns of `frame` that tell the groups apart; None: `groups`.
+            by: Columns of `frame` that define the groups; None: `groups`.
 
         Raises:
-            InputError: There is no such column.
+            InputError: A column does not exist.
             MissingExtraError: pandas is not installed.
         """
         names = self._columns(self.groups if by is None else by)
@@ -137,10 +141,10 @@ class StudyResult:
         return count_rows(self.rows, by, self.table.means)
 
     def paired(self, between: str, by: Sequence[str] = ()) -> list[tuple[tuple[Any, ...], Pairs]]:
-        """Return the rows of `differences` as values: those of `by`, and what is compared.
+        """Return the rows of `differences` as values: the group's values of `by`, and its pairs.
 
         Raises:
-            InputError: Rows are not told apart by the column.
+            InputError: The column does not identify rows.
         """
         table = self.table
         identity = [*table.identity, *variation_columns(self._plan)]
@@ -154,7 +158,7 @@ class StudyResult:
         ]
 
     def apart(self, between: str) -> tuple[str, ...]:
-        """The columns in whose groups a column is compared where nothing else is asked for."""
+        """Return the default columns that define the groups of a comparison."""
         same = (between, *self.table.same.get(between, ()))
         return self._several(name for name in self.table.apart if name not in same)
 
@@ -163,25 +167,25 @@ class StudyResult:
     ) -> "pandas.DataFrame":
         """Return paired differences of accuracy between the values of a column.
 
-        Pairs are rows that are the same in scenario, condition, variation, model, template, repeat
-        and probe, but for that column; or in task, instance, repeat and player. Intervals and
-        tests take variations, and not pairs, for independent.
+        A pair are two rows that differ only in that column: all of scenario, condition, variation,
+        model, template, repeat and probe are the same otherwise; for episodes task, instance,
+        repeat and player. Intervals and tests assume that variations are independent, not pairs.
 
         Args:
-            between: Such as `model` or `condition`.
-            by: Columns that tell groups apart, in each of which it is done anew; None: model,
-                template and order of the question, or of episodes the player, as far as there
-                are several and they are not what is compared; an empty list: one comparison.
+            between: Column to compare, such as `model` or `condition`.
+            by: Columns that define groups; each group has its own comparison. None: model,
+                template and order of the question, or the player of episodes, if they have
+                several values and are not compared themselves. An empty list: one comparison.
 
         Returns:
-            For each two values: those of `by`; `one`, `other`; `pairs`, the independent
-            `variations` among them, how many pairs are right with `both` or one of them; the
-            `difference`, `low` and `high` (95 %: Bonett and Price with one pair in each variation,
-            else the cluster bootstrap); `p` (exact permutation of the levels within variations;
-            with one pair in each, McNemar's exact test).
+            A row for each two values: the columns of `by`; `one`, `other`; `pairs`; the number of
+            independent `variations`; the number of pairs that are right with `both`, with
+            `only_one` or with `only_other`; the `difference` with `low` and `high` (95 %: Bonett
+            and Price with one pair in each variation, else the cluster bootstrap); `p` (exact
+            permutation of levels within variations; with one pair in each, McNemar's exact test).
 
         Raises:
-            InputError: There is no such column, or no two rows differ in it alone.
+            InputError: The column does not exist, or no two rows differ in it alone.
             MissingExtraError: pandas is not installed.
         """
         self._columns(between)
@@ -206,7 +210,7 @@ class StudyResult:
         return plain_frame({name: Typed([row[name] for row in found]) for name in columns})
 
     def seconds(self) -> "pandas.DataFrame":
-        """Wall time of each cell, as far as it is known: `cell`, `seconds`."""
+        """Return the known wall times of cells, with the columns `cell` and `seconds`."""
         noted = self.folder.seconds()
         cells = [cell["name"] for cell in self._plan["cells"] if cell["name"] in noted]
         times = [noted[name] for name in cells]
@@ -222,11 +226,11 @@ class StudyResult:
         The first column is drawn along the axis, the others by colour.
 
         Args:
-            by: The columns; None: condition and model, or of episodes task and policy.
-            size: Width and height in millimetres; None: as the bars and texts need.
+            by: Columns; None: condition and model, or task and policy for episodes.
+            size: Width and height in millimetres; None: as much as bars and texts need.
 
         Raises:
-            InputError: There is no such column.
+            InputError: A column does not exist.
             MissingExtraError: matplotlib is not installed.
         """
         from beliefnest.studies.plot import plot_accuracy
@@ -237,10 +241,10 @@ class StudyResult:
         return plot_accuracy(count_rows(self.rows, names), names, size)
 
     def write_page(self, file: str | Path, by: Sequence[str] | str | None = None) -> Path:
-        """Write all of it as one HTML page that needs no network; `by` as for `summary`.
+        """Write the results as one HTML page that needs no network; `by` as for `summary`.
 
         Raises:
-            InputError: There is no such column, or the file cannot be written.
+            InputError: A column does not exist, or the file cannot be written.
         """
         from beliefnest.studies.page import page_text
 
@@ -255,7 +259,7 @@ class StudyResult:
     def write_tables(self) -> tuple[Path, Path]:
         """Write `rows.csv` and `rows.parquet` into the folder, with the type of each column.
 
-        In the CSV file an apostrophe stands before texts that a spreadsheet would compute.
+        In the CSV file, an apostrophe precedes texts that a spreadsheet would take as formulas.
         """
         csv, parquet = self.folder.path / "rows.csv", self.folder.path / "rows.parquet"
         write_typed(self._typed(), csv, parquet)

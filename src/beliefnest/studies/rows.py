@@ -1,4 +1,4 @@
-"""The table of a study of scenarios: one row for each probe of each cell, from its folder."""
+"""Table of a study of scenarios: one row for each probe of each cell in the study's folder."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -14,7 +14,7 @@ from beliefnest.world.paths import normalised
 __all__ = ["FAILED", "PROBES", "plain_value", "variation_columns"]
 
 FAILED = "error"
-"""The outcome of what has no result."""
+"""Outcome of rows without a result."""
 assert FAILED in OUTCOMES
 
 _COLUMNS = {
@@ -50,13 +50,12 @@ _COLUMNS = {
     "copy_of": "string",
 }
 """Columns after `scenario`, `condition` and those of variations, and their types. Places are texts
-such as `-2,-51,-4`. `variation` names the independent variation that a row belongs to. `order` is
-that of the belief that is asked, 0 for the real world. `seconds` are Minecraft's, of the probe's
-program."""
+such as `-2,-51,-4`. `variation` names the independent variation of a row. `order` is the order of
+the probed belief, 0 for the real world. `seconds` is Minecraft time of the probe's program."""
 
 
 def variation_columns(plan: Mapping[str, Any]) -> list[str]:
-    """Return names of the columns that say what was varied, in the order of the plan."""
+    """Return the names of the columns of variations, in the order of the plan."""
     names = (name for cell in plan["cells"] for name in cell["key"]["variation"])
     return list(dict.fromkeys(names))
 
@@ -64,8 +63,8 @@ def variation_columns(plan: Mapping[str, Any]) -> list[str]:
 def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Yield the rows of a plan, see `rows_with_copies`.
 
-    A cell that failed has a row for each of its probes, all with the outcome `error` and its
-    reason; one without probes has a single row, which tells of its expectations.
+    A failed cell has a row for each of its probes, with the outcome `error` and the reason. A cell
+    without probes has a single row about its expectations.
     """
     columns = variation_columns(plan)
 
@@ -75,7 +74,7 @@ def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[s
             "scenario": key["scenario"],
             "condition": key["condition"],
             **{name: plain_value(key["variation"].get(name)) for name in columns},
-            # The plan of an earlier version has no name for it.
+            # Plans of earlier versions do not have this key.
             "variation": cell.get("variation") or variation_id(key["scenario"], key["variation"]),
             "model": key["model"],
             "template": key["template"],
@@ -157,7 +156,7 @@ def plain_value(value: Any) -> Any:
 
 
 def _order(path: str) -> int:
-    """Return the count the agents in whose beliefs a path leads: 0 for the real world."""
+    """Return the number of agents in a belief path: 0 for the real world."""
     return len(normalised(filter(None, path.split("/"))))
 
 
@@ -183,4 +182,4 @@ PROBES = Table(
     ),
     same={"probe": ("path", "order", "acts_in", "agent", "task")},
 )
-"""Of studies of scenarios."""
+"""Table of studies of scenarios."""

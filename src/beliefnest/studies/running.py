@@ -1,4 +1,4 @@
-"""Playing the cells of a plan that have not been played, one by one or by joblib."""
+"""Playing of the open cells of a plan, one by one or in parallel with joblib."""
 
 import contextlib
 import os
@@ -19,23 +19,23 @@ from beliefnest.studies.worker import CellResult, Worker, play_in_process
 __all__ = ["BACKENDS", "OnStudyProgress", "StudyProgress", "run_cells"]
 
 BACKENDS = ("loky", "dask", "ray")
-"""Where cells may run: processes of this machine, or a cluster of Dask's or Ray's."""
+"""Joblib backends: processes of this machine, or a Dask or Ray cluster."""
 
 
 _Results = Generator[CellResult, None, None]
 _ROUND = 8
-"""Cells for each job of Ray's between which results are kept."""
+"""Cells per job in a batch on Ray; results are written after each batch."""
 
 
 @dataclass(frozen=True, slots=True)
 class StudyProgress:
-    """How far a study is.
+    """Progress of a study.
 
     Attributes:
-        total: Cells that it has.
-        done: Cells with a result, those of earlier runs counted in.
-        failed: Cells without, that have been tried.
-        spent: What answers have taken, in all runs.
+        total: Number of cells.
+        done: Number of cells with a result, including those of earlier runs.
+        failed: Number of cells that were tried in this run and have no result.
+        spent: Tokens and cost of all answers, in all runs.
     """
 
     total: int
@@ -45,7 +45,7 @@ class StudyProgress:
 
     @property
     def left(self) -> int:
-        """Cells that have not been tried."""
+        """Number of cells that have not been tried."""
         return self.total - self.done - self.failed
 
 
@@ -60,15 +60,15 @@ def run_cells(
     backend: str,
     on_progress: OnStudyProgress,
 ) -> None:
-    """Play what is not there yet; keep each cell's result as soon as it is known.
+    """Play the cells without a result, and write each result as soon as it is known.
 
     Cells that failed before are tried again.
 
     Raises:
-        InputError: `jobs` is no number of them.
-        UnknownNameError: There is no such backend.
-        MissingExtraError: It is not installed.
-        BodyError: A process that played cells was ended.
+        InputError: `jobs` is not a whole number, at least 1.
+        UnknownNameError: The backend does not exist.
+        MissingExtraError: The backend is not installed.
+        BodyError: A worker process ended unexpectedly.
     """
     check_count("jobs", jobs)
     if backend not in BACKENDS:
@@ -93,7 +93,7 @@ def _is_open(folder: StudyFolder, cell: Keyed) -> bool:
 
 
 class _Counting:
-    """Tells how far it is."""
+    """Counter of finished cells that reports progress."""
 
     def __init__(
         self, folder: StudyFolder, total: int, done: int, on_progress: OnStudyProgress
@@ -106,7 +106,7 @@ class _Counting:
         self._say()
 
     def count(self, result: CellResult) -> None:
-        """One more."""
+        """Count one more result."""
         if result.content["error"] is None:
             self._done += 1
         else:
@@ -137,11 +137,11 @@ def _parallel(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> 
         raise MissingExtraError("several jobs need joblib", "study", ", or use one job") from None
     if backend == "loky":
         terms = replace(terms, owner=os.getpid())
-    # Cells take long enough to be given out one by one.
+    # Cells take long, so dispatching them one by one costs little.
     form = "list" if backend == "ray" else "generator_unordered"
     with _engine(backend, jobs), parallel_config(backend=backend, n_jobs=jobs):
         pool = Parallel(return_as=form, batch_size="auto", pre_dispatch="2*n_jobs")
-        # Ray's backend gives back nothing before it has done all that it was given.
+        # Ray's backend returns no result before all cells of a call are done: use batches.
         some = _ROUND * jobs if backend == "ray" else len(cells)
         for first in range(0, len(cells), some):
             chosen = cells[first : first + some]
@@ -150,7 +150,7 @@ def _parallel(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> 
 
 @contextlib.contextmanager
 def _engine(backend: str, jobs: int) -> Iterator[None]:
-    """What runs the cells; what was started for them is ended."""
+    """Set up the backend that runs the cells, and end what was started for it."""
     try:
         with ExitStack() as stack:
             if backend == "loky":
@@ -168,13 +168,13 @@ def _engine(backend: str, jobs: int) -> Iterator[None]:
         raise MissingExtraError(f"the backend {backend!r} is not installed", backend) from None
     except BrokenProcessPool:
         raise BodyError(
-            "a process that played cells was ended, by somebody or for want of memory; what has "
-            "ended is kept, and the same study goes on"
+            "a worker process ended unexpectedly: it was killed, or the machine ran out of memory; "
+            "run the study again to continue, finished cells are kept"
         ) from None
 
 
 def _enter_dask(stack: ExitStack, jobs: int) -> None:
-    """Use the client that there is, or one of the cluster that Dask is told of, or a local one."""
+    """Use the current Dask client, or connect to the configured cluster, or start a local one."""
     import dask
     from distributed import Client, default_client
 
@@ -184,13 +184,13 @@ def _enter_dask(stack: ExitStack, jobs: int) -> None:
         if dask.config.get("scheduler-address", None):
             stack.enter_context(Client(set_as_default=True))
         else:
-            # A process has one world, and plays one cell at a time in it.
+            # A process has one world, and plays one cell at a time in it: one thread each.
             client = Client(n_workers=jobs, threads_per_worker=1, dashboard_address=None)
             stack.enter_context(client)
 
 
 def _end_processes() -> None:
-    """End the processes of this machine, and with them the worlds that they keep open."""
+    """End the worker processes of this machine and the worlds that they keep open."""
     from joblib.externals.loky import get_reusable_executor
 
     get_reusable_executor().shutdown(wait=True, kill_workers=True)

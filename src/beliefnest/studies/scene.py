@@ -1,7 +1,7 @@
-"""Another scene of a scenario's document: every place in the form says what stands there.
+"""Changes of a whole scenario document, such as symmetries and renaming.
 
-What a change makes of a kind of value is its own matter; which kind stands where is told here,
-once. A key that is not told of is refused, so that no position stays where it was.
+This module knows the kind of value at each place of the form. A change knows the new value for each
+kind. A key that this module does not list is refused, so that no position is left unchanged.
 """
 
 from collections.abc import Iterator, Mapping
@@ -16,33 +16,33 @@ from beliefnest.scenarios.reading import template_text
 __all__ = ["Kind", "SceneChange", "changed_scene"]
 
 Kind = str
-"""`keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`, `state`, `program`,
-`text` (read by models), `label` (read by people alone), `agent`, `item`, `path`, `wanted` (a block
-state of which only what is written counts), `static` (a block's name, or a position), `template`
-(a text of Jinja2)."""
+"""Kind of a value: `keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`,
+`state`, `program`, `text` (read by models), `label` (read only by people), `agent`, `item`, `path`,
+`wanted` (a partial block state: only written properties count), `static` (a block's name, or a
+position), `template` (Jinja2 text)."""
 
 
 class SceneChange(Protocol):
-    """What becomes of values, by their kind."""
+    """Function from values to new values, by kind."""
 
     def value(self, kind: Kind, value: Any) -> Any:
         """Return the new value.
 
         Raises:
-            BeliefNestError: It cannot be changed for certain.
+            BeliefNestError: The value cannot be changed with certainty.
         """
 
 
 @dataclass(frozen=True, slots=True)
 class _Each:
-    """A list of values of one shape, or one such value alone."""
+    """List of values of one shape, or a single such value."""
 
     shape: Any
 
 
 @dataclass(frozen=True, slots=True)
 class _Map:
-    """A mapping with keys of a kind and values of a shape."""
+    """Mapping with keys of one kind and values of one shape."""
 
     key: Kind
     shape: Any
@@ -188,19 +188,19 @@ _SHAPE: Mapping[str, Any] = {
 
 
 def changed_scene(document: Document, change: SceneChange) -> Document:
-    """Return a document that says the same of another scene.
+    """Return a document with all its values changed.
 
     Args:
-        document: Its condition merged in and its parameters filled in.
-        change: What becomes of values.
+        document: Document with its condition merged in and its parameters filled in.
+        change: Change of the values.
 
     Raises:
-        ScenarioError: A value cannot be changed for certain; the message names file, line, key.
+        ScenarioError: A value cannot be changed with certainty; the message names file, line, key.
     """
     shape = _SHAPE
     labels = document.root.value.get("labels")
     if labels is not None and labels.value is True:
-        # Prompts say what containers are called.
+        # Models read the labels of containers in prompts.
         containers = {**_SHAPE["containers"].shape, "label": "text"}
         shape = {**_SHAPE, "containers": _Each(containers)}
     root = _changed(document, document.root, shape, (), change)
@@ -209,7 +209,7 @@ def changed_scene(document: Document, change: SceneChange) -> Document:
 
 
 def _templates(document: Document, change: SceneChange) -> Iterator[tuple[str, str]]:
-    """Yield the templates in files that probes name, as they are in the other scene."""
+    """Yield the names and changed texts of the template files that probes name."""
     probes = document.root.value.get("probes")
     for number, probe in enumerate(probes.value if probes is not None else ()):
         named = probe.value.get("template")
@@ -236,7 +236,7 @@ def _changed(
     if isinstance(shape, _Each):
         return _changed(document, node, shape.shape, path, change)
     if not isinstance(node.value, dict):
-        # Of the wrong form; the check of the form, which comes later, says so.
+        # A value of the wrong form: the later check of the form reports it.
         return node
     inner = {}
     for key, child in node.value.items():
@@ -247,7 +247,9 @@ def _changed(
         elif key in shape:
             name, part = key, shape[key]
         else:
-            raise document.fault((*path, key), "is not known to be the same in another scene")
+            raise document.fault(
+                (*path, key), "is not supported in mirrored, turned or renamed scenes"
+            )
         inner[name] = _changed(document, child, part, (*path, key), change)
     return YamlNode(inner, node.line)
 
@@ -264,7 +266,7 @@ def _leaf(
     except InputError as error:
         raise document.fault(path, str(error)) from error
     except (TypeError, ValueError):
-        # Of the wrong form, as above.
+        # A value of the wrong form, as above.
         return node
     except MissingExtraError:
         raise

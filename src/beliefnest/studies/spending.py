@@ -1,4 +1,4 @@
-"""What a study may spend and has spent, over all its workers."""
+"""Budget of a study, shared by all its workers."""
 
 import json
 from collections.abc import Iterator
@@ -17,25 +17,25 @@ __all__ = ["SharedBudget", "spent_in"]
 
 @dataclass
 class SharedBudget(RunSpending):
-    """A budget that workers share by a file: each answer is a line in it.
+    """Budget that workers share through a file with a line for each answer.
 
-    Requests under way at the same moment are all let through, as none of them has been counted
-    yet: a limit is passed by no more than what the workers were asking then.
+    Concurrent requests all pass the check, as none of them is counted yet. The study can therefore
+    exceed a limit by at most one request of each worker.
 
     Attributes:
-        file: Where answers are counted.
+        file: File with the usage of each answer.
     """
 
     file: Path = field(default=Path("spent.jsonl"))
 
     def check(self) -> None:
-        """Refuse a further request when nothing is left; ModelError says so."""
+        """Raise ModelError if the limits are reached."""
         self.spent = spent_in(self.file)
         self.free = sum(map(tokens_of_free, _answers(self.file)))
         super().check()
 
     def add(self, usage: Usage) -> None:
-        """Count what an answer took."""
+        """Count the usage of an answer."""
         line = {
             "requests": usage.requests,
             "input_tokens": usage.input_tokens,
@@ -52,11 +52,11 @@ class SharedBudget(RunSpending):
 
 
 def spent_in(file: Path) -> Usage:
-    """Return what is counted in a file; the cost of known prices only."""
+    """Return the total usage in a file; its cost includes only answers with known prices."""
     return sum((replace(each, cost=each.cost or 0.0) for each in _answers(file)), Usage())
 
 
 def _answers(file: Path) -> Iterator[Usage]:
-    """Yield what each answer took that is counted in a file."""
+    """Yield the usage of each answer in a file."""
     for noted in read_lines(file, UsageForm):
         yield Usage(noted.requests, noted.input_tokens, noted.output_tokens, noted.cost)

@@ -1,4 +1,4 @@
-"""The folder of a study: one whole file for each cell that has ended, whatever ends the study."""
+"""Folder of a study: one complete file for each finished cell, even if the study is killed."""
 
 import json
 import os
@@ -25,26 +25,26 @@ _PLAN_AGAIN = "delete it and run the study again, which keeps the cells that hav
 
 @dataclass(frozen=True, slots=True)
 class StudyFolder:
-    """The folder of a study.
+    """Folder of a study.
 
-    What is in it: `study.json`, what was planned last; `cells/`, what came of each cell that has
-    ended; `seconds.jsonl`, how long each took, which is not the same twice; `answers/`, kept
-    answers of models; `spent.jsonl`, what answers took; `runs/`, recorded runs.
+    It holds `study.json` (the latest plan), `cells/` (the result of each finished cell),
+    `seconds.jsonl` (wall times, which vary between runs), `answers/` (cached answers of models),
+    `spent.jsonl` (usage of answers) and `runs/` (recorded runs).
     """
 
     path: Path
 
     @staticmethod
     def open(path: str | Path) -> "StudyFolder":
-        """Make the folder, or go on in it.
+        """Make the folder, or open it to continue its study.
 
         Raises:
-            InputError: It cannot be made, or holds something else.
+            InputError: The folder cannot be made, or holds something else.
         """
         folder = StudyFolder(Path(path))
         try:
             folder.path.mkdir(parents=True, exist_ok=True)
-            # Kept answers alone are where a study begins that is to repeat another one.
+            # A study that repeats another one may begin with a folder of cached answers alone.
             strange = any(each != folder.answers for each in folder.path.iterdir())
             strange = strange and not (folder.path / _PLAN).is_file()
             if strange and not (folder.path / "cells").is_dir():
@@ -56,48 +56,48 @@ class StudyFolder:
 
     @staticmethod
     def existing(path: str | Path) -> "StudyFolder":
-        """Return the folder of a study that is there; InputError if there is none."""
+        """Return the folder of an existing study; raise InputError if there is none."""
         folder = StudyFolder(Path(path))
         if not folder.cells.is_dir():
             raise InputError(f"there is no study at {path}")
         return folder
 
     def lock(self) -> FileLock:
-        """Held by the one process that runs the study."""
+        """Return the lock that the process running the study holds."""
         return FileLock(self.path / "study.lock", timeout=0)
 
     @property
     def cells(self) -> Path:
-        """One file for each cell that has ended."""
+        """Folder with one file for each finished cell."""
         return self.path / "cells"
 
     @property
     def answers(self) -> Path:
-        """Kept answers of models."""
+        """Folder of cached answers of models."""
         return self.path / "answers"
 
     @property
     def ledger(self) -> Path:
-        """What answers took, one line each."""
+        """File with the usage of each answer, one line each."""
         return self.path / "spent.jsonl"
 
     def run(self, cell: str) -> Path:
-        """Return the recorded run of a cell."""
+        """Return the path of a cell's run file."""
         return self.path / "runs" / f"{cell}.bn"
 
     def stores(self) -> list[Path]:
-        """Return the recorded runs of all cells."""
+        """Return the run files of all cells."""
         return sorted((self.path / "runs").glob("*.bn"))
 
     def names(self) -> set[str]:
-        """Return names of the cells that have ended."""
+        """Return the names of the finished cells."""
         return {file.stem for file in self.cells.glob("*.json")}
 
     def cell(self, name: str) -> dict[str, Any] | None:
-        """What came of a cell; None: it has not ended.
+        """Return the content of a cell's file; None: the cell has not finished.
 
         Raises:
-            InputError: Its file is damaged.
+            InputError: The file is damaged.
         """
         file = self.cells / f"{name}.json"
         if not file.is_file():
@@ -107,41 +107,41 @@ class StudyFolder:
         return content
 
     def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
-        """Keep what came of a cell, whole or not at all."""
+        """Write the file of a cell, completely or not at all."""
         _write(self.cells / f"{name}.json", _json(content))
 
     def note_seconds(self, name: str, seconds: float) -> None:
-        """Note how long a cell took."""
+        """Append the wall time of a cell."""
         append_line(self._times, json.dumps({"cell": name, "seconds": round(seconds, 3)}))
 
     def seconds(self) -> dict[str, float]:
-        """How long cells took, as far as it is known."""
+        """Return the known wall times of cells, in seconds."""
         return {noted.cell: noted.seconds for noted in read_lines(self._times, SecondsForm)}
 
     def write_plan(self, plan: Mapping[str, Any]) -> None:
-        """Keep what was planned last."""
+        """Write the plan."""
         _write(self.path / _PLAN, _json({"form": _FORM, **plan}))
 
     def plan(self) -> dict[str, Any]:
-        """What was planned last; InputError if there is nothing, or it is damaged."""
+        """Return the latest plan; raise InputError if it is missing or damaged."""
         file = self.path / _PLAN
         found = read_json(file, _PLAN_AGAIN)
         if found.get("form") != _FORM:
-            raise InputError(f"{file} is not that of a study of this version; {_PLAN_AGAIN}")
+            raise InputError(f"{file} is no plan of this version; {_PLAN_AGAIN}")
         checked_form(found, plan_form(found), file, _PLAN_AGAIN)
         return found
 
     def check_subjects(self, plan: Mapping[str, Any]) -> None:
-        """Refuse a folder that holds another study than the one that is to go on in it.
+        """Refuse a folder that holds another study than the given one.
 
-        Scenarios, tasks and all else may have been added and taken away since; another study is
-        one that has no scenario or task in common with what was planned last.
+        A study may have changed since its last run. It counts as another study only if it has no
+        scenario or task in common with the latest plan.
 
         Args:
-            plan: Of the study.
+            plan: Plan of the study to continue here.
 
         Raises:
-            InputError: It is that of another study, or damaged.
+            InputError: The folder holds another study, or is damaged.
         """
         there = _subjects(self.plan()) if (self.path / _PLAN).is_file() else set()
         own = _subjects(plan)
@@ -152,20 +152,18 @@ class StudyFolder:
             )
 
     def take_over(self, others: Iterable[Path], planned: Collection[str]) -> int:
-        """Take the cells of other folders of the same study, which other machines ran.
-
-        With them come their recorded runs, and how long they took.
+        """Copy the cells of other folders of the same study, with their runs and wall times.
 
         Args:
-            others: The folders.
+            others: Folders of shards, which other machines played.
             planned: Names of all cells of the study.
 
         Returns:
-            How many were new here.
+            Number of cells that are new here.
 
         Raises:
-            InputError: A folder is none of a study, holds cells and none of this study, or two have
-                different results of one cell; nothing was taken.
+            InputError: A folder holds no study or only cells of other studies, or two folders have
+                different results of one cell. Nothing is copied.
         """
         new: dict[str, dict[str, Any]] = {}
         homes: dict[str, StudyFolder] = {}
@@ -198,24 +196,24 @@ class StudyFolder:
 
     @property
     def _times(self) -> Path:
-        """How long each cell took, one line each."""
+        """File with the wall time of each cell, one line each."""
         return self.path / "seconds.jsonl"
 
 
 def _subjects(plan: Mapping[str, Any]) -> set[str]:
-    """Return names of scenarios and tasks that are played."""
+    """Return the names of the scenarios and tasks in a plan."""
     keys = (cell["key"] for cell in plan["cells"])
     return {str(key.get("scenario") or key["task"]) for key in keys}
 
 
 def _json(content: Mapping[str, Any]) -> str:
-    # The library's own encoder takes five times as long where it sets lines.
+    # The encoder of `json` takes five times as long with `indent`; let msgspec add the lines.
     flat = json.dumps(content, sort_keys=True, ensure_ascii=False)
     return msgspec.json.format(flat, indent=1) + "\n"
 
 
 def append_line(file: Path, line: str) -> None:
-    """Write a line at the end of a file, after whatever was cut off there."""
+    """Append a line to a file; begin a new line if the last one is incomplete."""
     with file.open("ab+") as opened:
         size = opened.seek(0, os.SEEK_END)
         opened.seek(max(0, size - 1))
@@ -231,7 +229,7 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def _write(path: Path, text: str) -> None:
-    """Replace a file as a whole, so that whoever reads it never finds half of it."""
+    """Replace a file as a whole, so that readers never find half of it."""
     draft = path.with_name(f"{path.name}.{os.getpid()}.part")
     draft.write_text(text, encoding="utf-8")
     draft.replace(path)

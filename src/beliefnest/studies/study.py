@@ -1,4 +1,4 @@
-"""A study as a person asks for it: from what is combined to a folder of results."""
+"""Studies: from a design to a folder of results."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -44,43 +44,43 @@ __all__ = ["Study"]
 
 
 class Study:
-    """Scenarios, conditions, variations, models, templates and repeats, all combined.
+    """All combinations of scenarios, conditions, variations, models, templates and repeats.
 
-    Or episodes: tasks, policies, models and orders, seeds and repeats. Of the arguments below
-    `templates`, `constraints`, `attempts`, `temperature` and `claims_from` are for scenarios alone,
-    and `policies`, `orders`, `seeds` and `help` for tasks.
+    A study of episodes combines tasks, policies, models and orders, seeds and repeats. The
+    arguments `templates`, `constraints`, `attempts`, `temperature` and `claims_from` are for
+    scenarios only; `policies`, `orders`, `seeds` and `help` are for tasks only.
 
     Args:
         scenarios: Names of built-in scenarios, or paths of files.
-        models: Names of models, as `beliefnest run --model` takes them; None: `offline`, or with
-            tasks none.
+        models: Names of models, as `beliefnest run --model` takes them; None: `offline`; for
+            tasks, no model.
         templates: Built-in prompt templates or paths of files, in place of the scenarios' own.
-        repeats: How often each cell is played, each time with another seed.
-        seed: Decides which variations are drawn, and with a cell about its seed.
-        variations: Lists of values, by name of a parameter that the scenarios declare or of
-            `symmetry`, `agents`, `items`; all combinations are played. Or how many variations
-            are drawn for each scenario, of its parameters and all symmetries. Of tasks, lists of
+        repeats: Number of times that each cell is played, each time with another seed.
+        seed: Seed of the drawn variations; seeds of cells are derived from it.
+        variations: Lists of values by name: a parameter that the scenarios declare, `symmetry`,
+            `agents` or `items`; all combinations are played. Or the number of variations to draw
+            for each scenario, from its parameters, all symmetries and names. For tasks, lists of
             values of their parameters.
         conditions: Numbers of conditions; None: all.
-        constraints: What has to hold of a variation's values: expressions, or functions of them.
-        world: Name of the world; None: `embedded`, or with tasks `scripted`.
-        attempts: How often a model is asked for one probe at most.
-        temperature: How answers are drawn; None leaves it to the provider.
-        max_tokens: What the whole study may use; None: no limit. By default answers that cost
-            nothing are left out.
-        max_cost: US dollars that it may cost; None: no limit.
-        claims_from: Name of a model that reads claims out of what is said; None: nobody.
-        tasks: In place of scenarios: names of tasks or scenarios that are played as episodes, or
-            paths of their files.
-        policies: Who plays the players: policies as `beliefnest play` takes them, `search` for
-            search of each of the orders, or mappings from agent to policy.
-        orders: At which models and search play: 0, 1, 2, `omniscient`.
-        seeds: Which instances of tasks; a number: so many from `seed` on.
-        help: Whether help is measured too, for which branches are played.
+        constraints: Conditions on a variation's values: expressions, or functions of the values.
+        world: Name of the world; None: `embedded`, or `scripted` for tasks.
+        attempts: Greatest number of requests to a model for one probe.
+        temperature: Sampling temperature; None: the provider's default.
+        max_tokens: Token limit of the whole study; None: no limit. The default does not count
+            free models.
+        max_cost: Cost limit of the whole study in US dollars; None: no limit.
+        claims_from: Name of a model that extracts claims from utterances; None: no extraction.
+        tasks: Instead of scenarios: names of tasks or scenarios to play as episodes, or paths of
+            their files.
+        policies: Policies of the players as `beliefnest play` takes them, `search` for search at
+            each of the orders, or mappings from agent to policy.
+        orders: Orders of Theory of Mind of models and search: 0, 1, 2, `omniscient`.
+        seeds: Numbers of instances of tasks; a single number n: n instances from `seed` on.
+        help: Measure help, which plays further branches.
 
     Raises:
-        InputError: An argument is not of the form that it should have.
-        UnknownNameError: There is no such scenario or world.
+        InputError: An argument does not have the right form.
+        UnknownNameError: A scenario or world does not exist.
         ScenarioError: A scenario's file cannot be read.
         TemplateError: A template's file cannot be read.
     """
@@ -112,7 +112,8 @@ class Study:
             check_episodes_alone(scenarios, templates, constraints, claims_from)
             if isinstance(variations, int):
                 raise StudyKeyError(
-                    "variations", "variations of tasks are lists; give `seeds` for instances"
+                    "variations",
+                    "variations of tasks must be lists of values; give `seeds` for instances",
                 )
             self._hold(
                 EpisodeDesign(
@@ -155,11 +156,11 @@ class Study:
 
         Args:
             file: The file.
-            claims_from: Name of a model that reads claims out of what is said; None: the file's.
+            claims_from: Name of a model that extracts claims from utterances; None: as in the file.
 
         Raises:
             ScenarioError: The file is wrong; the message names file, line and key.
-            InputError: It is a study of tasks, in which nobody reads claims.
+            InputError: It is a study of tasks, which does not extract claims.
         """
         study = cls.__new__(cls)
         design = read_design(Path(file))
@@ -178,16 +179,16 @@ class Study:
 
     @property
     def design(self) -> Design | EpisodeDesign:
-        """What is combined."""
+        """Return the design: the values that the study combines."""
         return self._design
 
     def plan(self) -> Plan[Cell] | Plan[EpisodeCell]:
-        """Return all cells, each checked, and the combinations that make no scenario or episode.
+        """Return all cells, each checked, and the invalid combinations.
 
         Raises:
-            ScenarioError: A scenario is wrong as it is written.
-            InputError: Scenarios, or a parameter and a column of the table, are called the same.
-            UnknownNameError: There is no such task or policy.
+            ScenarioError: A scenario is wrong even without any variation.
+            InputError: Two scenarios, or a parameter and a column, have the same name.
+            UnknownNameError: A task or policy does not exist.
         """
         if self._plan is None:
             design = self._design
@@ -199,7 +200,7 @@ class Study:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the columns of the table, see `StudyResult.frame`; raises as `plan` does."""
+        """Return names of the table's columns, see `StudyResult.frame`; raise as `plan` does."""
         table = PROBES if isinstance(self._design, Design) else EPISODES
         varied = dict.fromkeys(name for cell in self.plan().cells for name in cell.key.variation)
         return table.names(varied)
@@ -214,33 +215,34 @@ class Study:
         record: bool = False,
         on_progress: OnStudyProgress | None = None,
     ) -> StudyResult:
-        """Play all cells that the folder holds no result of, and keep each as soon as it ends.
+        """Play all cells without a result in the folder, and write each result when it is known.
 
-        A study that was interrupted or that has become larger goes on where it was. A cell that
-        failed is tried again.
+        An interrupted or enlarged study continues where it was. Failed cells are tried again.
 
         Args:
-            folder: Made if it is not there.
-            jobs: How many cells are played at the same time.
-            backend: `loky` for processes of this machine, or `dask`, `ray` for a cluster, whose
-                machines need to see the folder under the same name.
-            shard: Number, from 1, and count of parts: only that part is played.
-            record: Whether runs are recorded, into `runs/` of the folder.
-            on_progress: Takes how far it is.
+            folder: Folder of the study; made if it does not exist.
+            jobs: Number of cells to play in parallel.
+            backend: `loky` for processes of this machine, or `dask` or `ray` for a cluster, whose
+                machines must see the folder at the same path.
+            shard: Number of a part, from 1, and number of parts: play only this part.
+            record: Record the runs in `runs/` of the folder.
+            on_progress: Function that receives the progress.
 
         Raises:
-            InputError: The folder holds something else or another process runs the study, or an
+            InputError: The folder holds something else, another process runs the study, or an
                 argument is wrong.
-            ScenarioError: A scenario is wrong as it is written.
-            UnknownNameError: A model, a backend, or what it needs, is not there.
-            ModelError: A model lacks its key.
-            BodyError: A process that played cells was ended; the same call goes on.
+            ScenarioError: A scenario is wrong even without any variation.
+            UnknownNameError: A model or backend does not exist, or is not installed.
+            ModelError: The key of a model is missing.
+            BodyError: A worker process ended unexpectedly; call again to continue.
         """
         place = StudyFolder.open(folder)
         plan = self.plan()
         part = plan if shard is None else plan.shard(*checked_shard(shard))
         if not plan.cells and plan.invalid:
-            raise InputError(f"no combination makes a scenario; the first: {plan.invalid[0].why}")
+            raise InputError(
+                f"no combination is valid; the reason of the first: {plan.invalid[0].why}"
+            )
         place.check_subjects(self._plan_json(plan))
         terms = Terms(
             answers=place.answers.absolute(),
@@ -258,13 +260,13 @@ class Study:
         return StudyResult(place)
 
     def take_over(self, folder: str | Path, others: Sequence[str | Path]) -> int:
-        """Take the cells of folders in which other machines ran shards of the study.
+        """Copy the cells of folders in which other machines ran shards of the study.
 
         Returns:
-            How many were new.
+            Number of new cells.
 
         Raises:
-            InputError: A folder is none of this study, or two hold different results of one cell.
+            InputError: A folder holds another study, or two hold different results of one cell.
         """
         plan = self.plan()
         planned = {cell.key.name for cell in plan.cells}
@@ -274,9 +276,9 @@ class Study:
             return place.take_over([Path(other) for other in others], planned)
 
     def _check_models(self, terms: Terms, backend: str) -> None:
-        """Refuse a model that there is not, or that lacks a key, before anything is played.
+        """Refuse unknown models and models without a key, before anything is played.
 
-        Answers that the study's folder keeps may do without a key.
+        A model needs no key if the study's folder has its answers in the cache.
         """
         design = self._design
         reader = design.claims_from if isinstance(design, Design) else None
@@ -284,7 +286,7 @@ class Study:
             try:
                 check_model(name, terms.surroundings, terms.connection())
             except ModelError:
-                # The machines of a cluster may have keys that this one has not.
+                # Machines of a cluster may have keys that this machine does not have.
                 if backend == "loky":
                     raise
 
@@ -305,11 +307,11 @@ class Study:
 
 
 def _told_apart(plan: Plan[C], table: Table) -> Plan[C]:
-    """The plan, if what varies has columns of its own in the table; else InputError says so."""
+    """Return the plan; raise InputError if a parameter has the name of a column of the table."""
     for name in variation_columns({"cells": [cell.plain() for cell in plan.cells]}):
         if name in table.first or name in table.columns:
             raise InputError(
-                f"the parameter {name!r} is called as a column of the table is; "
+                f"the parameter {name!r} has the name of a column of the table; "
                 "give it another name"
             )
     return plan
@@ -333,10 +335,10 @@ def _constraints(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
 
 
 def checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
-    """Return a shard's number and count, as they are.
+    """Return a shard's number and count if they are valid.
 
     Raises:
-        InputError: There is no such shard.
+        InputError: The shard does not exist.
     """
     number, count = _two(shard)
     if not 1 <= number <= count:
@@ -349,8 +351,10 @@ def checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
 def _two(shard: object) -> tuple[int, int]:
     if isinstance(shard, tuple | list) and len(shard) == 2 and all(map(is_whole, shard)):
         return shard[0], shard[1]
-    raise InputError(f"shard is {shard!r}; give its number and how many there are, such as (1, 4)")
+    raise InputError(
+        f"shard is {shard!r}; give its number and the number of shards, such as (1, 4)"
+    )
 
 
 def _say_nothing(progress: StudyProgress) -> None:
-    """Nobody wants to know."""
+    """Ignore progress."""

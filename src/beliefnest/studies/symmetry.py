@@ -1,4 +1,4 @@
-"""Mirrored and turned scenes: where blocks, points and gazes are, and how blocks face."""
+"""Symmetries of scenes: moved blocks and points, turned gazes and block states."""
 
 import math
 from collections.abc import Mapping
@@ -12,18 +12,18 @@ __all__ = ["SYMMETRIES", "Placing", "Symmetry", "symmetry_named"]
 
 _COMPASS = ("north", "east", "south", "west")
 _SIDED = frozenset(("hinge", "type", "shape"))
-"""Properties whose values say left or right; `type` is that of chests."""
+"""Properties whose values are left or right; `type` belongs to chests."""
 _SIGN_STEPS = 16
-"""Directions that a standing sign or head may have, clockwise from south."""
+"""Number of directions of a standing sign or head, clockwise from south."""
 
 
 @dataclass(frozen=True, slots=True)
 class Symmetry:
-    """A change of a whole scene, seen from above: mirrored first, east to west, then turned.
+    """Symmetry of a scene, seen from above: first a mirroring of east and west, then a turn.
 
     Attributes:
-        mirrored: Whether east and west change places.
-        turns: Quarter turns, clockwise, 0 to 3.
+        mirrored: True if east and west change places.
+        turns: Number of clockwise quarter turns, 0 to 3.
     """
 
     mirrored: bool = False
@@ -31,7 +31,7 @@ class Symmetry:
 
     @property
     def name(self) -> str:
-        """What it is called in studies, such as `mirrored-90`; `as-written` for none."""
+        """Return its name in studies, such as `mirrored-90`; `as-written` for the identity."""
         parts = ["mirrored"] if self.mirrored else []
         parts += [str(90 * self.turns)] if self.turns else []
         if parts and not self.mirrored:
@@ -39,30 +39,30 @@ class Symmetry:
         return "-".join(parts) or "as-written"
 
     def direction(self, name: str) -> str:
-        """Where a compass direction goes to."""
+        """Return the image of a compass direction."""
         number = _COMPASS.index(name)
         if self.mirrored:
             number = -number
         return _COMPASS[(number + self.turns) % 4]
 
     def vector(self, x: float, z: float) -> tuple[float, float]:
-        """Where a direction goes to; x grows to the east, z to the south."""
+        """Return the image of a direction; x grows to the east, z to the south."""
         x = -x if self.mirrored else x
         for _ in range(self.turns):
             x, z = -z, x
         return x, z
 
     def yaw(self, yaw: float) -> float:
-        """Where a gaze goes to: radians, 0 north, pi/2 west."""
+        """Return the image of a yaw, in radians: 0 is north, pi/2 is west."""
         turned = (-yaw if self.mirrored else yaw) - self.turns * math.pi / 2
         return math.remainder(turned, 2 * math.pi)
 
     def block_state(self, text: str, registry: Registry) -> str:
-        """Return a block that faces, connects and hinges accordingly.
+        """Return a block state with its facing, connections, hinges and rotation changed.
 
         Raises:
-            UnknownNameError: There is no such block.
-            InputError: No block state is the mirrored one.
+            UnknownNameError: The block does not exist.
+            InputError: The changed block state does not exist.
         """
         state = registry.state_id(text)
         name, old = registry.name(state), registry.properties(state)
@@ -77,10 +77,10 @@ class Symmetry:
         raise InputError(f"{text!r} cannot be {self.name}: there is no {changed!r}")
 
     def wanted_state(self, text: str, registry: Registry) -> str:
-        """Return the same, of a text in which only the properties that it names count.
+        """Return a changed partial block state, in which only the named properties count.
 
         Raises:
-            UnknownNameError: There is no such block.
+            UnknownNameError: The block does not exist.
         """
         registry.state_id(text)
         name, stated = parse_state(text)
@@ -103,7 +103,7 @@ class Symmetry:
         return "_".join(words)
 
     def _spellings(self, name: str, properties: Mapping[str, str]) -> list[str]:
-        """A state's text, and that with a rail's two directions named the other way round."""
+        """Return the spellings of a state: a rail's two directions may be in either order."""
         other = {**properties}
         if "shape" in other:
             other["shape"] = "_".join(reversed(other["shape"].split("_")))
@@ -122,14 +122,14 @@ def _is_state(text: str, registry: Registry) -> bool:
 
 
 SYMMETRIES = tuple(Symmetry(mirrored, turns) for mirrored in (False, True) for turns in range(4))
-"""All eight, `as-written` first."""
+"""All eight symmetries, `as-written` first."""
 
 
 def symmetry_named(name: object) -> Symmetry:
     """Return the symmetry of a name.
 
     Raises:
-        InputError: There is none of that name.
+        InputError: The name is unknown.
     """
     for symmetry in SYMMETRIES:
         if symmetry.name == name:
@@ -140,7 +140,7 @@ def symmetry_named(name: object) -> Symmetry:
 
 @dataclass(frozen=True, slots=True)
 class Placing:
-    """Where a symmetry puts what is in a box; the new box begins where the old one does.
+    """Map of positions in a box under a symmetry; the new box has the same lowest corner.
 
     Attributes:
         symmetry: The symmetry.
@@ -151,14 +151,14 @@ class Placing:
     box: Box
 
     def block(self, position: tuple[int, int, int]) -> tuple[int, int, int]:
-        """Where a block goes to."""
+        """Return the new position of a block."""
         x, y, z = position
-        # By its middle, which is what a symmetry keeps.
+        # Map the middle of the block: its lowest corner does not map to a lowest corner.
         new_x, _, new_z = self.point((x + 0.5, y, z + 0.5))
         return math.floor(new_x), y, math.floor(new_z)
 
     def point(self, point: tuple[float, float, float]) -> tuple[float, float, float]:
-        """Where a point goes to."""
+        """Return the new position of a point."""
         x, y, z = point
         low, high = self.box.low, self.box.high
         width, depth = high[0] + 1 - low[0], high[2] + 1 - low[2]

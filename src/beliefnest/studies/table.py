@@ -1,4 +1,4 @@
-"""What a kind of study puts into its table."""
+"""Form of the table of a kind of study."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -11,23 +11,21 @@ __all__ = ["Table"]
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """The form of a table.
+    """Form of a table.
 
     Attributes:
-        rows: Gives the rows that the cells of a folder come to, for a plan.
+        rows: Function that yields the rows of a folder's cells, for a plan.
         first: Columns before those of variations, and their types.
-        columns: The other columns, and their types.
-        identity: Columns, besides those of variations, that say which row it is, and not what
-            came of it.
-        groups: What summaries are made by where nothing else is asked for.
-        further_groups: Columns that are further ones of them where they have several values.
+        columns: Other columns, and their types.
+        identity: Columns that identify a row, besides those of variations.
+        groups: Default columns by which summaries group rows.
+        further_groups: Columns that are added to `groups` if they have several values.
         compared: Columns whose values the page compares in pairs.
-        apart: Columns that tell groups apart, in each of which pairs are compared anew, where
-            nothing else is asked for.
+        apart: Default columns that define the groups of comparisons.
         shown: Columns that the page shows after `first` and those of variations.
-        same: Columns that say the same in other words: what is compared by one of them is the
-            same in all but these.
-        means: Columns whose means are in summaries; True: those of successes alone.
+        same: Columns that carry the same information. Rows that are compared by one of them may
+            differ in the others.
+        means: Columns whose means are in summaries; True: means over successes only.
     """
 
     rows: Callable[[StudyFolder, Mapping[str, Any]], Iterator[dict[str, Any]]]
@@ -43,5 +41,5 @@ class Table:
     means: Mapping[str, bool] = field(default_factory=dict)
 
     def names(self, varied: Iterable[str]) -> tuple[str, ...]:
-        """Return names of all columns, with those of what varies."""
+        """Return the names of all columns, including those of variations."""
         return (*self.first, *varied, *self.columns)

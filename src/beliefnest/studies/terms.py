@@ -1,4 +1,4 @@
-"""What every cell of a study is played with."""
+"""Terms of a study: the settings that all its cells share."""
 
 import os
 from collections.abc import Mapping
@@ -14,15 +14,15 @@ __all__ = ["Terms"]
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """What every cell of a study is played with.
+    """Settings that all cells of a study share.
 
     Attributes:
-        answers: Folder of kept answers.
-        ledger: File in which spending is counted.
-        runs: Folder of recorded runs; None: nothing is recorded.
-        limits: What the whole study may spend.
-        owner: Process with which those that play end; None: they have lives of their own.
-        environment: Where models are and their keys; None: the worker's own environment.
+        answers: Folder of cached answers.
+        ledger: File with the usage of each answer.
+        runs: Folder of recorded runs; None: no recording.
+        limits: Limits of tokens and cost of the whole study.
+        owner: Id of the process with which workers end; None: workers end by themselves.
+        environment: Variables with addresses and keys of models; None: the worker's environment.
     """
 
     answers: Path
@@ -34,16 +34,16 @@ class Terms:
 
     @property
     def surroundings(self) -> Mapping[str, str]:
-        """Where models are and their keys."""
+        """Return the variables with addresses and keys of models."""
         return os.environ if self.environment is None else self.environment
 
     def connection(self) -> Connection:
-        """What is put around models."""
+        """Return the connection to models, with budget and cache."""
         budget = SharedBudget.of(self.limits, self.ledger)
         return Connection(budget=budget, cache=self.answers)
 
     def store(self, cell: str) -> Path | None:
-        """Where a cell is recorded, without what an earlier try left there; None: nowhere."""
+        """Return the run file of a cell, after deleting an earlier try's; None: no recording."""
         if self.runs is None:
             return None
         self.runs.mkdir(parents=True, exist_ok=True)

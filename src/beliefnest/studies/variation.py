@@ -1,4 +1,4 @@
-"""One variation of a scenario: values of its parameters, a symmetry, names."""
+"""Variation of a scenario: values of its parameters, a symmetry, and new names."""
 
 import itertools
 import json
@@ -18,46 +18,46 @@ from beliefnest.world.values import Box
 __all__ = ["CHANGES", "Variation", "listed_variations"]
 
 CHANGES = ("symmetry", "agents", "items")
-"""Names in `variations` that are no parameters: a symmetry's name, new names of agents, items."""
+"""Keys of `variations` that are not parameters: a symmetry, new names of agents and of items."""
 
 
 @dataclass(frozen=True)
 class Variation:
-    """One variation.
+    """Variation of a scenario.
 
     Attributes:
-        values: Parameter, or one of `CHANGES`, to value; what is not given is as written.
+        values: Values of parameters and of `CHANGES`, by name; all others are as written.
     """
 
     values: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """Values of the scenario's own parameters."""
+        """Return the values of the scenario's parameters."""
         return {name: value for name, value in self.values.items() if name not in CHANGES}
 
     @property
     def changes_scene(self) -> bool:
-        """True if it is more than values of parameters."""
+        """Return True if the variation has a symmetry or new names."""
         return any(name in CHANGES for name in self.values)
 
     @property
     def key(self) -> str:
-        """A text that is the same for the same variation only."""
+        """Return a text that identifies the variation."""
         return json.dumps(self.values, sort_keys=True)
 
     @property
     def text(self) -> str:
-        """What it is, for people."""
+        """Return the variation in words, for people."""
         parts = (f"{name} {_short(value)}" for name, value in self.values.items())
         return ", ".join(parts) or "as written"
 
     def scene(self, document: Document) -> Document:
-        """Return the document in its symmetry and under its names.
+        """Return the document with the variation's symmetry and names.
 
         Raises:
-            ScenarioError: It cannot be changed for certain.
-            InputError: A name of a symmetry, an agent or an item is none.
+            ScenarioError: The document cannot be changed with certainty.
+            InputError: The name of a symmetry, an agent or an item is unknown.
         """
         agents, items = self._names("agents"), self._names("items")
         if agents or items:
@@ -68,10 +68,10 @@ class Variation:
         return document
 
     def template(self, text: str, document: Document) -> str:
-        """Return a prompt template of no scenario's own in that symmetry and under these names.
+        """Return a template of the study, changed to the variation's symmetry and names.
 
         Raises:
-            InputError: It cannot be changed for certain, or a name is none.
+            InputError: The template cannot be changed with certainty, or a name is unknown.
         """
         for change in self._changes(document):
             text = change.value("template", text)
@@ -88,7 +88,7 @@ class Variation:
     def _names(self, kind: str) -> Mapping[str, str]:
         names = self.values.get(kind, {})
         if not isinstance(names, dict) or not all(isinstance(n, str) for n in names.values()):
-            raise InputError(f"{kind} is {names!r}; write a mapping from old to new names")
+            raise InputError(f"{kind} is {names!r}; give a mapping from old to new names")
         return names
 
 
@@ -130,7 +130,7 @@ def _check_items(document: Document, items: Mapping[str, str]) -> None:
 
 
 class _NamedItems:
-    """Changes nothing, and notes the items that are named, and all words of programs."""
+    """Change that leaves values as they are, and notes named items and all words of programs."""
 
     def __init__(self) -> None:
         self.found: set[str] = set()

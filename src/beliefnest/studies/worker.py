@@ -1,4 +1,4 @@
-"""Playing one cell, in whatever process it falls to."""
+"""Workers that play the cells of a study, in any process."""
 
 import threading
 import time
@@ -27,12 +27,12 @@ __all__ = ["CellResult", "Worker", "play_in_process"]
 
 @dataclass(frozen=True, slots=True)
 class CellResult:
-    """What came of a cell.
+    """Result of a cell.
 
     Attributes:
         name: Name of the cell.
-        content: Plain values; the same each time but for what a model of a provider answers.
-        seconds: Wall time.
+        content: Plain values; reproducible, apart from answers of providers' models.
+        seconds: Wall time in seconds.
     """
 
     name: str
@@ -41,10 +41,10 @@ class CellResult:
 
 
 class Worker:
-    """Plays cells one after the other in worlds that stay open between them.
+    """Player of cells, one after the other, in worlds that stay open between them.
 
     Args:
-        stack: Ends the worlds.
+        stack: Stack that closes the worlds.
     """
 
     def __init__(self, stack: ExitStack) -> None:
@@ -52,7 +52,7 @@ class Worker:
         self._renderer = Renderer()
 
     def play(self, cell: Keyed, terms: Terms) -> CellResult:
-        """Play a cell; what goes wrong is its result."""
+        """Play a cell; an error of the scenario, world or model is its result."""
         started = time.perf_counter()
         try:
             if isinstance(cell, EpisodeCell):
@@ -70,7 +70,7 @@ class Worker:
         environment = terms.surroundings
         connection = terms.connection()
         if is_of_provider(key.model):
-            # Before the script: it would be played for nothing.
+            # Check this before the script, which would otherwise be played in vain.
             connection.budget.check()
         model = open_model(key.model, environment, connection)
         sampling = Sampling(key.setting["temperature"], key.seed)
@@ -103,11 +103,11 @@ class Worker:
 
 
 def _say_nothing(what: str, done: int, total: int) -> None:
-    """Progress is told by cells."""
+    """Ignore progress within a cell: the study reports progress by cells."""
 
 
 class _Kept(threading.local):
-    """The worker of a thread. A pool of processes gives no other place to keep a world open."""
+    """Worker of a thread. A process pool has no other place to keep a world open."""
 
     worker: Worker | None = None
 
@@ -120,6 +120,6 @@ def play_in_process(cell: Keyed, terms: Terms) -> CellResult:
     if _kept.worker is None:
         if terms.owner is not None:
             end_with(terms.owner)
-        # The process behind a world ends with the one that started it.
+        # The process of a world ends with the process that started it.
         _kept.worker = Worker(ExitStack())
     return _kept.worker.play(cell, terms)
