@@ -149,7 +149,7 @@ def test_a_structure_file_becomes_a_scenario_that_runs(tmp_path, capsys):
         (["minecraft://localhost:1", "--box", *"000999", "--at", *"000"], "no --at"),
         (["house.nbt", "--box", *"000999"], "no --box"),
         (["missing.schem"], "missing.schem cannot be read: No such file"),
-        (["broken.schem"], "broken.schem: it is no file of the game's data"),
+        (["broken.schem"], "broken.schem: it is not a file of the game's data format"),
         (["minecraft://localhost:1", "--box", *"00", "9999999", *"009"], "make it smaller"),
     ],
 )

@@ -121,7 +121,7 @@ def test_who_moved_the_diamond_finds_it_where_sally_believes_it(play_of_a_person
 
         # What the observer sees again while a program runs is seen there while it does.
         anne.does(script(TRAVEL + WATCH, where(nest, "/observer")))
-        watches = "Nobody hears you here: who visits a belief is not in it."
+        watches = "Nobody hears you here: visitors of a belief are not in it."
         assert nest.wait(lambda: anne.is_done or watches in anne.read, LONG_S)
         programs = {
             "observer": "await bot.lookAt(new Vec3(0, -50, -2), true); await waitTicks(bot, 5)",

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Makes the bundle Python starts: `node build.js [OUTDIR]`. It runs without node_modules and
- * holds one Minecraft version.
+ * Build of the bundle that Python starts: `node build.js [OUTDIR]`. The bundle runs without node_modules and contains
+ * the data of one Minecraft version.
  */
 const fs = require('node:fs')
 const path = require('node:path')
@@ -14,14 +14,17 @@ const { INTERPRETER, replacements } = require('./bundling/replacements')
 const { FURTHER, writeVersions } = require('./bundling/versions')
 
 const SOURCE = path.join(__dirname, 'src')
-/** Programs in the scripted world have the same class, dates and random numbers, and are told the same names. */
+/**
+ * Files that Python reads too. The scripted world gives programs the same Vec3 class, dates and random numbers, and
+ * the same hints about unknown names.
+ */
 const SHARED = ['sandbox/guest/vec3.js', 'sandbox/guest/date.js', 'time/sfc32.js', 'sandbox/hints.js']
 const DEFAULT_OUTDIR = path.join(__dirname, '..', '..', '_bundle')
 
 async function build (outdir) {
   fs.rmSync(outdir, { recursive: true, force: true })
   fs.mkdirSync(outdir, { recursive: true })
-  // Three programs: what opens sockets is no part of the one that opens none.
+  // Build three programs, so that the one that opens no sockets contains no code that could open one.
   const inputs = await bundle(outdir, ['main.js', path.join('channel', 'lifeline.js')], 'memory')
   Object.assign(inputs, await bundle(outdir, ['realtime.js'], 'client'), await bundle(outdir, ['hosting.js'], 'host'))
   fs.writeFileSync(
@@ -36,13 +39,16 @@ async function build (outdir) {
   fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))
 }
 
-/** Put a file of no other files into the bundle, short: an engine reads it whole each time that one is made. */
+/**
+ * Write a file that imports nothing to the bundle, minified: the engine reads it completely each time it starts a
+ * program.
+ */
 async function share (file, outdir) {
   const { code } = await esbuild.transform(fs.readFileSync(file, 'utf8'), { minifySyntax: true, minifyWhitespace: true, target: 'es2022' })
   fs.writeFileSync(path.join(outdir, path.basename(file)), code)
 }
 
-/** @returns {Promise<object>} what programs were made of, by file */
+/** Build programs into one folder. @returns {Promise<object>} inputs of the programs, by file */
 async function bundle (outdir, programs, connections) {
   const { metafile } = await esbuild.build({
     entryPoints: programs.map(program => path.join(SOURCE, program)),
@@ -62,7 +68,7 @@ async function bundle (outdir, programs, connections) {
   return metafile.inputs
 }
 
-/** @returns {string[]} folders of the packages the bundle has code or data of, by name */
+/** Return the folders of the packages whose code or data the bundle contains, sorted by name. @returns {string[]} */
 function packageFolders (inputs) {
   const folders = new Set()
   for (const input of Object.keys(inputs)) {
@@ -79,7 +85,7 @@ function manifestOf (folder) {
   return JSON.parse(fs.readFileSync(path.join(folder, 'package.json')))
 }
 
-/** @returns {object} version and licence by name of a package */
+/** Return version and licence by package name. @returns {object} */
 function packageList (folders) {
   return Object.fromEntries(folders.map(folder => {
     const { name, version, license } = manifestOf(folder)
@@ -87,7 +93,7 @@ function packageList (folders) {
   }))
 }
 
-/** @returns {string} the licence texts the packages carry, each under the package's name */
+/** Return the licence texts of the packages, each under the name of its package. @returns {string} */
 function licenseTexts (folders) {
   return folders.map(folder => {
     const { name, version, license, author } = manifestOf(folder)

@@ -7,7 +7,7 @@ const NODE_GLOBALS = [
 ]
 
 const rules = {
-  // What is never right.
+  // Errors under any style.
   'constructor-super': 'error',
   'for-direction': 'error',
   'getter-return': 'error',
@@ -45,7 +45,7 @@ const rules = {
   'no-useless-escape': 'error',
   'use-isnan': 'error',
   'valid-typeof': 'error',
-  // House rules.
+  // Rules of this project.
   'eqeqeq': ['error', 'always', { null: 'ignore' }],
   'max-lines': ['error', { max: 500 }],
   'max-lines-per-function': ['error', { max: 60, skipComments: true, skipBlankLines: true }],
@@ -70,12 +70,12 @@ module.exports = [
     rules
   },
   {
-    // A guest's function is its module: it declares the functions that share one guest of the sandbox.
+    // One function contains a whole guest module: the code that runs inside one sandbox guest.
     files: ['src/sandbox/guest/*.js'],
     rules: { 'max-lines-per-function': 'off' }
   },
   {
-    // One describe or setup function holds many small tests.
+    // A describe or setup function contains many small tests.
     files: ['test/**/*.js'],
     rules: { 'max-lines-per-function': 'off' }
   }

@@ -1,15 +1,15 @@
 'use strict'
-// What comes of using and breaking blocks by hand, for worlds without a server: taken from the rules of the server's own
-// plugins. The file's form is read by world/handling.py.
+// Effects of using and breaking blocks by hand, for worlds without a server. They are computed from the server
+// plugins' own rules. world/handling.py reads the file.
 
 const { dropsOf } = require('./src/server/plugins/lib/drops')
 const { pressedTicks } = require('./src/server/plugins/lib/buttons')
 
 const FORMAT = 1
-// Blocks of several parts, those that others hang on or that fall, and those that hold something.
+// Blocks of several parts, blocks that support others or that fall, and containers.
 const NOT_ALONE = /_door$|_bed$|chest$|furnace$|smoker$|shulker_box$|barrel$|^(sand|red_sand|suspicious_sand|gravel|suspicious_gravel|anvil)$|concrete_powder$/
 
-/** What a block in any of its states drops; null where that differs or is left to chance. */
+/** Return the drops of a block; null if they depend on its state or on chance. */
 function sureDrops (registry, Block, block, tool) {
   const texts = new Set()
   for (let state = block.minStateId; state <= block.maxStateId; state++) {
@@ -22,7 +22,9 @@ function sureDrops (registry, Block, block, tool) {
   return Object.fromEntries(JSON.parse([...texts][0]).map(({ name, count }) => [name, count]))
 }
 
-/** How a block is broken: with which tools something comes of it, and what; null: not by hand, or not for sure. */
+/**
+ * Return with which tools a block can be broken by hand, and its drops; null if it cannot or the drops are uncertain.
+ */
 function breaking (registry, Block, block) {
   if (!block.diggable || block.name === 'air' || NOT_ALONE.test(block.name)) return null
   const tools = Object.keys(block.harvestTools ?? {}).map(Number)
@@ -31,7 +33,7 @@ function breaking (registry, Block, block) {
   return drops === null ? null : { tools: tools.map(id => registry.items[id].name).sort(), drops }
 }
 
-/** @returns {object} by name of the block, as plain data */
+/** Return the handling data by block name, as plain data. @returns {object} */
 function buildHandling (version) {
   const registry = require('prismarine-registry')(version)
   const Block = require('prismarine-block')(registry)

@@ -1,6 +1,6 @@
 'use strict'
-// Writes what Python has to know of a Minecraft version: `node registry.js OUTDIR`.
-// The data is minecraft-data's (MIT); the file's form is read by world/registry.py.
+// Writer of the facts about a Minecraft version that Python needs: `node registry.js OUTDIR`. The data is
+// minecraft-data's (MIT). world/registry.py reads the file.
 
 const fs = require('node:fs')
 const path = require('node:path')
@@ -10,9 +10,9 @@ const { minecraft: MINECRAFT_VERSION } = require('./src/versions')
 
 const FORMAT = 1
 
-/** The texts of a property's values, in the order in which state ids count them. */
+/** Return the texts of a property's values, in the order in which state ids count them. */
 function propertyValues (property) {
-  // The protocol counts `true` before `false`; minecraft-data leaves the values out.
+  // The protocol counts `true` before `false`; minecraft-data lists no values of booleans.
   if (property.type === 'bool') return ['true', 'false']
   if (property.values?.length !== property.num_values) {
     throw new Error(`property ${property.name} should list ${property.num_values} values`)
@@ -20,7 +20,7 @@ function propertyValues (property) {
   return property.values.map(String)
 }
 
-/** Numbers the distinct collision shapes in the order in which they are first asked for. */
+/** Table of distinct collision shapes, numbered in order of first use. */
 class ShapeTable {
   constructor () {
     this.shapes = []
@@ -37,7 +37,7 @@ class ShapeTable {
   }
 }
 
-/** Shape numbers of a block: one for all states, or one for each. */
+/** Return the shape numbers of a block: one for all states, or one for each state. */
 function blockShapes (block, collision, table) {
   const states = block.maxStateId - block.minStateId + 1
   const given = [collision.blocks[block.name]].flat()
@@ -48,7 +48,7 @@ function blockShapes (block, collision, table) {
   return new Set(numbers).size === 1 ? numbers.slice(0, 1) : numbers
 }
 
-/** The registry of one Minecraft version, as plain data. */
+/** Return the registry of one Minecraft version as plain data. */
 function buildRegistry (version) {
   const data = minecraftData(version)
   const table = new ShapeTable()

@@ -1,5 +1,5 @@
 'use strict'
-/** Finds data of further Minecraft versions when the program starts; each is read when it is first asked for. */
+/** Index of further Minecraft versions, built when the program starts. The data of a version is read on first use. */
 const fs = require('node:fs')
 const path = require('node:path')
 const zlib = require('node:zlib')
@@ -7,8 +7,9 @@ const zlib = require('node:zlib')
 const NAME = /^minecraft-(\d[\d.]*\d)\.json\.gz$/
 
 /**
- * @param {object} versions minecraft-data's index, to which they are added
- * @param {object} ours the version that the program is made for; others have its texts
+ * Add the versions whose files lie in `folders` to the index.
+ * @param {object} versions minecraft-data's index
+ * @param {object} ours version for which the program was built; the others use its texts
  * @param {string[]} folders
  */
 function add (versions, ours, folders) {

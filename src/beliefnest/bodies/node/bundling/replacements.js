@@ -1,8 +1,7 @@
 'use strict'
 /**
- * What the bundle has instead of some modules: only the Minecraft version we serve, one
- * registry per version, and none of what would open sockets, log in with an account, or look for
- * files at run time.
+ * Modules that the bundle replaces. The replacements contain only the Minecraft version we serve and one registry per
+ * version. They leave out code that opens sockets, logs in with an account or searches for files at run time.
  */
 const fs = require('node:fs')
 const path = require('node:path')
@@ -11,32 +10,35 @@ const { interpreterBytes: _, ...interpreterLimits } = require('../src/sandbox/in
 
 const ROOT = path.join(__dirname, '..')
 const DATA = path.join(ROOT, 'node_modules', 'minecraft-data', 'minecraft-data', 'data')
-// Larger ones are kept as files of their own and read when first needed.
+// Larger files are not inlined; the program reads them on first use.
 const INLINE_BYTES = 20000
 
-// Where build.js puts the interpreter of agent programs.
+// File name under which build.js writes the interpreter of agent programs.
 const INTERPRETER = 'quickjs.wasm'
 
-// Data of connections and commands; bots that are joined in memory do not even have a protocol.
+// Data of connections and commands. Bots that join in memory do not even need a protocol.
 const UNUSED = ['commands']
 const UNUSED_IN_MEMORY = [...UNUSED, 'protocol']
 
 const empty = 'module.exports = {}'
 
-/** Whole modules by the end of their path, with what stands for each. */
+/** Replacements of whole modules, by the end of their path, for a program that joins bots in memory. */
 const IN_MEMORY = [
   [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
     createClient () { throw new Error('this build joins bots in memory only') }
   }`]
 ]
 
-/** Of Mineflayer's login with accounts, what is used: codes that the user enters on a page; no passwords, no realms. */
+/**
+ * Replacements for Mineflayer's login with accounts: only device codes, which the user enters on a web page; no
+ * passwords, no realms.
+ */
 const WITH_ACCOUNTS = [
   [/minecraft-protocol\/src\/client\/mojangAuth\.js$/, empty],
   [/(@azure\/msal-node|@xboxreplay\/xboxlive-auth|prismarine-realms)\/.*\.c?js$/, empty]
 ]
 
-/** Nobody logs in with an account. */
+/** Replacements for programs in which nobody logs in with an account. */
 const WITHOUT_ACCOUNTS = [
   [/minecraft-protocol\/src\/client\/(mojangAuth|microsoftAuth)\.js$/, `module.exports = () => {
     throw new Error('this build has no accounts')
@@ -44,7 +46,7 @@ const WITHOUT_ACCOUNTS = [
   [/yggdrasil\/src\/index\.js$/, 'module.exports = { server: () => ({}) }']
 ]
 
-/** What a program may do with connections, by the name of its sort: none, open them, take them. */
+/** Replacements by kind of connection: none ("memory"), outgoing ("client") or incoming ("server"). */
 const CONNECTIONS = {
   memory: IN_MEMORY,
   client: [...WITH_ACCOUNTS, [/minecraft-protocol\/src\/index\.js$/, `module.exports = {
@@ -65,7 +67,7 @@ const STAND_INS = [
     ...${JSON.stringify(interpreterLimits)},
     interpreterBytes: () => require('node:fs').readFileSync(require('node:path').join(__dirname, '${INTERPRETER}'))
   }`],
-  // Protocol definitions come from packages and are right; checking them costs a tenth of a start.
+  // The protocol definitions come from packages and are correct; validating them costs a tenth of the start.
   [/protodef-validator\/index\.js$/, `module.exports = class {
     addType () {}
     addTypes () {}
@@ -79,7 +81,7 @@ const STAND_INS = [
   [/prismarine-chunk\/src\/bedrock\/.*\.js$/, empty]
 ]
 
-/** @returns {string} minecraft-data's index of versions, with only `version` in it and without what is unused */
+/** Return minecraft-data's index of versions, reduced to `version` and without unused parts. @returns {string} */
 function versionIndex (version, unused, further = '') {
   const paths = JSON.parse(fs.readFileSync(path.join(DATA, 'dataPaths.json'))).pc[version]
   const getters = Object.entries(paths).filter(([name]) => !unused.includes(name))
@@ -91,12 +93,18 @@ function versionIndex (version, unused, further = '') {
   return `const pc = { ${JSON.stringify(version)}: {\n${getters.join(',\n')}\n} }\n${further}\nmodule.exports = { pc, bedrock: {} }`
 }
 
-/** Of further versions, one file each: those beside the program, and in folders that it is told of (versions.js). */
+/**
+ * Return code that adds further versions, one file each: files beside the program, and files in the folders named by
+ * its arguments (versions.js writes them).
+ */
 function furtherVersions (version) {
   return `require(${JSON.stringify(path.join(ROOT, 'bundling', 'further'))}).add(pc, pc[${JSON.stringify(version)}], [__dirname, ...process.argv.slice(2, -2)])`
 }
 
-/** An esbuild plugin. `version` is Minecraft's, `outdir` where data files go, `connections` a name of CONNECTIONS. */
+/**
+ * Return an esbuild plugin. `version` is Minecraft's, `outdir` the folder for data files, `connections` a key of
+ * CONNECTIONS.
+ */
 function replacements (version, outdir, connections) {
   const standIns = [...STAND_INS, ...CONNECTIONS[connections]]
   return {
@@ -119,14 +127,14 @@ function replacements (version, outdir, connections) {
   }
 }
 
-// Asked for many times a tick, by going through all features and all their versions.
+// Physics asks for features many times a tick and searches all features and versions each time; look them up now.
 function physicsFeatures (file, version) {
   const major = version.split('.').slice(0, 2).join('.')
   return JSON.parse(fs.readFileSync(file)).filter(({ versions }) => versions.includes(major))
     .map(({ name }) => ({ name, versions: [major] }))
 }
 
-// A text parsed when needed is faster than the same data as program text.
+// Parsing a JSON text on first use is faster than loading the same data as program text.
 function dataModule (file, outdir) {
   const text = JSON.stringify(JSON.parse(fs.readFileSync(file)))
   if (text.length <= INLINE_BYTES) return `module.exports = ${text}`
@@ -135,7 +143,7 @@ function dataModule (file, outdir) {
   return `module.exports = JSON.parse(require('node:fs').readFileSync(require('node:path').join(__dirname, ${JSON.stringify(name)}), 'utf8'))`
 }
 
-// Each package's main module makes a thing per version; in the bundle it makes it once.
+// The main module of each package creates an object per version; the bundle creates it only once.
 function memoise (build) {
   const memoiser = JSON.stringify(path.join(ROOT, 'src', 'memoise.js'))
   const missing = new Set(MEMOISED)

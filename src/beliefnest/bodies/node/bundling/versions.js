@@ -1,16 +1,16 @@
 'use strict'
-/** Writes data of Minecraft versions of servers elsewhere, one file for each: `node versions.js OUTDIR VERSION...`. */
+/** Writer of data files for further Minecraft versions of remote servers: `node versions.js OUTDIR VERSION...`. */
 const fs = require('node:fs')
 const path = require('node:path')
 const zlib = require('node:zlib')
 
 const DATA = path.join(__dirname, '..', 'node_modules', 'minecraft-data', 'minecraft-data', 'data')
-// What is played most, besides our own: the last of each line. Each takes a sixth of a megabyte.
+// Most played versions besides ours: the last of each line. Each file takes a sixth of a megabyte.
 const FURTHER = ['1.20.1', '1.20.2', '1.20.6', '1.21.1', '1.21.4', '1.21.5', '1.21.8', '1.21.11']
-// Bots ask for none of these; texts are those of our own version.
+// Bots use none of these parts; texts are those of our own version.
 const UNUSED = ['commands', 'language', 'blockLoot', 'entityLoot']
 
-/** @throws {Error} if minecraft-data does not have a version */
+/** Write one data file per version. @throws {Error} if minecraft-data does not have a version */
 function writeVersions (outdir, versions) {
   const { pc: paths } = JSON.parse(fs.readFileSync(path.join(DATA, 'dataPaths.json')))
   for (const version of versions) {

@@ -1,16 +1,16 @@
 'use strict'
 /**
- * Block objects, quickly. Worlds are asked for blocks thousands of times a tick, and
- * `new Block` works out every property anew; here a block is worked out once per state and
- * handed out again as long as its place keeps that state.
+ * Cached block objects. A world is asked for blocks thousands of times a tick, and `new Block` computes every property
+ * anew. This module computes a block once per state, and returns the same object as long as its position keeps that
+ * state.
  */
 
 const { Vec3 } = require('vec3')
 
-// Blocks of a column at one height.
+// Number of blocks of a chunk column at one height.
 const LAYER = 256
 
-/** Make the chunk columns and worlds of a version remember what they were asked for; once is enough. */
+/** Make the chunk columns and worlds of a version cache the blocks that they return. A second call has no effect. */
 function rememberBlocks (registry) {
   const Chunk = require('prismarine-chunk')(registry)
   const World = require('prismarine-world')(registry)
@@ -20,7 +20,10 @@ function rememberBlocks (registry) {
   rememberIn(Chunk, maker(registry))
 }
 
-/** @returns {(stateId: number) => object} makes blocks without a position; what a state is like is worked out once */
+/**
+ * Return a function that makes blocks without a position. It computes the properties of each state once.
+ * @returns {(stateId: number) => object}
+ */
 function maker (registry) {
   const Block = require('prismarine-block')(registry)
   const copy = copier(Block)
@@ -35,7 +38,7 @@ function maker (registry) {
   }
 }
 
-/** Make `getBlock` of a column find again what it made, as long as the place keeps its state. */
+/** Make `getBlock` of a column return the cached block as long as the position keeps its state. */
 function rememberIn (Chunk, make) {
   const { setBlockStateId, setBlockEntity, load } = Chunk.prototype
   Object.assign(Chunk.prototype, {
@@ -48,7 +51,7 @@ function rememberIn (Chunk, make) {
       if (this.hasEntities) block.entity = this.getBlockEntity(place)
       return block
     },
-    // An object that was handed out is never changed: it stays what was seen then.
+    // Do not change a block that was returned earlier: it shows what its caller saw then.
     setBlockStateId (place, stateId) {
       const layer = this.remembered?.[place.y - this.minY]
       if (layer) layer[(place.z << 4) | place.x] = null
@@ -65,7 +68,7 @@ function rememberIn (Chunk, make) {
   })
 }
 
-/** Columns asked for last, the nearest four of them side by side, are asked for again most of the time. */
+/** Cache the last columns, four adjacent ones, because most queries ask for them again. */
 function rememberColumns (World) {
   const { getLoadedColumn, setLoadedColumn, unloadColumn } = World.prototype
   const nothing = () => ({ x: 0, z: 0, column: undefined })
@@ -92,7 +95,10 @@ function rememberColumns (World) {
   })
 }
 
-/** `getBlock` of a world's synchronous side, with fewer objects made on the way, and the same by whole numbers. */
+/**
+ * Replace `getBlock` of a synchronous world by a version that allocates fewer objects, and add `blockIn`, the same for
+ * integer coordinates.
+ */
 function quicken (prototype) {
   prototype.blockIn = function blockIn (x, y, z) {
     const column = this.async.getLoadedColumn(x >> 4, z >> 4)
@@ -106,7 +112,8 @@ function quicken (prototype) {
   }
 }
 
-// What is read most lies together in memory; what the pathfinder and the bots note is there from the start.
+// Keep the most used properties close together in memory, and define from the start the properties that pathfinder and
+// bots add later.
 const LAYOUT = {
   position: null,
   type: undefined,
@@ -127,8 +134,8 @@ const LAYOUT = {
 }
 
 /**
- * Copy all blocks the same way, so that they share one layout. V8 keeps an object that gets many properties
- * one by one, as from Object.assign, in a hash table, several times slower to read.
+ * Return a function that copies blocks with one common layout. If properties are added one by one, as by
+ * Object.assign, V8 stores the object as a hash table, which is several times slower to read.
  */
 function copier (Block) {
   return original => ({ __proto__: Block.prototype, ...LAYOUT, ...original, computedStates: {} })

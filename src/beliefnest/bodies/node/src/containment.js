@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Measures what the sandbox adds to a program that walks, with nobody at the channel: the same walk by a program and
- * by the same skills called without a sandbox, in turns, from the same snapshot.
+ * Benchmark of the sandbox: the same walk by a program and by the same skills called without a sandbox, in turns and
+ * from the same snapshot. No channel is connected.
  */
 const { Vec3 } = require('vec3')
 const { PROTOCOL, RequestHandler } = require('./requestHandler')
@@ -17,9 +17,10 @@ const TIMEOUT_TICKS = 2000
 const PROGRAM = CORNERS.map(corner => `await goToPosition(bot, new Vec3(${corner.join(', ')}), 1)`).join('\n')
 
 /**
- * @param {import('./time/clock').Clock} clock installed
- * @param {number} pairs how often each is run
- * @returns {Promise<{contained: number, direct: number}[]>} milliseconds the walks took, pair by pair
+ * Measure walks with and without the sandbox.
+ * @param {import('./time/clock').Clock} clock clock that is installed
+ * @param {number} pairs number of runs of each kind
+ * @returns {Promise<{contained: number, direct: number}[]>} durations of the walks in milliseconds, pair by pair
  */
 async function measureContainment (clock, pairs) {
   const handler = new RequestHandler(clock, () => {})
@@ -31,7 +32,7 @@ async function measureContainment (clock, pairs) {
   const spent = []
   for (let pair = 0; pair < pairs; pair++) {
     const times = {}
-    // Whoever goes second finds warmer caches.
+    // Alternate the order: the second walk finds warmer caches.
     for (const name of pair % 2 ? ['contained', 'direct'] : ['direct', 'contained']) {
       await handler.perform({ op: 'apply', region: REGION, ...start, blocks: [] })
       await handler.prepare()
@@ -47,13 +48,13 @@ async function measureContainment (clock, pairs) {
   return spent
 }
 
-/** What the program does, without a sandbox. */
+/** Do the same as the program, without a sandbox. */
 async function walk ({ bot, scope }) {
   for (const corner of CORNERS) await scope.goToPosition(bot, new Vec3(...corner), 1)
   return { ok: true, error: null, lines: [], log: [], unfinished: [] }
 }
 
-/** @returns {object} a SNAPSHOT of a floor with one who stands on it */
+/** Return a SNAPSHOT of a floor with one agent on it. @returns {object} */
 function hall () {
   const [width, height, depth] = [0, 1, 2].map(axis => BOX[1][axis] - BOX[0][axis] + 1)
   const blocks = new Int32Array(width * height * depth)

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * The embedded world in real time, with a port for people: driven as main.js is. It opens no connections; what it
- * listens on is what it was told.
+ * Program of the embedded world in real time, with a port for people. It is driven in the same way as main.js. It
+ * opens no connections and listens only on the address it is given.
  */
 const { serve } = require('./channel/serving')
 const { LiveHandler } = require('./live/liveHandler')

@@ -1,8 +1,8 @@
 'use strict'
 /**
- * The Minecraft side of BeliefNest: one process with the server and all bots, driven over
- * one descriptor, ended by the end of that one or of the lifeline. With the arguments `containment PAIRS` it
- * measures its sandbox instead, and prints the times as JSON.
+ * Program of the embedded world: one process with the server and all bots. It is driven over one descriptor, and ends
+ * when that descriptor or the lifeline closes. With the arguments `containment PAIRS` it measures its sandbox instead
+ * and prints the times as JSON.
  */
 const { Clock } = require('./time/clock')
 const { installTime } = require('./time/install')

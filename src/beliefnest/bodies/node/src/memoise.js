@@ -1,10 +1,10 @@
 'use strict'
 /**
- * One registry, one Block class, one Item class ... per Minecraft version. The packages make
- * new ones on every call (for every bot), at 3 to 4 times the cost of everything else.
+ * Cache of one registry, one Block class, one Item class and so on per Minecraft version. The packages create new ones
+ * on every call (for every bot), at 3 to 4 times the cost of everything else.
  */
 
-// In the order in which they load one another.
+// In the order in which the packages load one another.
 const MEMOISED = [
   'minecraft-data', 'prismarine-registry', 'prismarine-biome', 'prismarine-block',
   'prismarine-chunk', 'prismarine-item', 'prismarine-windows', 'prismarine-entity',
@@ -12,8 +12,9 @@ const MEMOISED = [
 ]
 
 /**
+ * Return a function that creates only one object per version.
  * @param {Function} make takes a version text or a registry
- * @returns {Function} the same, but it makes only one thing per version
+ * @returns {Function}
  */
 function memoised (make) {
   const made = new Map()
@@ -28,7 +29,7 @@ function memoised (make) {
   return Object.assign(remembered, make)
 }
 
-/** For running from source; the bundle does the same when it is built (see build.js). */
+/** Memoise the installed packages, for a run from source; build.js does the same for the bundle. */
 function memoiseInstalled () {
   for (const name of MEMOISED) {
     const path = require.resolve(name)

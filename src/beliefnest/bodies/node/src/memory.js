@@ -1,7 +1,7 @@
 'use strict'
 /**
- * What a program has called, so that it can go on where it was cut: its text is run again, and what was over gives what
- * it gave, without being done once more (design/channel.md).
+ * Memory of a program's calls, with which an interrupted program can continue. Its text runs again from the beginning,
+ * and each call that had finished returns its recorded result without being executed again (design/channel.md).
  */
 const { SkillError } = require('../../../programs/skills')
 
@@ -14,19 +14,22 @@ const DONE = JSON.stringify({ ok: true, value: null })
 class Memory {
   /**
    * @param {object[]} past CALLED, in order
-   * @param {() => number} now the tick
+   * @param {() => number} now returns the current tick
    * @param {AbortSignal} signal aborted when the program has ended
    */
   constructor (past, now, signal) {
     Object.assign(this, { past: [...past], now, signal, entries: [] })
   }
 
-  /** Take note of a call; `answer` is what came of it if it was over before the cut, else null. */
+  /**
+   * Record a call. The entry's `answer` is the result from before the interruption, or null if the call had not
+   * finished.
+   */
   note (name, args) {
     const given = JSON.stringify(plain(args))
     let known = this.past.shift() ?? null
     if (known !== null && (known.name !== name || known.given !== given)) {
-      // From here on it does something else.
+      // From here on the program takes another course.
       this.past = []
       known = null
     }
@@ -35,7 +38,7 @@ class Memory {
     return entry
   }
 
-  /** Do what a skill does, or gives what came of it before. */
+  /** Execute a skill, or return its recorded result. */
   async call (name, args, act) {
     const entry = this.note(name, args)
     if (entry.answer !== null) return recalled(name, JSON.parse(entry.answer))
@@ -50,7 +53,7 @@ class Memory {
     }
   }
 
-  /** Say something, unless it was said before. */
+  /** Say something, unless it was said before the interruption. */
   say (name, words, speak) {
     const entry = this.note(name, words)
     if (entry.answer !== null) return undefined
@@ -60,17 +63,17 @@ class Memory {
     return said
   }
 
-  /** The arguments of what was under way: who waits has waited for some time. */
+  /** Return the arguments for a call that was interrupted: a wait continues with the ticks that are left. */
   left ({ name, before }, args) {
     return name === 'waitTicks' && before > 0 && Number.isInteger(args[0]) ? [Math.max(1, args[0] - before), ...args.slice(1)] : args
   }
 
-  // What ends since the program was ended is not over.
+  // Ignore calls that end after the program was ended.
   answered (entry, answer) {
     if (!this.signal.aborted) entry.answer = typeof answer === 'string' ? answer : JSON.stringify(answer)
   }
 
-  /** @returns {object[]} CALLED, in order; none if they are too many to go on from */
+  /** Return CALLED, in order; empty if there are too many calls to continue from. @returns {object[]} */
   get calls () {
     if (this.entries.length > MOST) return []
     return this.entries.map(({ name, given, answer, before, begun, since }) =>
@@ -84,7 +87,7 @@ function recalled (name, { ok, value }) {
   throw new SkillError(name, value.message, cause)
 }
 
-/** A value as far as it is plain data; what is not is told by its kind. */
+/** Return a value as plain data; other values are replaced by the name of their type. */
 function plain (value, depth = 0) {
   if (value === null || value === undefined) return null
   if (typeof value !== 'object') return typeof value === 'function' || typeof value === 'bigint' ? String(value).slice(0, 1000) : value

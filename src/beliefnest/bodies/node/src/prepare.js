@@ -1,5 +1,5 @@
 'use strict'
-/** What the bundle has built in and a run from source does when it starts. */
+/** Preparation of a run from source. A bundle has these steps built in. */
 const { memoiseInstalled } = require('./memoise')
 
 function prepare () {

@@ -4,7 +4,10 @@ const { RequestHandler } = require('./requestHandler')
 
 const BEAT_MS = 500
 
-/** Answers requests in real time: one may wait for a tick or for a server, and Node says meanwhile that it lives. */
+/**
+ * Handler of requests in real time. A request may wait for a tick or for a server; meanwhile the handler sends
+ * heartbeats.
+ */
 class RealtimeHandler extends RequestHandler {
   async answer (request) {
     const beating = setInterval(() => this.beat({ beat: this.tick }), BEAT_MS)
@@ -16,7 +19,7 @@ class RealtimeHandler extends RequestHandler {
   }
 }
 
-/** @throws {BadRequest} if a program is to act for an agent whose place a person may take */
+/** Refuse programs for agents whose places people may take. @throws {BadRequest} if there is such an agent */
 function requireBots (invited, agents) {
   const person = agents.find(agent => invited.has(agent))
   if (person === undefined) return

@@ -1,5 +1,5 @@
 'use strict'
-/** A Mineflayer bot with pathfinder at the client's end of a connection. */
+/** Mineflayer bot with a pathfinder, at the client's end of a connection. */
 const { createHash } = require('node:crypto')
 const mineflayer = require('mineflayer')
 const { pathfinder } = require('mineflayer-pathfinder')
@@ -7,21 +7,21 @@ const { equipHeldSlot } = require('./equipping')
 const { chargePathfinder } = require('./pathing')
 const { refuseUnreachable } = require('./reaching')
 
-// mineflayer injects its plugins in a timer of its own, which Node fires after this long.
+// Mineflayer injects its plugins in a timer, which Node fires after this time.
 const INJECTION_MS = 1
 
-// What gravity leaves of the vertical speed of one who stands: (0 - 0.08) * 0.98 a tick.
+// Vertical speed of a standing player after gravity: (0 - 0.08) * 0.98 per tick.
 const STANDING_VELOCITY = -0.0784
 
-/** A clock that nobody has to pay: searches for paths are limited by the nodes they look at. */
+/** Clock without charges. Searches for paths are then limited only by their number of nodes. */
 const REAL_TIME = {}
 
 const CONTROLS = ['forward', 'back', 'left', 'right', 'jump', 'sprint', 'sneak']
 
 /**
- * Start a bot; it is usable `INJECTION_MS` of virtual time later.
+ * Start a bot. It is usable after `INJECTION_MS` of virtual time.
  * @param {object} client a connection's client end
- * @param {{charge?: (ms: number) => void}} clock pays for searches for paths; without `charge` time is real
+ * @param {{charge?: (ms: number) => void}} clock charges for path searches; without `charge` time is real
  */
 function startBot (client, clock) {
   const bot = mineflayer.createBot({
@@ -44,8 +44,9 @@ function startBot (client, clock) {
 }
 
 /**
- * Give a bot `beginSecond()`. A bot that stands tells where it is, and emits `move`, a second after it last did so. It keeps
- * that time in the object that it hands over with each packet, and no snapshot has it.
+ * Add `beginSecond()` to a bot, which sets the time of the bot's last position packet to now. A standing bot sends its
+ * position, and emits `move`, one second after that time. Mineflayer keeps the time in the packet object that it sent
+ * last, and no snapshot contains it.
  */
 function keepSecond (bot, client) {
   const { write } = client
@@ -58,9 +59,9 @@ function keepSecond (bot, client) {
 }
 
 /**
- * Make a bot stand still and finish what it was doing: path, digging, controls, window; how it looks
- * for paths is as at first.
- * @returns {string[]} what it was doing
+ * Make a bot stand still and end its activities: path, digging, controls, window. Also reset its pathfinder's
+ * settings.
+ * @returns {string[]} the activities that were ended
  */
 function stopBot (bot) {
   const doing = []
@@ -68,7 +69,7 @@ function stopBot (bot) {
   else if (CONTROLS.some(control => bot.getControlState(control))) doing.push('a movement')
   if (bot.targetDigBlock) doing.push('digging')
   if (bot.currentWindow) doing.push('an open window')
-  // A connection of the game's own has no such bound.
+  // A connection to a server elsewhere has no limit on packets.
   if (bot._client.beyond) bot._client.beyond(() => letGo(bot))
   else letGo(bot)
   return doing
@@ -84,13 +85,13 @@ function letGo (bot) {
   bot.deactivateItem()
 }
 
-/** Let a bot that was put somewhere stand, or fall: a client takes who is placed for one in the air. */
+/** Set a placed bot on the ground, or let it fall: a client assumes that a placed player is in the air. */
 function ground (bot, onGround) {
   bot.entity.onGround = onGround
   if (onGround) bot.entity.velocity.y = STANDING_VELOCITY
 }
 
-/** @returns {string} a player id (UUID) that depends on nothing but the agent's name */
+/** Return a player id (UUID) that depends only on the agent's name. @returns {string} */
 function agentUuid (agent) {
   const bytes = createHash('md5').update(`OfflinePlayer:${agent}`).digest()
   bytes[6] = (bytes[6] & 0x0f) | 0x30

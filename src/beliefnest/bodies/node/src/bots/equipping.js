@@ -1,11 +1,11 @@
 'use strict'
-/** What bots take into their hands. */
+/** Equipping items from the inventory. */
 
 const HOTBAR_SIZE = 9
 
 /**
- * Let what is taken into the hand out of a full hotbar's reach change places with what is held.
- * Mineflayer takes the slots in turn, by a count that no snapshot has.
+ * Make a bot swap an item with the held one when it equips the item from outside a full hotbar. Mineflayer itself
+ * cycles through the slots by a counter that no snapshot contains.
  */
 function equipHeldSlot (bot) {
   const equip = bot.equip

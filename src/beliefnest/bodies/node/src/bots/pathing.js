@@ -1,19 +1,18 @@
 'use strict'
-/** Path finding whose limits are numbers of nodes, so that a slow machine finds the same ways. */
+/** Path finding with limits on the number of nodes instead of time, so that a slow machine finds the same paths. */
 
-// Time that looking at one node of a path counts as. With the pathfinder's 40 ms a tick that is
-// 427 nodes a tick, and 53,000 until it gives up. Sums of it are exact, at any time of day.
+// Time charged for one node of a path search. With the pathfinder's 40 ms a tick that is 427 nodes a tick, and 53,000
+// nodes before it gives up. The value is a binary fraction, so that sums of it are exact at any time of day.
 const NODE_MS = 3 / 32
 
 /**
- * Limits the bot's searches for paths by the nodes they look at, and keeps it from changing the world on its
- * way: agents walk around walls, they do not dig through them. `bot.pathfinder.reset()` undoes what
- * a program has set.
- *
+ * Limit the bot's path searches by their number of nodes, and keep the pathfinder from changing the world: agents walk
+ * around walls and do not dig through them. `bot.pathfinder.reset()` undoes the settings of a program.
  * @param {object} bot
- * @param {{charge?: (ms: number) => void}} clock pays for each node; without `charge` time is real, and nodes are counted
- * @param {(x: number, y: number, z: number, isBelow: boolean) => object | undefined} [unknownAt] what to make of a block
- *   that the bot does not know; undefined where it knows
+ * @param {{charge?: (ms: number) => void}} clock charges for each node; without `charge` time is real and nodes are
+ *   only counted
+ * @param {(x: number, y: number, z: number, isBelow: boolean) => object | undefined} [unknownAt] returns the assumed
+ *   block for a position that the bot does not know; undefined for known positions
  */
 function chargePathfinder (bot, clock, unknownAt) {
   const setMovements = bot.pathfinder.setMovements
@@ -44,24 +43,29 @@ function chargePathfinder (bot, clock, unknownAt) {
 }
 
 /**
- * Let searches end after as many nodes as their limits of time stand for. A search that ends a tick without a
- * path counts as one without a way, so that a process that gets no processor for 40 ms would lose its way.
+ * Replace the time limits of searches by equivalent numbers of nodes. A search that ends a tick without a path is
+ * reported as having none; with time limits, a process without a processor for 40 ms would lose its path.
  */
 function countNodes (pathfinder) {
   const { getPathFromTo } = pathfinder
   pathfinder.getPathFromTo = function * (movements, from, goal, options = {}) {
     const { timeout = pathfinder.thinkTimeout, tickTimeout = pathfinder.tickTimeout } = options
-    // A search that may take no time at all has looked at nothing yet.
+    // Start the search with a tick limit below zero, so that it has expanded no node yet.
     const results = getPathFromTo(movements, from, goal, { ...options, timeout: Infinity, tickTimeout: -1 })
     limit(results.next().value.astarContext, nodesIn(tickTimeout), nodesIn(timeout))
     yield * results
   }
 }
 
-/** A search goes on until more time has passed than it may take. */
+/**
+ * Return the number of nodes for a time limit: a search continues until the elapsed time exceeds the limit, hence + 1.
+ */
 const nodesIn = milliseconds => Math.max(Math.floor(milliseconds / NODE_MS) + 1, 1)
 
-/** Limits an A* search to so many nodes each time it is continued, and in all. */
+/**
+ * Limit an A* search to a number of nodes per continuation and in total. The open heap claims to be empty when the
+ * nodes are used up; the status is corrected afterwards.
+ */
 function limit (search, atOnce, inAll) {
   const { openHeap } = search
   const isExhausted = openHeap.isEmpty.bind(openHeap)
@@ -78,9 +82,9 @@ function limit (search, atOnce, inAll) {
 }
 
 /**
- * Movements note on a block what it is to a walker, anew each time it is asked for, a hundred times a node. What they
- * noted holds as long as the block: a place whose state changes gets another object. Their sets of
- * kinds of blocks must not be changed any more.
+ * Cache the walking properties that movements note on a block. Without the cache they are computed a hundred times per
+ * node. Notes stay valid as long as the block object: a position whose state changes gets a new object. The movements'
+ * sets of block types must not change any more.
  */
 function rememberBlocks (movements, bot, unknownAt) {
   const { getBlock } = movements
@@ -93,7 +97,7 @@ function rememberBlocks (movements, bot, unknownAt) {
     if (unknown !== undefined) return unknown
     const block = bot.world.blockIn(x, y, z)
     if (block === null || block.notedBy !== movements) return noted(place, dx, dy, dz)
-    // A search raises blocks it would put another one on.
+    // Reset the height: a search raises a block on which it would place another one.
     block.height = block.top
     return block
   }
@@ -106,7 +110,7 @@ function rememberBlocks (movements, bot, unknownAt) {
   }
 }
 
-/** Most places have no entity, and need not be made a text of in order to find none. */
+/** Skip the entity lookup for positions without entities, which avoids building a text key for each of them. */
 function rememberEntities (movements) {
   const { updateCollisionIndex, clearCollisionIndex, getNumEntitiesAt } = movements
   let taken = new Set()
@@ -124,7 +128,7 @@ function rememberEntities (movements) {
   }
 }
 
-// Two places may have the same; none has two.
+// Two positions may have the same hash, which only costs a lookup; no position is missed.
 function hash (x, y, z) {
   return (x * 961 + y * 31 + z) | 0
 }

@@ -1,8 +1,8 @@
 'use strict'
-/** What a bot says at once when something cannot be used from where it stands, for the server does not answer that. */
+/** Immediate failure of block uses that are out of reach. The server itself would not answer them. */
 const { hindranceOf } = require('../../../../programs/skills/lib/sight')
 
-/** Calls that use a block, with the place of what has to be seen for them. */
+/** Methods that use a block, each with the position that must be visible for it. */
 const USES = {
   activateBlock: block => block,
   openBlock: block => block,
@@ -10,7 +10,7 @@ const USES = {
   craft: (recipe, count, table) => table
 }
 
-/** Let the bot's calls that use blocks reject where the server would refuse them. */
+/** Make the bot's methods that use blocks reject where the server would refuse them. */
 function refuseUnreachable (bot) {
   const check = (name, position) => {
     const why = hindranceOf(bot, position)

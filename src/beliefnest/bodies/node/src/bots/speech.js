@@ -1,17 +1,18 @@
 'use strict'
-/** What a program says by its bot: it may take time, and be remembered. */
+/** Speech of programs: it can take time, and a program's memory can record it. */
 
 const TICK_MS = 50
 
 /**
- * Let a bot take so many ticks for each thing it says, one after the other, and remember what a program says by it.
+ * Make each utterance of a bot take a number of ticks, one after the other, and record the program's utterances in its
+ * memory.
  * @param {object} bot
  * @param {object} options
- * @param {number} options.ticks if above 0, what says something gives a promise
+ * @param {number} options.ticks ticks per utterance; if above 0, methods that speak return a promise
  * @param {import('../memory').Memory | null} options.memory
- * @param {AbortSignal} options.signal once it is aborted, what has not been said is not said any more
- * @returns {{over: () => Promise<void>, undo: () => void}} `over` waits until all is said that was begun, `undo` lets it
- *   speak as before
+ * @param {AbortSignal} options.signal when it is aborted, utterances that are still waiting are dropped
+ * @returns {{over: () => Promise<void>, undo: () => void}} `over` waits until all utterances that began are said;
+ *   `undo` restores the bot's own methods
  */
 function ruleSpeech (bot, { ticks, memory, signal }) {
   const { chat, whisper } = bot
@@ -23,14 +24,14 @@ function ruleSpeech (bot, { ticks, memory, signal }) {
   const ruled = (name, speak) => {
     const act = ticks > 0 ? inTurn(speak) : speak
     if (memory === null) return act
-    // A skill that speaks is remembered as a whole.
+    // Skills use the unrecorded method: the memory records a skill that speaks as a whole.
     return Object.assign((...words) => memory.say(name, words, act), { ofSkills: act })
   }
   Object.assign(bot, { chat: ruled('bot.chat', chat.bind(bot)), whisper: ruled('bot.whisper', whisper.bind(bot)) })
   return { over: () => last, undo: () => { Object.assign(bot, { chat, whisper }) } }
 }
 
-/** Resolve after so many ticks, or when the signal is aborted. */
+/** Resolve after a number of ticks, or when the signal is aborted. */
 function passed (ticks, signal) {
   return new Promise(resolve => {
     const end = () => {

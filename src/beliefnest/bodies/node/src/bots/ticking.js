@@ -5,12 +5,12 @@ const { setTimeout: sleep } = require('node:timers/promises')
 const POLL_MS = 5
 
 /**
- * Make the function by which a program's skills wait for ticks.
+ * Return the function with which a program's skills wait for ticks.
  * @param {object} bot
- * @param {() => number} now the tick that the world is in
- * @param {AbortSignal} ended aborted when the program has ended, which ends all waiting
- * @returns {(number: number, signal?: AbortSignal) => Promise<void>} resolves when the world has gone on by so many ticks, and
- *   the bot's body by one at least; never once its own signal is aborted
+ * @param {() => number} now returns the world's current tick
+ * @param {AbortSignal} ended aborted when the program has ended; this ends all waiting
+ * @returns {(number: number, signal?: AbortSignal) => Promise<void>} resolves when the world has advanced by `number`
+ *   ticks and the bot's physics by at least one; never once its own signal is aborted
  */
 function waitFor (bot, now, ended) {
   return async (number, signal) => {

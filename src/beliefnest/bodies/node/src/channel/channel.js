@@ -1,15 +1,15 @@
 'use strict'
-/** Length-prefixed msgpack messages over a stream: 4 bytes big endian, then one map. */
+/** Channel of length-prefixed msgpack messages over a stream: 4 bytes big endian, then one map. */
 const { decode, Encoder } = require('@msgpack/msgpack')
 const { realNow } = require('../time/install')
 
 const HEADER = 4
 // Two seconds of frames.
 const MAX_UNSENT = 40
-// Real time: Python's patience is.
+// Interval of heartbeats in real time, because Python measures its patience in real time.
 const BEAT_MS = 1000
 
-/** Python takes no text with half a character in it: each becomes U+FFFD, wherever it stands in a message. */
+/** Encoder that replaces lone surrogates by U+FFFD in every text, because Python refuses them. */
 class WellFormedEncoder extends Encoder {
   encodeString (text) {
     super.encodeString(text.toWellFormed())
@@ -18,8 +18,9 @@ class WellFormedEncoder extends Encoder {
 
 class Channel {
   /**
+   * Read messages from a stream.
    * @param {import('node:stream').Duplex} stream
-   * @param {(message: object) => void} receive hears every message
+   * @param {(message: object) => void} receive called with every message
    */
   constructor (stream, receive) {
     this.stream = stream
@@ -31,13 +32,13 @@ class Channel {
     stream.on('data', chunk => this.take(chunk))
   }
 
-  /** Send a message, and what `post` kept back before it. */
+  /** Send a message at once, together with those that `post` has queued. */
   send (message) {
     this.post(message)
     this.flush()
   }
 
-  /** Send a message soon: a few at a time cost far less than each by itself. */
+  /** Queue a message to be sent soon: sending several together costs far less than sending each alone. */
   post (message) {
     const body = this.encoder.encodeSharedRef(message)
     const packet = Buffer.allocUnsafe(HEADER + body.length)
@@ -47,7 +48,7 @@ class Channel {
     if (this.unsent.length >= MAX_UNSENT) this.flush()
   }
 
-  /** Send a message, and what `post` kept back, if nothing was sent for a second. */
+  /** Send a message, and those that `post` has queued, if nothing was sent for a second. */
   beat (message) {
     if (realNow() - this.written >= BEAT_MS) this.send(message)
   }

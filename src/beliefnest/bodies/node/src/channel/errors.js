@@ -1,6 +1,6 @@
 'use strict'
 
-/** The caller asked for something that cannot be; nothing was changed. */
+/** Error for a request that cannot be fulfilled. The request has changed nothing. */
 class BadRequest extends Error {
   get kind () { return 'bad_request' }
 }

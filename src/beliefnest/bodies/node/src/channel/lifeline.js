@@ -1,7 +1,7 @@
 'use strict'
 /**
- * A worker thread that ends the process when the descriptor it is given reaches its end: the
- * other end is held by the process that started this one, and closes however that one dies.
+ * Worker thread that ends the process when its descriptor reaches the end of file. The process that started this one
+ * holds the other end, which closes however that process dies.
  */
 const net = require('node:net')
 const { workerData } = require('node:worker_threads')

@@ -1,20 +1,22 @@
 'use strict'
-/** A process that answers requests on one descriptor, one at a time, and ends with it or with its lifeline. */
+/** Server process of one channel: it answers one request at a time, and ends with the channel or with its lifeline. */
 const net = require('node:net')
 const path = require('node:path')
 const { Worker } = require('node:worker_threads')
 const { Channel } = require('./channel')
 
-// build.js puts it beside the programs, too.
+// build.js puts the worker's file beside the programs, too.
 const LIFELINE_FILE = 'lifeline.js'
 
 /**
- * @param {(post: function(object): void, beat: function(object): void, ask: function(object): Promise<object>) => object} makeHandler
- *   gives who answers: `answer(request)`, `prepare()`, `note(message)` of what asks for no answer; `ask` sends a question and resolves with what the other side says to it
- * @param {number} descriptor of the channel
- * @param {number} lifeline another one
+ * Answer the requests of a channel.
+ * @param {(post: function(object): void, beat: function(object): void, ask: function(object): Promise<object>) =>
+ *   object} makeHandler returns the handler: `answer(request)`, `prepare()`, and `note(message)` for messages without
+ *   a reply; `ask` sends a question and resolves with the other side's reply
+ * @param {number} descriptor descriptor of the channel
+ * @param {number} lifeline descriptor of the lifeline
  * @param {object} [options]
- * @param {boolean} [options.atOnce] whether what is posted is sent at once, for those who look on in real time
+ * @param {boolean} [options.atOnce] whether posted messages are sent immediately, for spectators in real time
  */
 function serve (makeHandler, descriptor, lifeline, { atOnce = false } = {}) {
   new Worker(path.join(__dirname, LIFELINE_FILE), { workerData: { descriptor: lifeline } })
@@ -29,7 +31,7 @@ function serve (makeHandler, descriptor, lifeline, { atOnce = false } = {}) {
   const handler = makeHandler(message => atOnce ? channel.send(message) : channel.post(message), message => channel.beat(message), ask)
   let turn = Promise.resolve()
   const channel = new Channel(stream, request => {
-    // What answers a question is no request.
+    // A message without `op` is the reply to a question, not a request.
     if (request.op === undefined) asking.resolve(request)
     else if (request.id === undefined) handler.note(request)
     else turn = turn.then(() => answer(request)).catch(fail)
@@ -44,7 +46,7 @@ function serve (makeHandler, descriptor, lifeline, { atOnce = false } = {}) {
   process.on('unhandledRejection', note)
 }
 
-// A promise nobody waits for was rejected, for instance by a program that has ended.
+// Log a rejected promise that nobody awaits, for instance one of a program that has ended.
 function note (error) {
   process.stderr.write(`unhandled rejection: ${error?.stack ?? error}\n`)
 }

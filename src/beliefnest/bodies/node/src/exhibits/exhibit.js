@@ -1,14 +1,16 @@
 'use strict'
 /**
- * What an embodied simulator holds, as people who visit it are to see it: a place of its own in the server's world. It
- * is no region: nothing happens in it by itself, and nothing that is done there reaches a simulator.
+ * View of a simulator's content for visitors: an area of its own in the server's world. It is not a region: nothing
+ * happens in it by itself, and no act in it reaches a simulator.
  */
 const { Vec3 } = require('vec3')
 const { Box, statesOf } = require('../regions/box')
 const { keyOf } = require('../server/plugins/lib/positions')
 
 class Exhibit {
-  /** @param {object} told EXHIBIT of the channel */
+  /**
+   * @param {object} told EXHIBIT of the channel
+   */
   constructor ({ exhibit: name, origin: [x, z], stand, box: [low, high], blocks, containers, signs, agents }) {
     this.name = name
     this.origin = { x, z }
@@ -18,14 +20,14 @@ class Exhibit {
     this.containers = new Map(containers.map(([x, y, z, items, complete]) => [keyOf({ x, y, z }), { items, complete }]))
     this.signs = new Map(signs.map(([x, y, z, text]) => [keyOf({ x, y, z }), text]))
     this.agents = new Map(Object.entries(agents))
-    // Ticks by which a change was told later than it happened, at most.
+    // Largest delay, in ticks, between a change and its message.
     this.lag = 0
   }
 
   /**
-   * Take note of what is another than it was.
-   * @param {object} changes as `show` of the channel has them
-   * @returns {{signs: number[][]}} positions of signs that show another text now
+   * Apply the changes of a `show` message.
+   * @param {object} changes changed parts, as in the channel's `show`
+   * @returns {{signs: number[][]}} positions of signs whose text has changed
    */
   take ({ blocks, containers, signs, agents }) {
     for (const [x, y, z, state] of blocks) this.states[this.box.index(x, y, z)] = state
@@ -43,22 +45,22 @@ class Exhibit {
     return { signs: [...keys].map(key => key.split(',').map(Number)) }
   }
 
-  /** @returns {number} the state at a place (exhibit); air outside the box */
+  /** Return the state at a position of the exhibit; air outside the box. @returns {number} */
   at ({ x, y, z }) {
     return this.box.contains(x, y, z) ? this.states[this.box.index(x, y, z)] : 0
   }
 
-  /** @returns {Vec3} server coordinates of a place */
+  /** Return the server coordinates of a position. @returns {Vec3} */
   toServer ([x, y, z]) {
     return new Vec3(x + this.origin.x, y, z + this.origin.z)
   }
 
-  /** @returns {Vec3} the place of server coordinates */
+  /** Return the position of server coordinates. @returns {Vec3} */
   toOwn ({ x, y, z }) {
     return new Vec3(x - this.origin.x, y, z - this.origin.z)
   }
 
-  /** Whether somebody who is at server coordinates is there: in the box, or above, below and beside it. */
+  /** Return true if server coordinates belong to the exhibit: in the box, or above, below or near it. */
   holds ({ x, z }, margin) {
     const { low, high } = this.box
     const own = this.toOwn({ x, y: 0, z })

@@ -1,5 +1,5 @@
 'use strict'
-/** An exhibit as packets: what a client that looks at it is told. Numbers of entities are the gallery's. */
+/** Packets that show an exhibit to a visiting client. The gallery assigns the entity ids. */
 const { angleStep, toDegrees } = require('../server/angles')
 const { agentUuid } = require('../bots/bot')
 const { stacksOf } = require('../server/plugins/lib/items')
@@ -11,11 +11,11 @@ const { slotsIn } = require('../remote/kinds')
 
 const SURVIVAL = 0
 const OWN_SLOTS = 36
-/** Number of the protocol by part of the equipment. */
+/** Number of each equipment slot in the protocol. */
 const PARTS = { main_hand: 0, off_hand: 1, feet: 2, legs: 3, chest: 4, head: 5 }
 const LISTED = { add_player: true, update_game_mode: true, update_listed: true, update_latency: true }
 
-/** @returns {object} the packet `player_info` that lists a player */
+/** Return the packet `player_info` that lists a player. @returns {object} */
 function listing (name, { uuid = agentUuid(name), gamemode = SURVIVAL } = {}) {
   return { action: LISTED, data: [{ uuid, player: { name, properties: [] }, gamemode, listed: true, latency: 0 }] }
 }
@@ -25,14 +25,14 @@ function turned (pose) {
   return { yaw: angleStep(yaw), pitch: angleStep(pitch) }
 }
 
-/** How an agent stands there. */
+/** Return the packets that spawn an agent. */
 function spawning (exhibit, label, pose, entityId, type) {
   const { x, y, z } = exhibit.toServer(pose.position)
   const { yaw, pitch } = turned(pose)
   return { entityId, objectUUID: agentUuid(label), type, x, y, z, yaw, pitch, headPitch: yaw, objectData: 0, velocity: { x: 0, y: 0, z: 0 } }
 }
 
-/** How an agent moves: packets, in order. */
+/** Return the packets that move an agent, in order. */
 function moving (exhibit, pose, entityId) {
   const { x, y, z } = exhibit.toServer(pose.position)
   const { yaw, pitch } = turned(pose)
@@ -42,7 +42,7 @@ function moving (exhibit, pose, entityId) {
   ]
 }
 
-/** What an agent wears and holds; empty hands too. */
+/** Return the packet with an agent's armour and held items; empty slots are included. */
 function wearing ({ equipment }, entityId, { Item, registry }) {
   const item = name => Item.toNotch(name === undefined ? null : new Item(registry.itemsByName[name].id, 1))
   return { entityId, equipments: Object.entries(PARTS).map(([part, slot]) => ({ slot, item: item(equipment[part]) })) }
@@ -54,8 +54,9 @@ function sign (exhibit, states, [x, y, z]) {
 }
 
 /**
- * @param {object} place (exhibit)
- * @returns {{type: number, title: string, items: Array} | null} the window of what stands there; null if nothing opens
+ * Return the window of the container at a position.
+ * @param {object} place position in the exhibit
+ * @returns {{type: number, title: string, items: Array} | null} null if no container stands there
  */
 function inside (exhibit, place, states, { Item, registry }) {
   const { name } = states.describe(exhibit.at(place))
@@ -70,7 +71,10 @@ function inside (exhibit, place, states, { Item, registry }) {
   return { type, title: `${title}${known(held)}`, items: [...slots, ...new Array(OWN_SLOTS).fill(null)].map(stack => Item.toNotch(stack)) }
 }
 
-/** What is not known of contents is said in the window's title: an empty window would tell that nothing is in it. */
+/**
+ * Return the suffix of a window's title that says which contents are unknown: an empty window would mean that the
+ * container is empty.
+ */
 function known (held) {
   if (held.every(({ complete }) => complete)) return ''
   return held.every(({ items }) => Object.keys(items).length === 0) ? ' (contents unknown)' : ' (known in part)'

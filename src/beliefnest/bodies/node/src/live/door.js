@@ -1,5 +1,5 @@
 'use strict'
-/** Where people come in: a TCP port, and who may take an agent's place in the region that is open. */
+/** Entrance for people: a TCP port, and the rules who may take an agent's place in the open region. */
 const { once } = require('node:events')
 const { setTimeout: sleep } = require('node:timers/promises')
 const minecraft = require('minecraft-protocol')
@@ -13,28 +13,29 @@ const { Gallery } = require('./gallery')
 const { Standstill } = require('./standstill')
 const { canGo } = require('./way')
 
-// More than there are agents; one who comes too many is told so by name.
+// More than there are agents, so that the door can tell an extra player why they are refused.
 const MOST_CONNECTIONS = 1000
-// Ticks after which one who stands has arrived.
+// Number of ticks after which a standing person counts as arrived.
 const STANDING_TICKS = 10
-// What a handshake asks for who wants to play.
+// Value of a handshake's `nextState` for a client that wants to play.
 const LOGIN = 2
 const MOVES = ['position', 'position_look']
 const TURNS = ['look', 'position_look']
 const REALITY = '/'
 const GOODBYE_MS = 500
 const NO_LONGER_SHOWN = 'What you looked at is no longer shown'
-// Makes the sound of a thing being picked up, wherever that is.
+// Packet that makes the sound of a picked-up item, wherever that is.
 const PICKED_UP = 'collect'
-// The game's own `/tp`, of oneself.
+// The game's own `/tp`, for oneself.
 const TRAVEL = /^(?:minecraft:)?(?:tp|teleport)(?: @s| (?<who>\w+))? (?<x>-?\d+(?:\.\d+)?) (?<y>-?\d+(?:\.\d+)?) (?<z>-?\d+(?:\.\d+)?)$/
 
 class PersonEnd extends TcpEnd {
   /**
+   * Wrap the connection of a person who plays an agent.
    * @param {import('minecraft-protocol').Client} client
-   * @param {(place: {x: number, y: number, z: number}) => boolean} mayBeAt whether somebody may go there
+   * @param {(place: {x: number, y: number, z: number}) => boolean} mayBeAt returns true if the person may go there
    * @param {import('./standstill').Standstill} standstill
-   * @param {(error: Error) => void} report hears what a packet's handlers throw
+   * @param {(error: Error) => void} report called with errors of a packet's handlers
    */
   constructor (client, mayBeAt, standstill, report) {
     super(client, action => action(), report)
@@ -43,12 +44,12 @@ class PersonEnd extends TcpEnd {
     this.player = null
   }
 
-  /** Others' deeds are not heard: what makes a sound in the game is told of the person's own alone. */
+  /** Send only the person's own pickups: the sound of others' would reveal unheard acts. */
   write (name, params) {
     if (name !== PICKED_UP || params.collectorEntityId === this.player?.id) super.write(name, params)
   }
 
-  /** What a client says of where it is and looks holds only within the box, where a way leads, and if it is a place and a direction. */
+  /** Accept a position or direction of the client only if it is valid, inside the box and reachable. */
   deliver (name, params) {
     if (this.standstill.takes(this, name, params)) return
     const isWrong = (MOVES.includes(name) && !this.mayBeAt(params)) || (TURNS.includes(name) && !isDirection(params))
@@ -63,7 +64,7 @@ class Door {
     this.regions = regions
     this.listening = null
     this.invited = new Set()
-    // Who is there: player, and for how many ticks where.
+    // People who are present: their player, and for how many ticks they have stood where.
     this.present = new Map()
     regions.onTick = region => this.watch(region)
     this.gallery = new Gallery(regions.serv)
@@ -78,14 +79,14 @@ class Door {
     }
   }
 
-  /** @returns {Promise<number>} the port; 0 asked for any. @throws {CannotListen} */
+  /** Open the port; 0 chooses any free one. @returns {Promise<number>} the port */
   async listen ({ host, port }) {
     const listening = minecraft.createServer({
       host, port, version: versions.minecraft, 'online-mode': false, maxPlayers: MOST_CONNECTIONS, motd: 'BeliefNest', hideErrors: true,
-      // The library would answer with its error, which is no text.
+      // The library would answer with an error object instead of a text.
       errorHandler: client => client.socket.destroy()
     })
-    // Before the library's own, which ends such a connection without a word.
+    // Run before the library's own listener, which ends such a connection without a message.
     listening.prependListener('connection', client => client.once('set_protocol', asked => refuseVersion(client, asked, listening.mcversion)))
     listening.on('playerJoin', client => this.greet(client))
     try {
@@ -98,7 +99,7 @@ class Door {
     return listening.socketServer.address().port
   }
 
-  /** Send everybody away with a sentence; resolves when all have heard it, or do not listen. */
+  /** Disconnect everybody with a sentence. Resolve when all clients have received it, or after a time limit. */
   async close () {
     const clients = Object.values(this.listening.clients)
     this.listening.socketServer.close()
@@ -108,8 +109,8 @@ class Door {
   }
 
   /**
-   * Say who may come; who is there and may no longer be is sent away, and who looks at something and may come again is told.
-   * @returns {string[]} who is there
+   * Set the agents whose places people may take. Disconnect the others. Tell visitors who may play again.
+   * @returns {string[]} agents that people play now
    */
   invite (names) {
     const before = this.invited
@@ -123,7 +124,7 @@ class Door {
     return [...this.present.keys()].sort()
   }
 
-  /** Let time stand still, or go on; people are told. */
+  /** Stop or resume time, and tell the people who play. */
   async pause (isPaused) {
     if (!await this.regions.pause(isPaused)) return
     for (const { player } of this.present.values()) player.system(isPaused ? 'Time stands still.' : 'Time goes on.')
@@ -131,7 +132,10 @@ class Door {
     else for (const end of this.standstill.end()) if (this.present.get(end.username)?.player._client === end) this.greet(end.release())
   }
 
-  /** Let somebody in as the agent that they are, or else to look; to whom neither is open it says why, or what is given. */
+  /**
+   * Let a client in as its agent, or else as a visitor. If neither is possible, end the connection with the reason, or
+   * with `parting` if it is given.
+   */
   greet (client, parting) {
     this.inTurn(() => {
       if (client.ended) return
@@ -142,20 +146,20 @@ class Door {
     })
   }
 
-  /** Whether somebody who is no agent can come and look: at what is embodied, if anything is. */
+  /** Return true if somebody who is not an agent can come as a visitor: a region is open and something is shown. */
   mayVisit (name) {
     const { open } = this.regions
     return open !== null && !open.bodies.has(name) && this.gallery.exhibits.size > 0
   }
 
-  /** The connection of a person who is an agent now; null if a bot is. */
+  /** Return the connection of the person who plays an agent; null if a bot does. */
   endOf ({ agent, _client: end }) {
     return this.present.get(agent)?.player._client === end ? end : null
   }
 
   /**
-   * Take a person, an agent or a visitor, to where `/tp X Y Z` says, if they may go there.
-   * @returns {boolean} true if it is that command
+   * Handle `/tp X Y Z` of a person, agent or visitor: take them there if they may go.
+   * @returns {boolean} true if the command is this one
    */
   travel (end, command, tell) {
     const { x, y, z, who = end.username } = TRAVEL.exec(command)?.groups ?? {}
@@ -170,7 +174,7 @@ class Door {
     return true
   }
 
-  /** As the agent that they are, or else to look at it. */
+  /** Take a client to reality: as its agent if that is possible, or else as a visitor. */
   goToReality (client, place) {
     this.inTurn(() => {
       if (client.ended) return
@@ -181,7 +185,7 @@ class Door {
     })
   }
 
-  /** Somebody who visits can be their agent again: at once if they look at reality, else by its line. */
+  /** Give a visitor their agent back: at once if they visit reality; otherwise tell them how to return. */
   callBack (visitor) {
     if (!this.gallery.visitors.has(visitor) || this.refusal(visitor.name) !== null) return
     if (visitor.exhibit.name === REALITY) this.letIn(visitor.end.release())
@@ -197,18 +201,18 @@ class Door {
     visitor.system(`${greeting(exhibit)} ${away}${this.gallery.directions()}`)
   }
 
-  /** What is no longer shown nobody looks at: agents come back to where they stand, visitors have to go. */
+  /** Close an exhibit. Agents return to where they stand; visitors are disconnected. */
   closeExhibit (name) {
     for (const { end } of this.gallery.close(name)) this.greet(end.release(), NO_LONGER_SHOWN)
   }
 
-  /** @returns {string | null} why somebody cannot come in, as a sentence for them */
+  /** Return why somebody cannot come in, as a sentence for them; null if they can. @returns {string | null} */
   refusal (name) {
     const { open } = this.regions
     const free = [...this.invited].filter(agent => !this.present.has(agent))
     const look = this.gallery.exhibits.size > 0 && open?.bodies.has(name) ? ', or by another name to look' : ''
     const who = `${free.length === 0 ? 'nobody else is awaited now' : `come as ${free.join(' or ')}`}${look}`
-    if (open === null) return 'Nothing is being played here at this moment; come again when it is'
+    if (open === null) return 'Nothing is being played here at this moment; come again later'
     if (this.present.has(name)) return `${name} is here already; ${who}`
     if (this.invited.has(name) && open.bodies.has(name)) return null
     if (open.bodies.has(name)) return `${name} is played by BeliefNest; ${who}`
@@ -240,7 +244,7 @@ class Door {
     regions.door = regions.door.then(action).catch(error => { regions.failure = error })
   }
 
-  /** Who has come to stand after walking has moved there, as one whom a program lets walk. */
+  /** Report a `move_to` of each person who has come to stand after walking, as for an agent that a program moved. */
   watch (region) {
     for (const standing of this.present.values()) {
       const { player, place } = standing
@@ -250,23 +254,24 @@ class Door {
   }
 }
 
-/** Say so to a game of another version than ours; who only asks who is here gets an answer all the same. */
+/** Disconnect a client of another game version, with a message. Status queries are answered all the same. */
 function refuseVersion (client, asked, { version, minecraftVersion }) {
   if (asked.protocolVersion === version || asked.nextState !== LOGIN) return
-  // The library answers of its own, and then lets in who does not leave by itself: it is to hear neither of the version nor of the login.
+  // The library would send its own answer, and would let the client in if it stays. Hide the version from it, and
+  // remove its login listener.
   asked.protocolVersion = version
   client.removeAllListeners('login_start')
   setImmediate(() => client.end(`This is Minecraft ${minecraftVersion}; start the game in that version`))
 }
 
-/** Tell a person who is an agent from now on who else is there. */
+/** Tell a person who begins to play an agent who else is there. */
 function equip (end, region) {
   ease(end, end.player.id)
   const others = [...region.bodies.keys()].filter(agent => agent !== end.username).sort()
   end.player.system(`You are ${end.username}. ${others.length > 0 ? `Here are ${others.join(', ')}. ` : ''}What you do and say is recorded.`)
 }
 
-/** As the game does: whole numbers are the middle of a block. */
+/** Move whole numbers to the middle of a block, as the game's `/tp` does. */
 function centred ({ x, y, z }) {
   const middle = value => Number.isInteger(value) ? value + 0.5 : value
   return { x: middle(x), y, z: middle(z) }
@@ -277,7 +282,7 @@ function greeting ({ name }) {
   return `You look at ${what}. Nobody sees or hears you, and nothing can be changed.`
 }
 
-/** What a person cannot do they are told; a client that sends what makes no sense has to go. */
+/** Tell a person about an act that was refused; disconnect a client whose packets make no sense. */
 function blame (end, error) {
   if (error instanceof RangeError && end.player !== null) {
     end.player.system(error.message)

@@ -1,19 +1,19 @@
 'use strict'
 /**
- * What people are told of what is said. Who hears what is worked out in Python alone: what others have said reaches a
- * person once Python has said that the agent they play heard it.
+ * Delivery of speech to people. Only Python decides who hears a line; a person receives a line after Python has said
+ * that their agent heard it.
  */
 
 class Earshot {
   /**
    * @param {object} serv
-   * @param {(agent: string) => object | null} personOf the player of a person; null if a bot plays the agent
+   * @param {(agent: string) => object | null} personOf returns the player of a person; null if a bot plays the agent
    */
   constructor (serv, personOf) {
     this.personOf = personOf
-    // Whether everybody hears everything, so that nothing has to wait.
+    // Whether everybody hears everything; lines are then sent at once.
     this.isGlobal = false
-    // Lines that no frame has told yet, oldest first.
+    // Lines that no frame contains yet, oldest first.
     this.said = []
     // {tick, lines} of frames for which Python has not yet said who heard them.
     this.waiting = []
@@ -25,16 +25,16 @@ class Earshot {
     }
   }
 
-  /** Take note of the frame that tells what was said. */
+  /** Move the lines that a frame contains to the waiting ones. */
   framed ({ tick, events }) {
     const count = events.filter(({ kind, detail }) => kind === 'chat' && detail.to === undefined).length
     if (count > 0) this.waiting.push({ tick, lines: this.said.splice(0, count) })
   }
 
   /**
-   * Tell people what they heard.
-   * @param {number} tick of the frame
-   * @param {string[][]} heard by whom, for each thing said aloud in it
+   * Deliver the lines of a frame to the people who heard them.
+   * @param {number} tick tick of the frame
+   * @param {string[][]} heard the agents that heard each of its lines
    */
   hear ({ tick, heard }) {
     while (this.waiting.length > 0 && this.waiting[0].tick <= tick) {
@@ -47,7 +47,7 @@ class Earshot {
     for (const agent of agents) if (agent !== speaker) this.personOf(agent)?.system(text)
   }
 
-  /** Forget what was said in what has not happened. */
+  /** Forget lines of a past that was discarded. */
   forget () {
     this.said.length = 0
     this.waiting.length = 0

@@ -1,5 +1,5 @@
 'use strict'
-/** The exhibits of the embedded server in real time, and who looks at them. */
+/** Exhibits of the embedded server in real time, and their visitors. */
 const { BadRequest } = require('../channel/errors')
 const { Exhibit } = require('../exhibits/exhibit')
 const { columnsOf } = require('../regions/columns')
@@ -7,41 +7,43 @@ const { blockStates } = require('../server/plugins/lib/states')
 const { columnPacket } = require('../server/world')
 const { Visitor } = require('./visitor')
 
-// Blocks around a box from which one still looks at it.
+// Distance from a box, in blocks, at which a visitor still counts as looking at it.
 const MARGIN = 64
 const FIRST_NUMBER = 2
 
 class Gallery {
-  /** @param {object} serv of which it uses tables, and no player and no block */
+  /**
+   * @param {object} serv server whose tables are used; its players and blocks are not
+   */
   constructor (serv) {
     this.serv = serv
     this.states = blockStates(serv.registry)
     this.exhibits = new Map()
     this.visitors = new Set()
-    // Entity of an agent of an exhibit, by `EXHIBIT LABEL`.
+    // Entity id of each agent of an exhibit, by `EXHIBIT LABEL`.
     this.numbers = new Map()
     this.nextNumber = FIRST_NUMBER
   }
 
-  /** Where somebody comes in who names no place: beside the first that was opened. */
+  /** Return where a visitor without a destination arrives: beside the exhibit that was opened first. */
   get entrance () {
     const [exhibit] = this.exhibits.values()
     const { x, y, z } = exhibit.stand
     return { exhibit, place: { x: x + 0.5, y, z: z + 0.5 } }
   }
 
-  /** How to go where, as a line for people. */
+  /** Return a line that tells people how to go to each exhibit. */
   directions () {
     return [...this.exhibits.values()].map(({ name, stand: { x, y, z } }) => `${name}: /tp ${x} ${y} ${z}`).join(', ')
   }
 
   open (told) {
-    if (this.exhibits.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already`)
+    if (this.exhibits.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already; close it first`)
     this.exhibits.set(told.exhibit, new Exhibit(told))
   }
 
   /**
-   * What is another in an exhibit is told to those who look at it.
+   * Apply changes to an exhibit and send them to its visitors.
    * @param {object} message `show` of the channel
    * @param {number} now tick of reality
    */
@@ -56,12 +58,12 @@ class Gallery {
     }
   }
 
-  /** @returns {object} by how many ticks each was late, by name */
+  /** Return by how many ticks the changes of each exhibit were late, by name. @returns {object} */
   lags () {
     return Object.fromEntries([...this.exhibits.values()].map(({ name, lag }) => [name, lag]))
   }
 
-  /** @returns {Visitor[]} who looked at it, and has to go elsewhere */
+  /** Close an exhibit. @returns {Visitor[]} its visitors, who have to go elsewhere */
   close (name) {
     const exhibit = this.exhibits.get(name)
     if (exhibit === undefined) throw new BadRequest(`${name} is not shown`)
@@ -69,12 +71,12 @@ class Gallery {
     return [...this.visitors].filter(visitor => visitor.exhibit === exhibit)
   }
 
-  /** @returns {Exhibit | null} what is to be seen at a place of the server's world */
+  /** Return the exhibit at a position of the server's world; null if there is none. @returns {Exhibit | null} */
   at (place) {
     return [...this.exhibits.values()].find(exhibit => exhibit.holds(place, MARGIN)) ?? null
   }
 
-  /** Let a client look. @returns {Visitor} */
+  /** Let a client in as a visitor. @returns {Visitor} */
   admit (client, onCommand) {
     const visitor = new Visitor(client, this, onCommand)
     this.visitors.add(visitor)
@@ -88,7 +90,7 @@ class Gallery {
     return this.numbers.get(key)
   }
 
-  /** @returns {object[]} packets of an exhibit's columns */
+  /** Return the packets of an exhibit's columns. @returns {object[]} */
   columns (exhibit) {
     const { serv: { registry, minY, worldHeight } } = this
     const Chunk = require('prismarine-chunk')(registry)

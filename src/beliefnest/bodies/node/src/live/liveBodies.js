@@ -1,23 +1,23 @@
 'use strict'
-/** Agents of a region in real time: bots, people, and bots that stand in for people who are not there. */
+/** Agents of a region in real time: bots, people, and bots that replace absent people. */
 const { Vec3 } = require('vec3')
 const { stopBot } = require('../bots/bot')
 const { Bodies } = require('../regions/bodies')
 const { agentState } = require('../regions/facts')
 const { join } = require('../regions/joining')
 
-// How far from a wall somebody's middle is.
+// Distance from a wall to the middle of a player who touches it.
 const HALF_WIDTH = 0.3
 
 class LiveBodies extends Bodies {
-  /** Let agents in; from the first moment they have what they are to have. */
+  /** Start a bot. It has its items and its health from the first moment. */
   start (region, agent, state) {
     const started = super.start(region, agent, state)
     started.player.setPossessions(state)
     return started
   }
 
-  /** End what a program left under way; a bot that still waits for something is made anew at once. */
+  /** End the acts that a program left unfinished; a bot that still waits for something is replaced at once. */
   async rest (region, agent, clean) {
     const { bot, player } = region.bodies.get(agent)
     stopBot(bot)
@@ -27,20 +27,20 @@ class LiveBodies extends Bodies {
     if (!clean) await this.standIn(region, agent)
   }
 
-  /** Let bodies be: time goes on between the calls, too. */
+  /** Do nothing: time goes on between calls, so that bodies need not be brought to a stand. */
   async stand () {
     return true
   }
 
   async finish () {}
 
-  /** Put a new bot in the place of whoever an agent's body is: nobody sees a difference. */
+  /** Replace the player of an agent by a new bot. Nobody sees a difference. */
   async standIn (region, agent) {
     const state = this.leave(region, agent)
     await this.add(region, { [agent]: state })
   }
 
-  /** Put a person in the place of a bot. @returns {object} the player */
+  /** Replace a bot by a person. @returns {object} the player */
   seat (region, end) {
     const state = this.leave(region, end.username)
     const player = join(this.serv, region, end, state)
@@ -50,7 +50,7 @@ class LiveBodies extends Bodies {
     return player
   }
 
-  /** @returns {object} AGENT, as it was */
+  /** Remove an agent's player. @returns {object} its last AGENT */
   leave (region, agent) {
     const { player } = region.bodies.get(agent)
     const state = agentState(region, player)
@@ -60,12 +60,12 @@ class LiveBodies extends Bodies {
   }
 }
 
-/** What a person has in place of a bot. */
+/** Return the object that stands for the bot of an agent that a person plays. */
 function nobody () {
   return { entity: { onGround: true, velocity: new Vec3(0, 0, 0) }, removeAllListeners () {} }
 }
 
-/** A place of the box: where there is no longer anybody, a client may have said anything. */
+/** Clamp a position to the box: the client of a removed player may have sent anything. */
 function within ({ low, high }, [x, y, z]) {
   const clamp = (value, least, most) => Math.min(Math.max(value, least), most)
   return [

@@ -1,19 +1,24 @@
 'use strict'
-/** Real time behind the interface of the virtual clock (time/clock.js): who lets time pass waits until it has. */
+/**
+ * Real time behind the interface of the virtual clock (time/clock.js): code that advances time waits until it has
+ * passed.
+ */
 const { setImmediate: pause, setTimeout: sleep } = require('node:timers/promises')
 const { TICK_MS } = require('../regions/region')
 
-// Milliseconds that are made up for; what was late by more has been lost.
+// Largest delay, in milliseconds, that is caught up; more is dropped.
 const MOST_LATE_MS = 2000
-// Turns of the event loop in which nothing is under way before all is taken to be done.
+// Idle turns of the event loop after which everything counts as done.
 const QUIET_TURNS = 3
 
 class LiveClock {
-  /** @param {() => boolean} isBusy whether packets are on their way within this process */
+  /**
+   * @param {() => boolean} isBusy returns true while packets are on their way within this process
+   */
   constructor (isBusy) {
     this.isBusy = isBusy
     this.due = performance.now()
-    // What a region does with a time of its own; here all have the same.
+    // Common time of all contexts; a virtual region has a time of its own.
     this.active = { time: 0 }
   }
 
@@ -21,7 +26,10 @@ class LiveClock {
     return action()
   }
 
-  /** Resolve when that much more time has passed, and what follows at once has happened. A tick's ends when it is due. */
+  /**
+   * Resolve when that much more time has passed and its immediate consequences have happened. A tick ends when it is
+   * due.
+   */
   async advance (ms) {
     if (ms === TICK_MS) await this.tickEnds()
     else if (ms > 0) await sleep(ms)

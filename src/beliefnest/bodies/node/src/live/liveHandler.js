@@ -1,5 +1,5 @@
 'use strict'
-/** Answers the channel's requests with the embedded server in real time, where people are agents as well. */
+/** Handler of the channel's requests for the embedded server in real time, where people can play agents. */
 const { BadRequest } = require('../channel/errors')
 const { RealtimeHandler, requireBots } = require('../realtimeHandler')
 const { createServer } = require('../server')
@@ -30,7 +30,7 @@ class LiveHandler extends RealtimeHandler {
     return super.perform(request)
   }
 
-  /** @throws {BadRequest} if time is to pass that stands still */
+  /** Refuse a request that needs time while time stands still. @throws {BadRequest} if time stands still */
   requireTime ({ op, ticks }) {
     if (this.regions === null || this.regions.standstill === null || !(op === 'run' || (op === 'step' && ticks > 0))) return
     throw new BadRequest(`the real world stands still at tick ${this.tick}; let it go on first: nest.go_on()`)

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * The real world of the embedded server in real time: one region, which goes on between the calls and which people can
- * enter. What happens there meanwhile is told with the next call.
+ * Real world of the embedded server in real time: one region, which runs on between calls and which people can enter.
+ * The next call reports the events in between.
  */
 const { waitFor } = require('../bots/ticking')
 const { BadRequest } = require('../channel/errors')
@@ -10,13 +10,13 @@ const { LiveBodies } = require('./liveBodies')
 const { LiveClock } = require('./liveClock')
 
 const NOTHING = new Uint8Array(0)
-// People are told the server's coordinates; here they are the scenario's.
+// People see the server's coordinates; with this origin they equal the scenario's.
 const AT_ORIGIN = { take: () => ({ x: 0, z: 0 }), giveBack () {} }
 
 class LiveRegions extends Regions {
   /**
    * @param {object} serv
-   * @param {(frame: object) => void} send hears every frame, once a call is under way
+   * @param {(frame: object) => void} send called with every frame, while a call runs
    */
   constructor (serv, send) {
     super(serv, new LiveClock(() => this.open?.mail.scheduled ?? false), frame => this.take(frame))
@@ -27,22 +27,22 @@ class LiveRegions extends Regions {
     this.isDriven = false
     // Frames that no call has sent yet.
     this.waiting = []
-    // Ends when nobody is at work on the region any more.
+    // Resolves when nobody works on the region any more.
     this.turn = Promise.resolve()
     this.failure = null
-    // Ends when time may go on; null while it does.
+    // Resolves when time may go on; null while it does.
     this.standstill = null
     // Called at every tick with the region.
     this.onTick = () => {}
-    // Called with every frame, and when what was told has not happened.
+    // Called with every frame, and when frames that were reported are discarded.
     this.onFrame = () => {}
     this.onForget = () => {}
-    // Ends when nobody is about to enter or to leave.
+    // Resolves when nobody is entering or leaving.
     this.door = Promise.resolve()
     serv.on('tick', (_, __, region) => this.onTick(region))
   }
 
-  /** @returns {Function} by which skills wait for ticks of the region (bots/ticking.js) */
+  /** Return the function with which skills wait for ticks of the region (bots/ticking.js). @returns {Function} */
   waitOf (region, bot, ended) {
     return waitFor(bot, () => region.tick, ended)
   }
@@ -53,7 +53,7 @@ class LiveRegions extends Regions {
     else this.waiting.push(frame)
   }
 
-  /** Run one action after the other. */
+  /** Run actions one after the other. */
   async alone (action) {
     const before = this.turn
     const { promise, resolve } = Promise.withResolvers()
@@ -74,20 +74,20 @@ class LiveRegions extends Regions {
   }
 
   async create (request) {
-    if (this.open !== null) throw new BadRequest(`${this.open.name} goes on in real time; there can be one such region at a time`)
+    if (this.open !== null) throw new BadRequest(`${this.open.name} runs in real time; there can be one such region at a time`)
     this.failure = null
     const made = await super.create(request)
     this.goOn(this.open)
     return made
   }
 
-  /** Remember which region there is, from the moment at which somebody may come to be in it. */
+  /** Set the open region, at the moment from which people can enter it. */
   async restoreState (region, internalState) {
     this.open = region
     await super.restoreState(region, internalState)
   }
 
-  /** Let time pass where no call does. */
+  /** Advance time between calls. */
   async goOn (region) {
     this.clock.due = performance.now()
     while (this.open === region && this.failure === null) {
@@ -99,7 +99,7 @@ class LiveRegions extends Regions {
     }
   }
 
-  /** Let time stand still, or go on again. @returns {Promise<boolean>} true if that is something else than before */
+  /** Stop or resume time. @returns {Promise<boolean>} true if that changed anything */
   async pause (isPaused) {
     return this.alone(() => {
       if (isPaused === (this.standstill !== null)) return false
@@ -109,7 +109,7 @@ class LiveRegions extends Regions {
     })
   }
 
-  /** Run a call on the region: its ticks are then the call's to take. */
+  /** Run a call on the region. The call itself then advances the ticks. */
   async resumed (region, action) {
     return this.alone(async () => {
       if (this.failure !== null) throw this.failure
@@ -126,7 +126,7 @@ class LiveRegions extends Regions {
     })
   }
 
-  /** Make the region so; what happened there since the last call is forgotten with what it led to. */
+  /** Set the region's state. Events since the last call are forgotten, with all their effects. */
   async apply (request) {
     await this.door
     return this.alone(async () => {
@@ -153,7 +153,7 @@ class LiveRegions extends Regions {
     })
   }
 
-  /** Nothing is told to be under way in what goes on by itself. */
+  /** Return an empty internal state: a region that runs on by itself has nothing to resume. */
   internalState () {
     return NOTHING
   }

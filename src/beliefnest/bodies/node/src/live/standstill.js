@@ -1,20 +1,20 @@
 'use strict'
-/** A time in which nothing happens: what people's clients send meanwhile is not done. */
+/** Standstill of time: acts of people's clients have no effect while it lasts. */
 
 const MOVES = ['position', 'position_look']
 const SPEECH = ['chat_message', 'chat_command', 'chat_command_signed']
-// What a client says of itself, and what shows to nobody.
+// Packets about the client itself, and packets with no visible effect.
 const HARMLESS = ['keep_alive', 'teleport_confirm', 'settings', 'pong', 'custom_payload', 'chunk_batch_received', 'message_acknowledgement', 'chat_session_update']
 const IDLE = ['look', 'flying', 'arm_animation', 'entity_action']
 
 class Standstill {
   constructor () {
     this.isOn = false
-    // Ends whose client holds something to be done that was not.
+    // Connections whose clients show an act that did not happen.
     this.missed = new Set()
   }
 
-  /** @returns {boolean} true if what a person's client sent must not be done, which it is told */
+  /** Return true if a packet of a person's client must be dropped; tell the person in that case. @returns {boolean} */
   takes ({ player }, name, { x, y, z }) {
     if (!this.isOn || player === null || HARMLESS.includes(name)) return false
     if (MOVES.includes(name)) {
@@ -28,7 +28,11 @@ class Standstill {
     return true
   }
 
-  /** @returns {object[]} the ends of people who are to come in anew, since their client shows what never was */
+  /**
+   * End the standstill. Return the connections that must be set up again, because their clients show something that
+   * never happened.
+   * @returns {object[]}
+   */
   end () {
     this.isOn = false
     const anew = [...this.missed]

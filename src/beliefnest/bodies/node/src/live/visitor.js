@@ -1,5 +1,5 @@
 'use strict'
-/** Somebody who looks at an exhibit: a client of the game as a spectator, whom nobody sees and who changes nothing. */
+/** Visitor of an exhibit: a client in spectator mode, whom nobody sees and who changes nothing. */
 const { TcpEnd } = require('../net/tcpEnd')
 const { agentUuid } = require('../bots/bot')
 const { vecOf } = require('../server/plugins/lib/positions')
@@ -17,7 +17,7 @@ class Visitor {
   /**
    * @param {import('minecraft-protocol').Client} client
    * @param {import('./gallery').Gallery} gallery
-   * @param {(visitor: Visitor, command: string) => void} onCommand hears what they type after a slash
+   * @param {(visitor: Visitor, command: string) => void} onCommand called with what they type after a slash
    */
   constructor (client, gallery, onCommand) {
     this.gallery = gallery
@@ -27,7 +27,7 @@ class Visitor {
     this.stateId = 0
     this.end = new TcpEnd(client, action => action(), error => this.end.end(`What your game sent was not understood: ${error.message}`))
     this.end.on('chat_command', ({ command }) => onCommand(this, command))
-    this.end.on('chat_message', () => this.system('Nobody hears you here: who visits a belief is not in it.'))
+    this.end.on('chat_message', () => this.system('Nobody hears you here: visitors of a belief are not in it.'))
     this.end.on('block_place', ({ location, sequence }) => this.use(vecOf(location), sequence))
     this.end.on('block_dig', ({ location, sequence }) => this.setRight(vecOf(location), sequence))
     this.end.on('window_click', () => this.fill())
@@ -42,7 +42,7 @@ class Visitor {
     this.end.write('system_chat', { content: this.gallery.serv._createNetworkEncodedChatComponent(text), isActionBar: false })
   }
 
-  /** Put them at a place of the server's world, and shows them what is there. */
+  /** Move the visitor to a position of the server's world, and show them what is there. */
   enter (exhibit, { x, y, z }) {
     const { end, gallery } = this
     this.exhibit = exhibit
@@ -73,8 +73,9 @@ class Visitor {
   }
 
   /**
-   * @param {object} changes as `show` of the channel has them, but for `signs`: positions
-   * @param {Set<string>} before who was there until now
+   * Send changes of the exhibit to the visitor's client.
+   * @param {object} changes as in the channel's `show`, except `signs`: positions
+   * @param {Set<string>} before agents that were shown until now
    */
   tell ({ blocks, containers, signs, agents }, before) {
     const { end, exhibit, gallery } = this
@@ -94,7 +95,7 @@ class Visitor {
     this.end.write('entity_equipment', wearing(pose, number, this.gallery.serv))
   }
 
-  /** They use a block: containers open. */
+  /** Handle the use of a block: containers open. */
   use (location, sequence) {
     this.setRight(location, sequence)
     const place = this.exhibit.toOwn(location)
@@ -107,7 +108,7 @@ class Visitor {
     this.fill()
   }
 
-  /** Show what is in what they look into; what they moved there is undone. */
+  /** Send the contents of the open window; items that the visitor moved go back. */
   fill () {
     if (this.window === null) return
     const found = inside(this.exhibit, this.window.place, this.gallery.states, this.gallery.serv)
@@ -120,7 +121,7 @@ class Visitor {
     this.end.write('window_items', { windowId: this.window.id, stateId: this.stateId, items: found.items, carriedItem: NOTHING })
   }
 
-  /** What their game may show after they tried to change a block is not so. */
+  /** Resend a block and the inventory after the visitor tried to change them. */
   setRight (location, sequence) {
     const { end, exhibit } = this
     end.write('acknowledge_player_digging', { sequenceId: sequence ?? 0 })

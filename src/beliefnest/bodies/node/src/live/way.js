@@ -1,21 +1,25 @@
 'use strict'
-/** Whether somebody can have come from one place to another between two packets of their client, which may say anything. */
+/**
+ * Plausibility of movements: whether a player can have moved from one position to another between two packets. A
+ * client may send anything.
+ */
 const { boxesAt, enters } = require('../../../../programs/skills/lib/sight')
 
-// Blocks; as in the game's own server, nobody is so fast.
+// Largest distance in blocks; as in the game's own server, no player is faster.
 const FARTHEST = 10
-// What is lower is stepped upon, and who crawls fits beneath what is higher.
+// Players step on lower obstacles, and crawl below higher ones.
 const KNEES = 0.3
 
 /**
- * @param {(x: number, y: number, z: number) => number[][]} shapesAt boxes of a block, from 0 to 1
- * @param {{x: number, y: number, z: number}} from where their feet were
- * @param {{x: number, y: number, z: number}} to where they say that their feet are
+ * Return true if a player can have moved straight from one position to another.
+ * @param {(x: number, y: number, z: number) => number[][]} shapesAt returns the boxes of a block, from 0 to 1
+ * @param {{x: number, y: number, z: number}} from old position of the feet
+ * @param {{x: number, y: number, z: number}} to new position of the feet
  */
 function canGo (shapesAt, from, to) {
   const [begin, end] = [from, to].map(({ x, y, z }) => [x, y + KNEES, z])
   if (Math.hypot(...begin.map((value, axis) => end[axis] - value)) > FARTHEST) return false
-  // Who is within a box, as when sand falls on them, may leave it.
+  // A player inside a box, for instance after sand has fallen on them, may leave it.
   return !boxesBetween(shapesAt, begin, end).some(box => !holds(box, begin) && enters(begin, end, box))
 }
 

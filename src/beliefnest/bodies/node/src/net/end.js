@@ -1,5 +1,5 @@
 'use strict'
-/** What both sorts of ends of a connection are, in memory and over TCP. */
+/** Base of both kinds of connection ends, in memory and over TCP. */
 const { EventEmitter } = require('node:events')
 
 class End extends EventEmitter {
@@ -17,8 +17,8 @@ class End extends EventEmitter {
 }
 
 /**
- * Hand a packet to those who listen for it at a server's end; they may be async.
- * @param {(error: Error) => void} report hears what such a one throws later
+ * Hand a packet to the listeners at a server's end; they may be async.
+ * @param {(error: Error) => void} report called with errors that a listener throws later
  */
 function handOver (end, name, params, report) {
   for (const listener of end.listeners(name)) {

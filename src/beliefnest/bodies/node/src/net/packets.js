@@ -1,14 +1,12 @@
 'use strict'
 /**
- * Where Minecraft 1.20.4's play packets carry places and names: the one table behind the
- * translation between the server's world and a region's own coordinates. Relative
- * positions (rel_entity_move, offsets of an explosion, block entities of a chunk) are the
- * same on both sides and are not listed.
+ * Table of the positions and names in Minecraft 1.20.4's play packets. The translation between the server's world and
+ * a region's own coordinates uses only this table. Relative positions (rel_entity_move, offsets of an explosion, block
+ * entities of a chunk) are the same on both sides and are not listed.
  *
- * Kinds: `point` x, y, z as numbers in the packet (or in the object named by `field`);
- * `block` the same for integers; `fixed` eighths of a block; `chunk` chunk numbers under the
- * two names given; `player` a player's name; `text` a chat component; `vec` is a point that
- * may be absent.
+ * Kinds: `point` is x, y, z as numbers in the packet (or in the object named by `field`); `block` the same for
+ * integers; `fixed` eighths of a block; `chunk` chunk numbers under the two names given; `player` a player's name;
+ * `text` a chat component; `vec` is a point that may be absent.
  */
 const point = { kind: 'point' }
 const block = { kind: 'block', field: 'location' }

@@ -1,12 +1,12 @@
 'use strict'
-/** The server's end of a connection over TCP, as `serv.join` takes it (see transport.js). */
+/** Server's end of a TCP connection, in the form that `serv.join` takes (see transport.js). */
 const { End, handOver } = require('./end')
 
 class TcpEnd extends End {
   /**
-   * @param {import('minecraft-protocol').Client} client that has reached the `play` state
+   * @param {import('minecraft-protocol').Client} client client that has reached the `play` state
    * @param {(action: () => any) => any} inside runs an action in the region of the player
-   * @param {(error: Error) => void} report hears what a packet's handlers throw
+   * @param {(error: Error) => void} report called with errors of a packet's handlers
    */
   constructor (client, inside, report) {
     super(client.username, client.uuid)
@@ -41,11 +41,11 @@ class TcpEnd extends End {
     if (!this.client.ended && !this.isReleased) this.client.end(reason)
   }
 
-  /** End, and leaves the client connected for another end. @returns {import('minecraft-protocol').Client} */
+  /** End this end, but keep the client connected for another one. @returns {import('minecraft-protocol').Client} */
   release () {
     for (const [event, listener] of Object.entries(this.heard)) this.client.off(event, listener)
     this.isReleased = true
-    // Until somebody else listens; an error that nobody hears would end the process.
+    // Until another end listens; Node ends the process on an error that has no listener.
     this.client.on('error', () => {})
     this.emit('end', 'released')
     return this.client

@@ -1,14 +1,14 @@
 'use strict'
-/** Translates packets between the server's world and a region's scenario coordinates. */
+/** Translation of packets between the server's world and a region's scenario coordinates. */
 const { toStep } = require('../steps')
 const { TO_CLIENT, TO_SERVER } = require('./packets')
 
-// block_dig's later statuses (drop, release, swap) carry a meaningless location of zeros.
+// The later statuses of block_dig (drop, release, swap) carry a meaningless location of zeros.
 const LAST_DIG_STATUS_WITH_PLACE = 2
 const FIXED_POINT = 8
 const CHUNK_WIDTH = 16
 
-/** A change of coordinates: whole chunks along x and z, and a renaming of players. */
+/** Change of coordinates: whole chunks along x and z, and a renaming of players. */
 class Shift {
   constructor (dx, dz, rename) {
     this.dx = dx
@@ -42,7 +42,7 @@ class Shift {
 
 const same = value => value
 
-/** One function per kind of packets.js: (shift, value, entry, packet) -> new value. */
+/** Function of each kind in packets.js: (shift, value, entry, packet) -> new value. */
 const KINDS = {
   point: (shift, place) => shift.coordinates(place, 1, toStep),
   block: (shift, place) => shift.coordinates(place, 1, same),
@@ -62,10 +62,10 @@ const KINDS = {
   words: (shift, words) => words.split(' ').map(word => shift.rename(word)).join(' ')
 }
 
-// A teleport's coordinate is a distance, not a place, where its flag says so.
+// Shift only absolute coordinates; the flags of a teleport say which are relative distances.
 function shiftAbsolute (shift, packet) {
   const moved = shift.coordinates(packet, 1, toStep)
-  // Since 1.21.2 flags are told by name.
+  // Since 1.21.2 flags are named fields.
   const isFar = (bit, name) => typeof packet.flags === 'object' ? packet.flags[name] : packet.flags & bit
   if (isFar(1, 'x')) moved.x = packet.x
   if (isFar(4, 'z')) moved.z = packet.z
@@ -87,9 +87,8 @@ function apply (shift, entries, packet) {
 
 class Translator {
   /**
-   * @param {{x: number, z: number}} origin where scenario (0, y, 0) lies in the server's
-   *   world; multiples of 16
-   * @param {Map<string, string>} [agentOf] the agent's name of each of the server's names
+   * @param {{x: number, z: number}} origin server position of scenario (0, y, 0); multiples of 16
+   * @param {Map<string, string>} [agentOf] agent's name by the server's name of the player
    */
   constructor (origin, agentOf = new Map()) {
     const nameOf = new Map([...agentOf].map(([server, agent]) => [agent, server]))
@@ -97,13 +96,13 @@ class Translator {
     this.serverward = new Shift(origin.x, origin.z, renamer(nameOf))
   }
 
-  /** @returns {object} a copy of the packet for the bot */
+  /** Return a translated copy of a packet for the bot. @returns {object} */
   toClient (name, packet) {
     const entries = TO_CLIENT[name]
     return entries === undefined ? { ...packet } : apply(this.clientward, entries, packet)
   }
 
-  /** @returns {object} a copy of the packet for the server */
+  /** Return a translated copy of a packet for the server. @returns {object} */
   toServer (name, packet) {
     const entries = TO_SERVER[name]
     return entries === undefined ? { ...packet } : apply(this.serverward, entries, packet)

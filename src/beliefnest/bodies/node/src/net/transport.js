@@ -1,21 +1,20 @@
 'use strict'
 /**
- * Minecraft connections inside one process: packets are handed over as objects, in order,
- * without sockets, compression or encryption. Both ends look like node-minecraft-protocol
- * clients that have reached the `play` state.
+ * Minecraft connections inside one process: packets are handed over as objects, in order, without sockets, compression
+ * or encryption. Both ends look like node-minecraft-protocol clients that have reached the `play` state.
  */
 const { End, handOver } = require('./end')
 
-// What a bot may send before the other side has taken any of it: some loops of Mineflayer that wait for a window
-// which is closed meanwhile would go on without letting time pass.
+// Limit of packets that a bot may send before the other side has received any. Without it some loops of Mineflayer,
+// which wait for a window that was closed meanwhile, would never let time pass.
 const MOST_AT_ONCE = 5000
 
-// Packets that say where a bot is.
+// Packets with a bot's position.
 const MOVES = ['position', 'position_look']
 
 class MemoryEnd extends End {
   /**
-   * @param {object} link what both ends share: `version`, `supportFeature`, `report(error)`
+   * @param {object} link properties that both ends share: `version`, `supportFeature`, `report(error)`
    * @param {string} username
    * @param {string} uuid
    */
@@ -36,8 +35,8 @@ class MemoryEnd extends End {
   }
 
   /**
-   * Send a packet; the other end gets it after the code that runs now.
-   * @throws {Error} if a bot sends without end
+   * Send a packet. The other end receives it after the current code has finished.
+   * @throws {Error} if a bot sends endlessly
    */
   write (name, params) {
     if (this.ended) return
@@ -49,7 +48,7 @@ class MemoryEnd extends End {
     for (const [name, params] of packets) this.write(name, params)
   }
 
-  /** End both sides at once. */
+  /** End both ends at once. */
   end (reason) {
     if (this.ended) return
     this.ended = true
@@ -57,7 +56,7 @@ class MemoryEnd extends End {
     this.emit('end', reason)
   }
 
-  /** Plugin channels carry nothing a scenario knows of. */
+  /** Ignore plugin channels: scenarios do not use them. */
   registerChannel () {}
   unregisterChannel () {}
   writeChannel () {}
@@ -67,7 +66,7 @@ class ClientEnd extends MemoryEnd {
   most = MOST_AT_ONCE
   isCut = false
 
-  /** Let nothing through any more but where the bot is, which falls as long as it is in the air. */
+  /** Let nothing through any more except the bot's position, because it still falls. */
   cut () {
     this.isCut = true
   }
@@ -77,7 +76,9 @@ class ClientEnd extends MemoryEnd {
     else if (MOVES.includes(name)) super.write('position', params)
   }
 
-  /** Let an action of the host send on, however much the bot has sent: what stops a bot must reach the server. */
+  /**
+   * Let an action of the host send packets beyond the bot's limit: the packets that stop a bot must reach the server.
+   */
   beyond (action) {
     this.most = Infinity
     try {
@@ -88,10 +89,10 @@ class ClientEnd extends MemoryEnd {
   }
 
   checkRoom (name) {
-    if (this.peer.expected >= this.most) throw new Error(`${MOST_AT_ONCE} packets were sent at once, the last of them ${name}; the bot waits for what does not happen`)
+    if (this.peer.expected >= this.most) throw new Error(`${MOST_AT_ONCE} packets were sent at once, the last of them ${name}; the bot waits for something that does not happen`)
   }
 
-  /** What a player types: a command or words. */
+  /** Send a line that a player types: a command or a chat message. */
   chat (message) {
     if (message.startsWith('/')) this.write('chat_command', { command: message.slice(1) })
     else this.write('chat_message', { message })
@@ -115,12 +116,12 @@ class ServerEnd extends MemoryEnd {
   }
 }
 
-/** A queue for the packets of one region, so that they arrive in the order they were sent. */
+/** Queue of the packets of one region, which keeps them in order. */
 class Mail {
   /**
-   * @param {(owner: string, action: function(): void) => void} run runs what a packet of an agent's connection,
-   *   in either direction, leads to, and hears what that throws
-   * @param {(error: Error, owner: string) => void} report hears what such code throws later
+   * @param {(owner: string, action: function(): void) => void} run runs the handling of a packet as code of the agent
+   *   whose connection it is, in either direction, and catches its errors
+   * @param {(error: Error, owner: string) => void} report called with errors that such code throws later
    */
   constructor (run, report) {
     this.run = run
@@ -135,11 +136,11 @@ class Mail {
     end.expected++
     if (this.scheduled) return
     this.scheduled = true
-    // Not sooner: a sender may first write and then, some promises later, listen for the answer.
+    // Do not deliver earlier: a sender may first write and then, some promises later, listen for the answer.
     setImmediate(() => this.handOver())
   }
 
-  /** Drop what was sent and has not arrived. */
+  /** Drop packets that have not arrived yet. */
   clear () {
     this.waiting.length = 0
     this.scheduled = false
@@ -157,14 +158,15 @@ class Mail {
 }
 
 /**
+ * Connect a player to the server in memory.
  * @param {object} options
- * @param {import('prismarine-registry').Registry} options.registry of the Minecraft version
- * @param {Mail} options.mail of the region
- * @param {import('./translate').Translator} options.translator between the two sides
- * @param {string} options.username as the server knows the player
- * @param {string} options.agent as the client knows itself
+ * @param {import('prismarine-registry').Registry} options.registry registry of the Minecraft version
+ * @param {Mail} options.mail queue of the region
+ * @param {import('./translate').Translator} options.translator translation between the two sides
+ * @param {string} options.username name of the player on the server
+ * @param {string} options.agent name of the player on the client
  * @param {string} options.uuid
- * @param {(content: object) => object} options.readChat chat component from its NBT form
+ * @param {(content: object) => object} options.readChat returns a chat component from its NBT form
  * @returns {{client: ClientEnd, server: ServerEnd}}
  */
 function connect ({ registry, mail, translator, username, agent, uuid, readChat }) {

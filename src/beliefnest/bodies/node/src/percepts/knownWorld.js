@@ -1,7 +1,7 @@
 'use strict'
 /**
- * The blocks that an agent knows, as a bot's `world` answers for them: what is not known is null. Beyond the box lie walls
- * and air that never change; for them the bot's own world answers.
+ * World of the blocks that an agent knows, with the interface of a bot's `world`; unknown blocks are null. Outside the
+ * box there are only walls and air, which never change, and the bot's own world answers for them.
  */
 const { Vec3 } = require('vec3')
 const { maker } = require('../blocks')
@@ -13,7 +13,7 @@ class KnownWorld {
    * @param {object} options
    * @param {import('prismarine-registry').Registry} options.registry
    * @param {import('../regions/box').Box} options.box
-   * @param {Int32Array} options.states of the box in its array order; -1 is unknown
+   * @param {Int32Array} options.states block states of the box in its array order; -1 is unknown
    * @param {object} options.beyond the bot's own world
    */
   constructor ({ registry, box, states, beyond }) {
@@ -23,16 +23,16 @@ class KnownWorld {
     this.blocks = new Array(box.size).fill(null)
     this.states = states
     this.texts = new Map()
-    // It looks along rays through `getBlock`.
+    // The raycast function follows rays through this world's `getBlock`.
     this.raycast = beyond.raycast
   }
 
-  /** Whether nothing is known of what is there. */
+  /** Return true if the block at a position is unknown. */
   lacks (x, y, z) {
     return this.box.contains(x, y, z) && this.states[this.box.index(x, y, z)] < 0
   }
 
-  /** @returns {?object} the block at whole numbers */
+  /** Return the block at integer coordinates. @returns {?object} */
   blockIn (x, y, z) {
     if (!this.box.contains(x, y, z)) return this.beyond.getBlock(new Vec3(x, y, z))
     const index = this.box.index(x, y, z)
@@ -44,23 +44,26 @@ class KnownWorld {
     return this.blockIn(Math.floor(x), Math.floor(y), Math.floor(z))
   }
 
-  /** A block of a state, wherever it stands. */
+  /** Return a block of a state at a position. */
   made (state, x, y, z) {
     const block = this.make(state)
     block.position = new Vec3(x, y, z)
     const text = this.texts.get(this.box.index(x, y, z))
-    // As blocks of the game say it that have more to them than their state.
+    // Add the methods that the game's blocks have for signs.
     return text === undefined ? block : Object.assign(block, { entity: {}, getSignText: () => [text, ''] })
   }
 
-  /** Learn all that is written on signs, as [x, y, z, text]. */
+  /** Set the texts of all signs, as [x, y, z, text]. */
   readSigns (signs) {
     for (const index of this.texts.keys()) this.blocks[index] = null
     this.texts = new Map(signs.map(([x, y, z, text]) => [this.box.index(x, y, z), text]))
     for (const index of this.texts.keys()) this.blocks[index] = null
   }
 
-  /** Learn what is in a place, -1 for nothing; @returns {{before: ?object, after: ?object}} blocks */
+  /**
+   * Set the state at a position; -1 for unknown.
+   * @returns {{before: ?object, after: ?object}} blocks
+   */
   learn (x, y, z, state) {
     const before = this.blockIn(x, y, z)
     const index = this.box.index(x, y, z)
@@ -69,7 +72,7 @@ class KnownWorld {
     return { before, after: this.blockIn(x, y, z) }
   }
 
-  /** @returns {Vec3[]} places of known blocks that match, nearest first */
+  /** Return the positions of known blocks that match, nearest first. @returns {Vec3[]} */
   find (matches, point, maxDistance, count) {
     const { low, high } = this.box
     const reach = (axis, coordinate) => [Math.max(low[axis], Math.floor(coordinate - maxDistance)), Math.min(high[axis], Math.ceil(coordinate + maxDistance))]

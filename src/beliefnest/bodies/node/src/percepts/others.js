@@ -1,20 +1,20 @@
 'use strict'
 /**
- * The agents and dropped items that an agent knows of, as entities of a bot. Their numbers tell nothing of what else there
- * is: agents are numbered by their names, items in the order in which they were seen first.
+ * Other agents and dropped items that an agent knows of, as entities of a bot. Their ids reveal nothing about other
+ * entities: agents are numbered by their names, items in the order in which the agent first saw them.
  */
 const { EventEmitter } = require('node:events')
 const { Vec3 } = require('vec3')
 const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
 
 const FIRST_ITEM = 1000
-/** Mineflayer's order of what a player wears and holds. */
+/** Mineflayer's order of equipment slots. */
 const SLOTS = ['main_hand', 'off_hand', 'feet', 'legs', 'chest', 'head']
 
 class Others {
   /**
    * @param {object} bot
-   * @param {string[]} names of all agents that can be spoken of
+   * @param {string[]} names names of all agents that programs may mention
    */
   constructor (bot, names) {
     this.bot = bot
@@ -27,7 +27,7 @@ class Others {
     this.body = null
   }
 
-  /** The agent's own body, under its number here. */
+  /** Return the entity of the agent's own body, under its id here. */
   get self () {
     if (this.body !== this.bot.entity) {
       this.body = this.bot.entity
@@ -36,13 +36,13 @@ class Others {
     return this.own
   }
 
-  /** @returns {object} entities by number, the agent's own among them */
+  /** Return all entities by id, the agent's own included. @returns {object} */
   get entities () {
     const all = [this.self, ...this.byName.values(), ...this.items.values()]
     return Object.fromEntries(all.map(entity => [entity.id, entity]))
   }
 
-  /** @returns {object} all agents by name; the entity of who is not seen is null */
+  /** Return all agents by name; the entity of an unseen agent is null. @returns {object} */
   get players () {
     return Object.fromEntries(this.names.map(username => [username, { username, entity: this.entityOf(username), ping: 0, gamemode: 0 }]))
   }
@@ -55,7 +55,7 @@ class Others {
     return this.names.indexOf(name) + 1
   }
 
-  /** @returns {object} the bot's own entity for one of these */
+  /** Return the bot's own entity that one of these entities stands for. @returns {object} */
   realOf (entity) {
     if (entity === this.own) return this.bot.entity
     const id = entity.username === undefined ? entity.number : this.bot.players[entity.username]?.entity?.id
@@ -63,7 +63,10 @@ class Others {
     return Object.create(entity, { id: { value: id } })
   }
 
-  /** Learn how somebody is seen now; null: not any more. @returns {[string, object][]} events for the program */
+  /**
+   * Update how an agent is seen now; null: not seen any more.
+   * @returns {[string, object][]} events for the program
+   */
   see (name, pose) {
     const known = this.byName.get(name)
     if (pose === null) {
@@ -78,7 +81,10 @@ class Others {
     return [[known === undefined ? 'entitySpawn' : 'entityMoved', entity]]
   }
 
-  /** Learn what lies where; null: not any more. @returns {[string, object][]} events for the program */
+  /**
+   * Update an item that lies somewhere; null: not seen any more.
+   * @returns {[string, object][]} events for the program
+   */
   find (number, item) {
     const known = this.items.get(number)
     if (item === null) {

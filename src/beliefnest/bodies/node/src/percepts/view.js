@@ -1,8 +1,9 @@
 'use strict'
 /**
- * A bot as far as its agent perceives or remembers: what a program and its skills hold in place of the bot, if the
- * program is to read percepts alone. Its body is the bot's: it acts there, bumps into what is there, and has what the bot has.
- * Whatever tells of the world around it answers from what the agent knows, which is told after each tick (`update`).
+ * View of a bot, limited to the perceptions and memories of its agent. A program that reads only percepts, and its
+ * skills, get the view instead of the bot. The body is the bot's own: it acts in the world, collides with it and holds
+ * the bot's items. All methods that read the surrounding world answer from the agent's knowledge, which `update`
+ * changes after each tick.
  */
 const { EventEmitter } = require('node:events')
 const rayTrace = require('mineflayer/lib/plugins/ray_trace')
@@ -10,7 +11,7 @@ const { KnownWorld } = require('./knownWorld')
 const { Others } = require('./others')
 const { Walker } = require('./walker')
 
-/** Events that tell of the agent's own body or of what it does; of all others it hears what it perceives. */
+/** Events about the agent's own body or acts, which the bot emits. All other events come from percepts. */
 const OF_THE_BODY = new Set([
   'health', 'breath', 'death', 'spawn', 'respawn', 'rain', 'time', 'move', 'forcedMove', 'physicsTick', 'physicTick', 'sleep', 'wake',
   'experience', 'diggingCompleted', 'diggingAborted', 'windowOpen', 'windowClose', 'heldItemChanged', 'usedFirework'
@@ -24,7 +25,7 @@ class View {
    * @param {object} options.bot
    * @param {import('../time/clock').Clock} options.clock
    * @param {import('../regions/box').Box} options.box
-   * @param {string[]} options.names of the agents that can be spoken of
+   * @param {string[]} options.names names of the agents that programs may mention
    * @param {object} options.percepts PERCEPTS of the channel, with all blocks as `states`
    */
   constructor ({ bot, clock, box, names, percepts: { states, ...changes } }) {
@@ -41,11 +42,11 @@ class View {
     bot.on('playerCollect', this.onCollect)
     this.onSignOpen = ({ position }) => this.emitter.emit('signOpen', this.known.getBlock(position))
     bot.on('signOpen', this.onSignOpen)
-    // What was heard before the program could listen: since it was cut, if it goes on.
+    // Speech that the agent heard before the program could listen: since the interruption, if the program is resumed.
     this.backlog = this.learn(changes).filter(([event]) => HEARING.has(event))
   }
 
-  /** The bot that a program gets. */
+  /** Return the bot object for the program. */
   made () {
     const { body, known, others } = this
     const view = Object.create(body, {
@@ -54,7 +55,7 @@ class View {
       entities: { get: () => others.entities },
       players: { get: () => others.players },
       player: { get: () => others.players[body.username] },
-      // Assigned by what is injected into it, where the bot has properties that cannot be.
+      // Plugins assign these properties; on the bot they are read-only.
       pathfinder: { value: null, writable: true }
     })
     rayTrace(view)
@@ -95,14 +96,14 @@ class View {
     }
   }
 
-  /** Resolve when what came of this tick has been perceived. */
+  /** Resolve when the percepts of this tick have arrived. */
   perceived () {
     return new Promise(resolve => { this.waiting.push(resolve) })
   }
 
-  /** Take PERCEPTS, what has changed since the last; null: nothing has. */
+  /** Apply PERCEPTS, the changes since the last ones; null if nothing has changed. */
   update (changes) {
-    // A program listens only once it has come as far as that.
+    // Keep speech in the backlog until the program has a listener.
     const listens = [...HEARING].some(event => this.emitter.listenerCount(event) > 0)
     const before = listens ? this.backlog.splice(0) : []
     const told = [...before, ...(changes === null ? [] : this.learn(changes))]
@@ -111,7 +112,7 @@ class View {
     for (const resolve of this.waiting.splice(0)) resolve()
   }
 
-  /** @returns {Array[]} events that tell of what was learnt, each a name with values */
+  /** Apply changes. Return the events that announce them, each a name with values. @returns {Array[]} */
   learn ({ blocks = [], signs = null, agents = {}, items = {}, heard = [] }) {
     const told = []
     if (signs !== null) this.known.readSigns(signs)
@@ -123,7 +124,7 @@ class View {
     for (const [name, pose] of Object.entries(agents)) told.push(...this.others.see(name, pose))
     const taken = this.collected.map(({ name, number }) => [this.others.entityOf(name), this.others.items.get(number)])
     for (const [number, item] of Object.entries(items)) told.push(...this.others.find(Number(number), item))
-    // Who is seen taking up what was seen to lie there.
+    // Only if the agent sees the collector and has seen the item lie there.
     told.push(...taken.filter(pair => pair.every(Boolean)).map(pair => ['playerCollect', ...pair]))
     return [...told, ...heard.flatMap(utterance => this.hearing(utterance))]
   }
@@ -134,7 +135,7 @@ class View {
     return [['whisper', speaker, text], ['messagestr', `${speaker} whispers to you: ${text}`]]
   }
 
-  /** Let go of the bot; @returns {object} it */
+  /** Release the bot and return it. @returns {object} */
   close () {
     for (const { event, listener } of this.forwarded.splice(0)) this.body.removeListener(event, listener)
     this.body.removeListener('playerCollect', this.onCollect)
@@ -144,7 +145,7 @@ class View {
   }
 }
 
-/** What looks around. */
+/** Return the methods that look at the world. */
 function looking (view, known) {
   const findBlocks = ({ matching, point, maxDistance = 16, count = 1 }) => {
     const types = [matching].flat()
@@ -172,7 +173,7 @@ function looking (view, known) {
   }
 }
 
-/** What is done to others, under the numbers that the game has for them. */
+/** Return the methods that act on others, translated to the game's entity ids. */
 function touching (body, others) {
   const told = name => (entity, ...rest) => body[name](others.realOf(entity), ...rest)
   const opened = name => (target, ...rest) => body[name](target.stateId === undefined ? others.realOf(target) : target, ...rest)

@@ -1,14 +1,14 @@
 'use strict'
 /**
- * A pathfinder that plans over what an agent knows. What it does not know is free to whoever goes through it, and holds whoever
- * stands on it; the body still bumps into what is there, and what it was stuck at is gone round from then on.
+ * Pathfinder that plans over an agent's knowledge. It assumes that unknown blocks are passable to walk through and
+ * solid to stand on. The body still collides with the real blocks; where it got stuck, later plans go around.
  */
 const { pathfinder } = require('mineflayer-pathfinder')
 const { chargePathfinder } = require('../bots/pathing')
 
 const PLANNED = 'planned blockUpdate'
 const STUCK = 'stuck'
-/** No block of any kind, to the sets of kinds that a search asks. */
+/** Block type that is in none of the sets of types that a search uses. */
 const NO_KIND = 0
 const JUST_ABOVE = 0.001
 
@@ -17,7 +17,7 @@ const isSolid = block => block.boundingBox === 'block'
 
 class Walker {
   /**
-   * Give a view of a bot its pathfinder.
+   * Add a pathfinder to the view of a bot.
    * @param {object} view see view.js
    * @param {import('./knownWorld').KnownWorld} known
    * @param {import('../time/clock').Clock} clock
@@ -39,14 +39,14 @@ class Walker {
     view.on('path_reset', reason => this.feel(reason))
   }
 
-  /** The height on which the agent stands, or stood last. */
+  /** Return the height of the ground on which the agent stands or last stood. */
   get ground () {
     const { onGround, position } = this.view.entity
     if (onGround || this.level === null) this.level = Math.floor(position.y + JUST_ABOVE)
     return this.level
   }
 
-  /** A block as steps are tried out on it before they are made. */
+  /** Return the block that physics assumes when the pathfinder simulates steps in advance. */
   trodden (place) {
     const [x, y, z] = [place.x, place.y, place.z].map(Math.floor)
     if (!this.known.lacks(x, y, z)) return this.known.blockIn(x, y, z)
@@ -55,8 +55,8 @@ class Walker {
   }
 
   /**
-   * What a search finds in a place nothing is known of, or where the body was stuck; undefined elsewhere.
-   * @param {boolean} isBelow whether it is asked for as what lies below somebody's feet
+   * Return the assumed block for a search at an unknown position, or where the body got stuck; undefined elsewhere.
+   * @param {boolean} isBelow true if the search asks for the block below the feet
    */
   unknownAt (x, y, z, isBelow) {
     const isFelt = this.felt.has([x, y, z].join())
@@ -77,7 +77,7 @@ class Walker {
     }
   }
 
-  /** Let ways be looked for anew where what was learnt is not what they count on. */
+  /** Replan if new knowledge contradicts the assumptions of the current path. */
   learn (before, after) {
     if (after === null) return
     const { position } = after
@@ -85,7 +85,7 @@ class Walker {
     if (isSolid(after) !== position.y < this.ground) this.view.emit(PLANNED, { position, type: -1 }, after)
   }
 
-  // The place that was to be stepped to, and the one above it, which a head would be in.
+  // Remember the position of the next step as obstructed: the agent got stuck there.
   feel (reason) {
     if (reason !== STUCK || this.path.length === 0) return
     const [next] = this.path

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Files of places: Sponge schematics (`.schem`, versions 1 to 3, of WorldEdit and others) and the game's own
- * structure files (`.nbt`). Blocks are given as the texts that the file has for them: names and properties.
+ * Readers of files of places: Sponge schematics (`.schem`, versions 1 to 3, written by WorldEdit and others) and the
+ * game's own structure files (`.nbt`). Blocks are returned as the texts of the file: names and properties.
  */
 const zlib = require('node:zlib')
 const nbt = require('prismarine-nbt')
@@ -15,17 +15,18 @@ const SHORT = 0xffff
 const LONGEST_VARINT = 5
 
 /**
- * @param {Uint8Array} bytes of the file
- * @returns {Promise<{shape: number[], palette: string[], blocks: Uint8Array, containers: Array, signs: Array, special: Array}>}
- *   `blocks` are indices of the palette as Int32, x slowest, z fastest; `containers` [x, y, z, ITEMS], `signs`
- *   [x, y, z, text] of all block entities that hold items or words; `special` [x, y, z] where items have more to them
- *   than names; positions from the lowest corner
- * @throws {BadRequest} if it is no such file
+ * Read a place from the bytes of a file.
+ * @param {Uint8Array} bytes content of the file
+ * @returns {Promise<{shape: number[], palette: string[], blocks: Uint8Array, containers: Array, signs: Array, special:
+ *   Array}>} `blocks` are indices of the palette as Int32, x slowest, z fastest; `containers` [x, y, z, ITEMS] and
+ *   `signs` [x, y, z, text] list all block entities with items or texts; `special` [x, y, z] lists those whose items
+ *   have more than a name and count; positions count from the lowest corner
+ * @throws {BadRequest} if the file is neither
  */
 async function readPlace (bytes) {
   const data = dataOf(Buffer.from(bytes))
   const root = data.Schematic ?? data
-  if (root.Materials !== undefined) throw new BadRequest('it is a schematic of before Minecraft 1.13, which has numbers in place of names; save it anew as .schem')
+  if (root.Materials !== undefined) throw new BadRequest('it is a schematic from before Minecraft 1.13, with numbers instead of block names; save it again as .schem')
   const place = Array.isArray(root.size) ? structure(root) : sponge(root)
   const found = { containers: [], signs: [], special: [] }
   for (const { position, entity } of place.entities) readEntity(found, position, entity)
@@ -40,7 +41,7 @@ function dataOf (bytes) {
     return nbt.simplify(nbt.parseUncompressed(unpacked(bytes), 'big'))
   } catch (error) {
     if (error instanceof BadRequest) throw error
-    throw new BadRequest(`it is no file of the game's data: ${error.message}`)
+    throw new BadRequest(`it is not a file of the game's data format: ${error.message}`)
   }
 }
 
@@ -57,7 +58,7 @@ function unpacked (bytes) {
 function requireShape (shape) {
   const isWhole = shape.length === 3 && shape.every(length => Number.isInteger(length) && length > 0)
   const [size] = isWhole ? [shape[0] * shape[1] * shape[2]] : [NaN]
-  if (!(size <= MOST_BLOCKS)) throw new BadRequest(`its sides are ${shape.join(' x ')} blocks; give one of at most ${MOST_BLOCKS} blocks`)
+  if (!(size <= MOST_BLOCKS)) throw new BadRequest(`its sides are ${shape.join(' x ')} blocks; give a place of at most ${MOST_BLOCKS} blocks`)
   return size
 }
 

@@ -1,5 +1,5 @@
 'use strict'
-/** What the game's own data says of things held and words written, as files and `/data` give it, across its versions. */
+/** Readers of item and sign data in the game's own format, as files and `/data` give it, across versions. */
 
 const LINES = 4
 const FIRST_ARMOUR = 100
@@ -9,17 +9,20 @@ const WORN = { feet: 'feet', legs: 'legs', chest: 'chest', head: 'head', offhand
 
 const plainName = name => String(name).replace(/^minecraft:/, '')
 
-/** Whether a stack has more to it than name and count, as a name of its own or an enchantment. */
+/** Return true if a stack has only a name and a count; a custom name or an enchantment is more. */
 const isPlain = ({ tag, components }) => [tag, components].every(more => more === undefined || Object.keys(more).length === 0)
 
-/** @returns {{name: string, count: number, slot: number, isPlain: boolean}[]} stacks of a list of the game's data */
+/**
+ * Return the stacks of a list in the game's format.
+ * @returns {{name: string, count: number, slot: number, isPlain: boolean}[]}
+ */
 function stacksIn (list = []) {
   return list.map(stack => ({
     name: plainName(stack.id), count: stack.Count ?? stack.count ?? 1, slot: stack.Slot, isPlain: isPlain(stack)
   }))
 }
 
-/** @returns {object} ITEMS */
+/** Return ITEMS: the sum of the stacks by name. @returns {object} */
 function totals (stacks) {
   const items = {}
   for (const { name, count } of stacks) items[name] = (items[name] ?? 0) + count
@@ -27,9 +30,9 @@ function totals (stacks) {
 }
 
 /**
- * What somebody has.
- * @param {object} data of an entity: `Inventory`, since 1.21.5 `equipment` besides
- * @param {number} held slot of the hotbar
+ * Return the inventory and equipment of a player.
+ * @param {object} data data of the entity: `Inventory`, since 1.21.5 also `equipment`
+ * @param {number} held selected slot of the hotbar
  * @returns {{inventory: object, equipment: object}}
  */
 function possessionsIn ({ Inventory: own = [], equipment: worn = {} }, held) {
@@ -49,7 +52,7 @@ function possessionsIn ({ Inventory: own = [], equipment: worn = {} }, held) {
   return { inventory: totals(stacks), equipment }
 }
 
-/** The text of a component: a text, a list of components, or one with more of them after it. */
+/** Return the text of a chat component: a text, a list of components, or one followed by more in `extra`. */
 function textOf (component) {
   if (component === undefined || component === null) return ''
   if (Array.isArray(component)) return component.map(textOf).join('')
@@ -57,7 +60,9 @@ function textOf (component) {
   return `${component.text ?? component[''] ?? ''}${textOf(component.extra)}`
 }
 
-/** A line of a sign. Until 1.21.4 it is a component as JSON; since then a plain text is written as it is. */
+/**
+ * Return the text of one line of a sign. Until 1.21.4 a line is a component as JSON; later versions store plain texts.
+ */
 function lineText (line) {
   if (typeof line !== 'string') return textOf(line)
   try {
@@ -69,7 +74,7 @@ function lineText (line) {
   }
 }
 
-/** @returns {string} what is written on the front of a sign, without empty lines at the end */
+/** Return the text on the front of a sign, without empty lines at the end. @returns {string} */
 function signTextIn (data) {
   const lines = data.front_text?.messages ?? Array.from({ length: LINES }, (_, index) => data[`Text${index + 1}`])
   return lines.map(lineText).join('\n').replace(/\n+$/, '')

@@ -1,12 +1,12 @@
 'use strict'
 /**
- * Where regions lie in the one world: chunk-aligned strips along x, far apart from one
- * another. A strip given back is used again.
+ * Allotment of the one world to regions: chunk-aligned strips along x, far apart from one another. Returned strips are
+ * used again.
  */
 const CHUNK = 16
-// Farther than any client loads or any server plugin looks.
+// Farther than any client loads chunks or any server plugin looks.
 const GAP_CHUNKS = 64
-// Minecraft's world ends at 30 million blocks.
+// The world of Minecraft ends at 30 million blocks.
 const LAST_CHUNK = 1800000
 
 class Allotment {
@@ -15,8 +15,9 @@ class Allotment {
   }
 
   /**
-   * @param {import('./box').Box} box in scenario coordinates
-   * @returns {{x: number, z: number}} where scenario (0, y, 0) comes to lie; multiples of 16
+   * Reserve a strip for a region.
+   * @param {import('./box').Box} box box in scenario coordinates
+   * @returns {{x: number, z: number}} server position of scenario (0, y, 0); multiples of 16
    */
   take (box) {
     const firstChunk = Math.floor((box.low[0] - 1) / CHUNK)

@@ -1,5 +1,5 @@
 'use strict'
-/** Puts agents into a region: a server-side player and the Mineflayer bot that is its mind. */
+/** Agents of a region: for each a player of the server and the Mineflayer bot that controls it. */
 const { connect } = require('../net/transport')
 const { BadRequest } = require('../channel/errors')
 const { orBadRequest } = require('./changes')
@@ -20,12 +20,12 @@ class Bodies {
   }
 
   /**
-   * Let agents into the active region, all at the same time; costs `INJECTION_MS`.
+   * Let agents join the active region, all at the same time. This takes `INJECTION_MS`.
    * @param {import('./region').Region} region
    * @param {object} agents AGENT by name
    */
   async add (region, agents) {
-    // Ticks begin on the tick, whenever somebody joined.
+    // Start ticks at full tick times, whenever an agent joined.
     this.clock.active.time -= INJECTION_MS
     const joining = inOrder(Object.entries(agents)).map(([agent, state]) => this.start(region, agent, state))
     await this.clock.advance(INJECTION_MS)
@@ -60,7 +60,7 @@ class Bodies {
   }
 
   /**
-   * Make agents of the active region as asked; null: not there.
+   * Set agents of the active region to the given states; null removes an agent.
    * @param {import('./region').Region} region
    * @param {object} agents AGENT or null by name
    */
@@ -78,12 +78,12 @@ class Bodies {
     for (const { bot, player, state } of changed) stand(bot, player, state)
   }
 
-  // Who acts first in a tick depends on who joined first, so that all join anew.
+  // Let all agents join anew, because the order of joining decides who acts first in a tick.
   async replace (region, agents) {
     const states = Object.fromEntries(
       [...region.bodies].map(([agent, { player }]) => [agent, agentState(region, player)]))
     for (const agent of Object.keys(states)) this.remove(region, agent)
-    // What they waited for does not concern anybody any more.
+    // Drop the old bots' timers.
     region.context.timers.clear()
     region.mail.clear()
     const wanted = Object.entries({ ...states, ...agents }).filter(([, state]) => state !== null)
@@ -91,9 +91,9 @@ class Bodies {
   }
 
   /**
-   * Put agents exactly where the channel says they are; those who stand stop gliding.
+   * Put agents exactly at the positions that the channel reports; standing agents stop gliding.
    * @param {import('./region').Region} region
-   * @param {Iterable<string>} [agents] names; by default everybody
+   * @param {Iterable<string>} [agents] names; all agents by default
    */
   async settle (region, agents = region.bodies.keys()) {
     const settling = Array.from(agents, agent => {
@@ -114,8 +114,8 @@ class Bodies {
   }
 
   /**
-   * Let an agent stand where it is, unless it is in the air and may take its time to come down.
-   * @returns {Promise<boolean>} true if it does
+   * Bring an agent to a stand, unless it is in the air and has time to land.
+   * @returns {Promise<boolean>} true if it stands
    */
   async stand (region, agent, hasTime) {
     if (hasTime && !region.bodies.get(agent).player.onGround) return false
@@ -124,9 +124,9 @@ class Bodies {
   }
 
   /**
-   * End what is under way with an agent, so that nothing of it needs to be told.
-   * @param {boolean} clean whether nothing that its bot was asked to do is still waited for; what is would go on
-   *   whenever time does, so that from now on nothing but the bot's fall reaches the server
+   * End the unfinished acts of an agent, so that snapshots need not contain them.
+   * @param {boolean} clean whether no call of the program is still pending. A pending call would continue later;
+   *   therefore the bot is then cut off, and only its fall still reaches the server
    */
   async rest (region, agent, clean) {
     const { bot, player } = region.bodies.get(agent)
@@ -137,7 +137,7 @@ class Bodies {
     if (!clean) bot._client.cut()
   }
 
-  /** End a run: makes all bots of the region anew if one was cut off from the server. */
+  /** End a run. If a bot was cut off from the server, replace all bots of the region. */
   async finish (region) {
     if (![...region.bodies.values()].some(({ bot }) => bot._client.isCut)) return
     const goesOn = this.serv.internalState(region)
@@ -146,7 +146,7 @@ class Bodies {
     await this.clock.advance(0)
   }
 
-  /** The part of internal state that is up to bots; see server/plugins/internalState.js. */
+  /** Register the bots' part of the internal state; see server/plugins/internalState.js. */
   keepSpeeds () {
     this.serv.keeps('speeds', {
       save: region => inOrder([...region.bodies]).filter(([, { player }]) => !player.onGround)
@@ -160,7 +160,7 @@ class Bodies {
     })
   }
 
-  /** Take an agent out of the active region. */
+  /** Remove an agent from the active region. */
   remove (region, agent) {
     const { bot, player } = region.bodies.get(agent)
     region.bodies.delete(agent)
@@ -175,7 +175,7 @@ function inOrder (entries) {
 }
 
 function requireInside (region, agent, position) {
-  // Whoever stands on the topmost blocks has its feet above them.
+  // An agent on the topmost blocks has its feet above them, outside the box.
   const [x, y, z] = position.map(Math.floor)
   if (region.box.contains(x, Math.min(y, region.box.high[1]), z)) return
   throw new BadRequest(`agent ${agent} at (${position.join(', ')}) is outside the box of region ${region.name}`)
@@ -186,7 +186,7 @@ function give (player, { inventory, equipment, health }) {
   player.updateHealth(health)
 }
 
-// A client answers being placed with "not on the ground".
+// Correct a client's own state: after being placed it assumes "not on the ground".
 function stand (bot, player, { on_ground: onGround }) {
   ground(bot, onGround)
   player.onGround = onGround

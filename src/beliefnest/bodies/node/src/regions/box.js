@@ -1,5 +1,5 @@
 'use strict'
-/** A box of blocks: two inclusive corners, dense arrays with x slowest and z fastest. */
+/** Box of blocks: two inclusive corners, dense arrays with x slowest and z fastest. */
 const { BadRequest } = require('../channel/errors')
 
 class Box {
@@ -33,16 +33,17 @@ class Box {
     }
   }
 
-  /** @returns {Box} larger by one block on every side */
+  /** Return a box that is larger by one block on every side. @returns {Box} */
   grown () {
     return new Box(this.low.map(value => value - 1), this.high.map(value => value + 1))
   }
 }
 
 /**
+ * Return block states from bytes of the channel.
  * @param {Uint8Array} bytes block states of a box as the channel sends them
- * @returns {Int32Array} in the box's array order
- * @throws {BadRequest} if they are not as many as the box has
+ * @returns {Int32Array} states in the box's array order
+ * @throws {BadRequest} if their number is not that of the box's blocks
  */
 function statesOf (bytes, box) {
   const needed = box.size * Int32Array.BYTES_PER_ELEMENT

@@ -1,10 +1,13 @@
 'use strict'
-/** Makes parts of the active region as asked, changing only what differs. */
+/** Changes of the active region to a given state. Only parts that differ are changed. */
 const { isDeepStrictEqual } = require('node:util')
 const { BadRequest } = require('../channel/errors')
 const { itemStates, signStates } = require('./facts')
 
-/** @param {Array} blocks [x, y, z, state] */
+/**
+ * Set blocks.
+ * @param {Array} blocks [x, y, z, state]
+ */
 function applyBlocks (serv, region, blocks) {
   for (const [x, y, z, state] of blocks) {
     if (!region.box.contains(x, y, z)) {
@@ -14,19 +17,25 @@ function applyBlocks (serv, region, blocks) {
   }
 }
 
-/** @param {Array} containers [x, y, z, items or null]; null says that none is left there */
+/**
+ * Set the contents of containers.
+ * @param {Array} containers [x, y, z, items or null]; null means that there must be no container
+ */
 function applyContainers (serv, region, containers) {
   for (const [x, y, z, items] of containers) {
     const position = region.toServer([x, y, z])
     if (items !== null) {
       orBadRequest(() => serv.containers.set(position, items), `contents at (${x}, ${y}, ${z}): `)
     } else if (serv.containers.get(position) !== null) {
-      throw new BadRequest(`a container stands at (${x}, ${y}, ${z}), which was to have none; change its block`)
+      throw new BadRequest(`a container stands at (${x}, ${y}, ${z}), but the request says that there is none; change its block`)
     }
   }
 }
 
-/** @param {Array} signs [x, y, z, text] of all that are written on */
+/**
+ * Set the texts of signs.
+ * @param {Array} signs [x, y, z, text] of all signs with a text
+ */
 function applySigns (serv, region, signs) {
   const wanted = new Map(signs.map(([x, y, z, text]) => [[x, y, z].join(), text]))
   for (const [x, y, z] of signStates(serv, region)) {
@@ -37,7 +46,10 @@ function applySigns (serv, region, signs) {
   }
 }
 
-/** @param {object} items by number; all that lie in the region */
+/**
+ * Set the dropped items.
+ * @param {object} items all dropped items of the region by number
+ */
 function applyItems (serv, region, items) {
   for (const [id, state] of Object.entries(itemStates(serv, region))) {
     if (!isDeepStrictEqual(state, items[id])) serv.removeItem(id)
@@ -46,12 +58,12 @@ function applyItems (serv, region, items) {
     if (serv.entities[id]?.item !== undefined) continue
     const data = serv.registry.itemsByName[name]
     if (data === undefined) throw new BadRequest(`there is no item called ${name}`)
-    if (serv.entities[id] !== undefined) throw new BadRequest(`item ${id} has the number of an agent's body; give it a higher one`)
+    if (serv.entities[id] !== undefined) throw new BadRequest(`item ${id} has the entity number of an agent; give the item a higher number`)
     serv.dropItem(region.toServer(position), new serv.Item(data.id, count), { delay: 0, id: Number(id) })
   }
 }
 
-/** Run what may refuse its arguments with a RangeError; `where` says which. */
+/** Run an action and turn a RangeError into a BadRequest; `where` names the place. */
 function orBadRequest (action, where = '') {
   try {
     return action()

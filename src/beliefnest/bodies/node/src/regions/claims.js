@@ -1,7 +1,10 @@
 'use strict'
-/** Claims on their way: a skill tells what it is about to say or to write claims, the server what was said or written. */
+/**
+ * Claims of utterances that are still on their way. A skill announces the claims of a text; the server later reports
+ * that the text was said or written.
+ */
 
-// What was never said, because its program ended first, is not kept for ever.
+// Largest number of announced texts; a program that ended early never says its text.
 const MOST_WAITING = 64
 
 class Claims {
@@ -12,9 +15,10 @@ class Claims {
   }
 
   /**
-   * @param {string} actor who is about to speak, or to write on the sign at `position`
+   * Announce an utterance with claims.
+   * @param {string} actor agent that will speak, or write on the sign at `position`
    * @param {{text: string, to?: string, position?: number[], claims: object[]}} utterance
-   * @throws {Error} if a claim speaks of a place outside the box, or of an unknown agent
+   * @throws {Error} if a claim mentions a position outside the box, or an unknown agent
    */
   expect (actor, { text, to, position, claims }) {
     claims.forEach(claim => this.check(claim))
@@ -22,7 +26,7 @@ class Claims {
     if (this.waiting.length > MOST_WAITING) this.waiting.shift()
   }
 
-  /** @returns {object} the event, with what it claims if it is an utterance or a writing that was expected */
+  /** Return the event, with claims if it is an announced utterance or writing. @returns {object} */
   completed (event) {
     const { kind, actor, detail: { text, to, position } } = event
     const where = kind === 'block_update' ? position.join() : undefined

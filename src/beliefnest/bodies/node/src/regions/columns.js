@@ -1,9 +1,12 @@
 'use strict'
-/** A region's blocks in the server's world, with the invisible walls around its box. */
+/** Blocks of a region in the server's world, with invisible walls around the box. */
 const { Vec3 } = require('vec3')
 const { CHUNK } = require('./allotment')
 
-/** @returns {[number, number][]} chunk numbers (server) of a region's columns, one beyond its walls */
+/**
+ * Return the chunk numbers (server) of a region's columns, with one more column on each side of its walls.
+ * @returns {[number, number][]}
+ */
 function columnsOf (box, origin) {
   const range = (low, high, offset) => {
     const first = Math.floor((low - 1 + offset) / CHUNK)
@@ -16,10 +19,10 @@ function columnsOf (box, origin) {
 }
 
 /**
- * Build a region's columns in the world.
+ * Build the columns of a region in the world.
  * @param {object} serv
  * @param {import('./region').Region} region
- * @param {Int32Array} states of the box, in its array order
+ * @param {Int32Array} states states of the box, in its array order
  */
 function buildColumns (serv, region, states) {
   const Chunk = require('prismarine-chunk')(serv.registry)
@@ -41,7 +44,7 @@ function setRaw (serv, x, y, z, state) {
   column.setBlockStateId({ x: x & 15, y, z: z & 15 }, state)
 }
 
-/** @returns {Int32Array} the block states of a region's box */
+/** Return the block states of a region's box. @returns {Int32Array} */
 function readStates (serv, region) {
   const { box, origin } = region
   const states = new Int32Array(box.size)
@@ -56,7 +59,7 @@ function dropColumns (serv, region) {
   for (const [x, z] of region.columns) serv.overworld.sync.unloadColumn(x, z)
 }
 
-/** @returns {number} the block state at a server position */
+/** Return the block state at a server position. @returns {number} */
 function stateAt (serv, position) {
   return serv.overworld.sync.getBlockStateId(new Vec3(position.x, position.y, position.z))
 }

@@ -1,10 +1,10 @@
 'use strict'
-/** What is the case in a region, as the channel says it: read from the server, never from bots. */
+/** Present state of a region in the form of the channel, read from the server and never from bots. */
 const { toStep } = require('../steps')
 
 const DECIMALS = 1e6
 
-/** @returns {number} rounded as the channel asks for; never -0, which msgpack would keep */
+/** Return a number rounded as the channel requires; never -0, which msgpack would keep. @returns {number} */
 function rounded (value) {
   return Math.round(value * DECIMALS) / DECIMALS + 0
 }
@@ -27,7 +27,7 @@ function sorted (items) {
   return Object.fromEntries(Object.entries(items).sort(([a], [b]) => (a < b ? -1 : 1)))
 }
 
-/** @returns {Array} [x, y, z, items or null] of containers that changed since the last call */
+/** Return [x, y, z, items or null] of the containers that changed since the last call. @returns {Array} */
 function changedContainers (serv, region) {
   return serv.containers.drainChanges(position => region.contains(position)).map(position => {
     const items = serv.containers.get(position)
@@ -35,24 +35,24 @@ function changedContainers (serv, region) {
   })
 }
 
-/** @returns {Array} [x, y, z, items] of all containers in the box */
+/** Return [x, y, z, items] of all containers in the box. @returns {Array} */
 function containerStates (serv, region) {
   return serv.containers.positions(position => region.contains(position)).map(position =>
     [...region.toScenario(position), sorted(serv.containers.get(position))])
 }
 
-/** @returns {Array} [x, y, z, text] of all signs in the box that are written on */
+/** Return [x, y, z, text] of all signs in the box with a text. @returns {Array} */
 function signStates (serv, region) {
   return serv.signs.positions(position => region.contains(position)).map(position =>
     [...region.toScenario(position), serv.signs.get(position)])
 }
 
-/** @returns {object} agents of the active region by name */
+/** Return the agents of the active region by name. @returns {object} */
 function agentStates (serv, region) {
   return Object.fromEntries(serv.players.map(player => [player.agent, agentState(region, player)]))
 }
 
-/** @returns {object} dropped items of the active region by number */
+/** Return the dropped items of the active region by number. @returns {object} */
 function itemStates (serv, region) {
   const items = {}
   for (const { id, item, position } of serv.itemEntities(place => region.contains(place))) {
@@ -61,7 +61,7 @@ function itemStates (serv, region) {
   return items
 }
 
-/** @returns {object} what a Recorder asks of a server in this process */
+/** Return the functions with which a Recorder reads a server in this process. @returns {object} */
 function factsOf (serv, region) {
   return {
     agents: () => agentStates(serv, region),
@@ -72,7 +72,7 @@ function factsOf (serv, region) {
   }
 }
 
-/** Put what lies in a region exactly where the channel says it does. */
+/** Put the dropped items of a region exactly at the positions that the channel reports. */
 function settleItems (serv, region) {
   for (const entity of serv.itemEntities(place => region.contains(place))) {
     const [x, y, z] = region.toScenario(entity.position).map(rounded).map(toStep)

@@ -1,11 +1,11 @@
 'use strict'
-/** How an agent as the channel describes it becomes a player of a server in this process. */
+/** Joining of players: an agent as the channel describes it becomes a player of a server in this process. */
 
 /**
- * Let a player of the active region join, where and as the agent is.
+ * Let a player join the active region, at the position and in the state of its agent.
  * @param {object} serv
  * @param {import('./region').Region} region
- * @param {object} end the server's end of its connection
+ * @param {object} end server's end of the player's connection
  * @param {object} state AGENT
  * @returns {object} the player
  */
@@ -20,7 +20,7 @@ function join (serv, region, end, state) {
   })
 }
 
-/** Show a player who has joined the world and those who are there. */
+/** Send a player who has joined the world, and show it and the other players to each other. */
 function showWorld (player, columns) {
   player.sendWorld(columns)
   player.meet()

@@ -1,5 +1,5 @@
 'use strict'
-/** A place in a server's world, in this process or elsewhere: its box, its tick, who is there, how it is addressed. */
+/** Part of a server's world, in this process or elsewhere: its box, its tick, its agents and its coordinates. */
 const { Vec3 } = require('vec3')
 const { BadRequest } = require('../channel/errors')
 
@@ -8,9 +8,9 @@ class Place {
    * @param {object} options
    * @param {string} options.name
    * @param {import('./box').Box} options.box
-   * @param {{x: number, z: number}} options.origin where scenario (0, y, 0) lies; multiples of 16
-   * @param {number} options.tick the tick that has ended
-   * @param {string[]} options.known names of the agents that can be spoken of here
+   * @param {{x: number, z: number}} options.origin server position of scenario (0, y, 0); multiples of 16
+   * @param {number} options.tick last tick that has ended
+   * @param {string[]} options.known names of the agents that may be mentioned here
    */
   constructor ({ name, box, origin, tick, known }) {
     this.name = name
@@ -18,15 +18,16 @@ class Place {
     this.origin = origin
     this.tick = tick
     this.known = new Set(known)
-    // What was thrown, and in whose bot or connection, if that is known: {error, agent}.
+    // Errors that were thrown, with the agent in whose bot or connection, if known: {error, agent}.
     this.faults = []
     this.bodies = new Map()
     this.recorder = null
   }
 
   /**
-   * @returns {{bot: object, player: object}} of an agent
-   * @throws {BadRequest} if it is not here
+   * Return bot and player of an agent.
+   * @returns {{bot: object, player: object}}
+   * @throws {BadRequest} if there is no such agent
    */
   body (agent) {
     const body = this.bodies.get(agent)
@@ -36,7 +37,7 @@ class Place {
     return body
   }
 
-  /** Run an action as code of an agent's program; what it throws is a fault of that. */
+  /** Run an action as code of an agent's program; an error that it throws is a fault of that program. */
   runAs (agent, action) {
     try {
       action()
@@ -46,39 +47,39 @@ class Place {
   }
 
   /**
-   * What an agent's skills tell; positions in `detail` are scenario coordinates.
-   * @throws {RangeError} for what the server does not let it tell
+   * Report an event of an agent's skills; positions in `detail` are scenario coordinates.
+   * @throws {RangeError} if the server does not allow the event
    */
   report (agent, event) {
     this.body(agent).player.report(event)
   }
 
   /**
-   * An event of this tick; positions in `detail` are scenario coordinates. The kind `claims` is none of its own:
-   * it is what the actor's next utterance of `detail.text` claims.
-   * @throws {Error} if a claim speaks of what is not here
+   * Record an event of this tick; positions in `detail` are scenario coordinates. The kind `claims` is not an event
+   * itself: it announces the claims of the actor's next utterance of `detail.text`.
+   * @throws {Error} if a claim mentions something that does not exist here
    */
   emit (event) {
     this.recorder.event(event)
   }
 
-  /** @returns {[number, number, number]} scenario coordinates of a server place */
+  /** Return the scenario coordinates of a server position. @returns {[number, number, number]} */
   toScenario ({ x, y, z }) {
     return [x - this.origin.x, y, z - this.origin.z]
   }
 
-  /** @returns {Vec3} server coordinates of a scenario place */
+  /** Return the server coordinates of a scenario position. @returns {Vec3} */
   toServer ([x, y, z]) {
     return new Vec3(x + this.origin.x, y, z + this.origin.z)
   }
 
-  /** Whether a server place is inside the box. */
+  /** Return true if a server position is inside the box. */
   contains ({ x, y, z }) {
     return this.box.contains(
       Math.floor(x) - this.origin.x, Math.floor(y), Math.floor(z) - this.origin.z)
   }
 
-  /** @throws {Error} the first fault of the server side since the last call */
+  /** Throw the first fault of the server side since the last call, if there is one. @throws {Error} */
   raiseFaults () {
     const [fault] = this.faults.splice(0)
     if (fault !== undefined) throw fault.error

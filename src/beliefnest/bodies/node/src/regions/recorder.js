@@ -1,16 +1,16 @@
 'use strict'
-/** Collects what changes in a region during a tick, and makes frames of it. */
+/** Recorder of the changes in a region. It collects the changes of one tick and makes a frame of them. */
 const { Claims } = require('./claims')
 
-// Details of events that say where something is.
+// Details of events that are positions.
 const PLACES = ['position', 'destination']
 
 class Recorder {
   /**
    * @param {import('./region').Region} region
-   * @param {object} facts what a body has to know of its server, whichever that is: `agents()` and `items()` that are
-   *   there now (as of the channel), `changedContainers()` since the last call as [x, y, z, ITEMS or null],
-   *   `blockText(state)`, `signText(position)` (scenario; empty where nothing is written)
+   * @param {object} facts functions that read the server: `agents()` and `items()` for the present ones (in the form
+   *   of the channel), `changedContainers()` since the last call as [x, y, z, ITEMS or null], `blockText(state)`, and
+   *   `signText(position)` (scenario; empty if nothing is written)
    */
   constructor (region, facts) {
     this.region = region
@@ -30,7 +30,7 @@ class Recorder {
     else this.events.push(this.claims.completed({ kind, actor, detail }))
   }
 
-  /** An event of a server plugin, whose places are in server coordinates. */
+  /** Record an event of a server plugin, whose positions are server coordinates. */
   serverEvent ({ kind, actor, detail }) {
     const translated = { ...detail }
     for (const key of PLACES) {
@@ -42,7 +42,7 @@ class Recorder {
     this.event({ kind, actor, detail: translated })
   }
 
-  /** A block of the server's world became `state`. */
+  /** Record that a block of the server's world became `state`. */
   blockChanged (position, state) {
     if (!this.region.contains(position)) return
     const place = this.region.toScenario(position)
@@ -52,25 +52,25 @@ class Recorder {
     })
   }
 
-  /** The text of a sign, a block in `state`, became another one. */
+  /** Record that the text of a sign changed, whose block has `state`. */
   signChanged (position, state, text, actor) {
     const place = this.region.toScenario(position)
     this.blocks.set(place.join(), [...place, state])
     this.event({ kind: 'block_update', actor, detail: { position: place, block: this.facts.blockText(state), text } })
   }
 
-  /** A row of a block that changed, with what is written on it. */
+  /** Return the row of a changed block, with its text if it is a sign. */
   row ([x, y, z, state]) {
     const text = this.facts.signText([x, y, z])
     return text === '' ? [x, y, z, state] : [x, y, z, state, text]
   }
 
-  /** Let go of claims that were told and never said: nothing of a call or branch is left to the next. */
+  /** Drop claims that were announced but never said, so that none is left to the next call or branch. */
   forgetClaims () {
     this.claims = new Claims(this.region)
   }
 
-  /** Take the present state as known, so that frames tell only what differs from it. */
+  /** Take the present state as known, so that the next frames contain only differences from it. */
   settle () {
     this.changes('agents', this.facts.agents())
     this.changes('items', this.facts.items())
@@ -79,7 +79,7 @@ class Recorder {
     this.clear()
   }
 
-  /** @returns {object | null} the FRAME of the tick that ended; null if nothing changed */
+  /** Return the FRAME of the tick that ended; null if nothing changed. @returns {object | null} */
   frame () {
     const frame = {
       region: this.region.name,
@@ -113,7 +113,7 @@ class Recorder {
   }
 }
 
-/** Whether two values of the channel (numbers, texts, lists, maps) are the same. */
+/** Return true if two values of the channel (numbers, texts, lists, maps) are equal. */
 function equal (a, b) {
   if (a === b) return true
   if (a === null || b === null || typeof a !== 'object' || typeof b !== 'object') return false

@@ -1,5 +1,5 @@
 'use strict'
-/** One isolated place of the embedded world, with time, chance and state of its own. */
+/** Isolated part of the embedded world, with its own time, random numbers and state. */
 const { Context } = require('../time/clock')
 const { Mail } = require('../net/transport')
 const { Random } = require('../time/random')
@@ -14,11 +14,11 @@ class Region extends Place {
   /**
    * @param {object} options
    * @param {string} options.name
-   * @param {string} options.seed of its random numbers
+   * @param {string} options.seed seed of its random numbers
    * @param {import('./box').Box} options.box
-   * @param {{x: number, z: number}} options.origin from the allotment
-   * @param {number} options.tick the tick that has ended
-   * @param {string[]} options.known names of the agents that can be spoken of here
+   * @param {{x: number, z: number}} options.origin origin from the allotment
+   * @param {number} options.tick last tick that has ended
+   * @param {string[]} options.known names of the agents that may be mentioned here
    */
   constructor ({ name, seed, box, origin, tick, known }) {
     super({ name, box, origin, tick, known })
@@ -32,7 +32,7 @@ class Region extends Place {
     this.translator = new Translator(origin)
   }
 
-  /** What bots are told as their spawn point: the box's lowest corner, whatever happened (server). */
+  /** Return the spawn point that bots are told (server): always the lowest corner of the box. */
   get spawnPoint () {
     return this.toServer(this.box.low)
   }
@@ -41,7 +41,7 @@ class Region extends Place {
     this.context.run(agent, action)
   }
 
-  /** Let random numbers depend on seed and tick alone, not on what was drawn before. */
+  /** Reset the random numbers, so that they depend only on seed and tick and not on earlier draws. */
   reseed () {
     this.context.random = new Random(`${this.seed} ${this.tick}`)
   }

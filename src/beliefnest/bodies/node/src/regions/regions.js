@@ -1,5 +1,5 @@
 'use strict'
-/** All regions of the world: making, changing, looking at, and giving up one. */
+/** All regions of the world: creating, changing, reading and removing regions. */
 const { decode, encode } = require('@msgpack/msgpack')
 const { Allotment } = require('./allotment')
 const { Bodies } = require('./bodies')
@@ -15,8 +15,8 @@ class Regions {
   /**
    * @param {object} serv
    * @param {import('../time/clock').Clock} clock
-   * @param {(frame: object) => void} send hears every frame
-   * @param {() => void} [alive] hears that a tick has passed
+   * @param {(frame: object) => void} send called with every frame
+   * @param {() => void} [alive] called after every tick
    */
   constructor (serv, clock, send, alive = () => {}) {
     this.serv = serv
@@ -33,7 +33,7 @@ class Regions {
     serv.facts.on('event', event => serv.region.recorder.serverEvent(event))
   }
 
-  /** @throws {BadRequest} if there is no such region */
+  /** Return a region by name. @throws {BadRequest} if there is no such region */
   get (name) {
     const region = this.byName.get(name)
     if (region === undefined) {
@@ -42,7 +42,7 @@ class Regions {
     return region
   }
 
-  /** Run `action` in a region: its clock, its random numbers, its part of the server. */
+  /** Run `action` in a region: with its clock, its random numbers and its part of the server. */
   async inside (region, action) {
     this.serv.region = region
     try {
@@ -54,7 +54,7 @@ class Regions {
     }
   }
 
-  /** @returns {Promise<object>} SNAPSHOT of the new region, once every bot stands in it */
+  /** Create a region. Resolve when every bot stands in it. @returns {Promise<object>} SNAPSHOT of the new region */
   async create ({ region: name, seed, box: corners, tick, blocks, containers, agents, items, internal_state: internalState, signs = [], known = Object.keys(agents) }) {
     if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
     const box = new Box(...corners)
@@ -79,7 +79,7 @@ class Regions {
     return this.snapshot(region)
   }
 
-  /** @returns {Promise<object>} SNAPSHOT of the region once it is as asked */
+  /** Set the state of a region. @returns {Promise<object>} SNAPSHOT of the region in its new state */
   async apply ({ region: name, blocks, containers, agents, items, tick, internal_state: internalState, signs = [] }) {
     const region = this.get(name)
     await this.inside(region, async () => {
@@ -94,7 +94,9 @@ class Regions {
     return this.snapshot(region)
   }
 
-  /** Make a region that is as its SNAPSHOT says go on as its internal state says; null: with nothing under way. */
+  /**
+   * Restore the internal state of a region that has the state of its SNAPSHOT; null means that nothing is in progress.
+   */
   async restoreState (region, internalState) {
     this.serv.restoreState(region, internalState?.byteLength > 0 ? decode(internalState) : {})
     await this.clock.advance(0)
@@ -102,7 +104,10 @@ class Regions {
     region.recorder.settle()
   }
 
-  /** @returns {Uint8Array} what goes on in a region and no SNAPSHOT has; empty if nothing does */
+  /**
+   * Return the state of processes in a region that its SNAPSHOT does not contain; empty if there are none.
+   * @returns {Uint8Array}
+   */
   internalState (region) {
     const parts = this.serv.internalState(region)
     return Object.keys(parts).length === 0 ? new Uint8Array(0) : encode(parts)
@@ -121,8 +126,8 @@ class Regions {
   }
 
   /**
-   * Run `action` in a region that goes on as one made anew from its snapshot would, so that
-   * neither an end of the process nor a visit to another branch can be seen in what follows.
+   * Run `action` in a region. Reset it before to the state of a region that was created from its snapshot: neither a
+   * restart of the process nor a visit to another branch then affects what follows.
    * @returns {Promise<{tick: number, internal_state: Uint8Array}>}
    */
   async resumed (region, action) {
@@ -138,8 +143,8 @@ class Regions {
   }
 
   /**
-   * One tick of the active region; its frame is sent if anything changed.
-   * @param {() => Promise<void>} [before] what is to happen before the frame is made
+   * Advance the active region by one tick; send its frame if anything changed.
+   * @param {() => Promise<void>} [before] called before the frame is made
    * @returns {Promise<boolean>} true if anything changed
    */
   async tick (region, before) {
@@ -165,7 +170,7 @@ class Regions {
     })
   }
 
-  /** @returns {Promise<object>} SNAPSHOT */
+  /** Return the SNAPSHOT of a region. @returns {Promise<object>} */
   async snapshot (region) {
     return this.inside(region, () => {
       const states = readStates(this.serv, region)
@@ -182,7 +187,7 @@ class Regions {
   }
 }
 
-// The walls need a layer of their own below and above.
+// The walls need one more layer below and above the box.
 function requireHeight ({ minY, worldHeight }, box) {
   const [lowest, highest] = [minY + 1, minY + worldHeight - 2]
   if (box.low[1] >= lowest && box.high[1] <= highest) return

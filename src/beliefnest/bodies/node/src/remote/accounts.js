@@ -1,20 +1,21 @@
 'use strict'
 /**
- * Logging in with Microsoft accounts, for servers in online mode, by Mineflayer's own login (prismarine-auth). Its
- * tokens are kept in the user's folder, by prismarine-auth; nothing of them is told anywhere.
+ * Login with Microsoft accounts, for servers in online mode, by Mineflayer's own login (prismarine-auth).
+ * prismarine-auth keeps the tokens in the user's folder; no message contains any of them.
  */
 
-// What may be a token, wherever it comes from.
+// Any text that may be a token.
 const SECRET = /[\w.~+/=|%-]{32,}/g
 
 /** Options of minecraft-protocol for a player without an account. */
 const OFFLINE = { auth: 'offline' }
 
 /**
- * @param {string} folder where tokens are kept
- * @param {string} player whose account it is; also its name in the game
- * @param {(text: string) => void} tell shows the user where to log in, with which code
- * @returns {object} options of minecraft-protocol
+ * Return the options of minecraft-protocol for a player with an account.
+ * @param {string} folder folder of the tokens
+ * @param {string} player name of the account, and of the player in the game
+ * @param {(text: string) => void} tell shows the user where to log in, and with which code
+ * @returns {object}
  */
 function withAccount (folder, player, tell) {
   return {
@@ -25,15 +26,15 @@ function withAccount (folder, player, tell) {
   }
 }
 
-/** Keep a client from connecting with another player's account than the one it is for: the login fails. */
+/** Fail the login of a client if its account belongs to another player. */
 function requireName (client, player) {
   client.once('session', ({ selectedProfile: { name } }) => {
     if (name === player) return
-    throw new Error(`the account that was logged in for ${player} is called ${name} in the game: call the agent so, or the operator by ?operator=${name}`)
+    throw new Error(`the account that was logged in for ${player} is called ${name} in the game: give the agent that name, or the operator by ?operator=${name}`)
   })
 }
 
-/** @returns {string} a text without what may be a token */
+/** Return a text without anything that may be a token. @returns {string} */
 const withoutSecrets = text => String(text).replace(SECRET, '...')
 
 module.exports = { OFFLINE, requireName, withAccount, withoutSecrets }

@@ -1,5 +1,5 @@
 'use strict'
-/** The agents of a place on a server elsewhere: their connections, and how they are put where they are to be. */
+/** Agents of a place on a remote server: their connections, and the commands that put them into their states. */
 const { isDeepStrictEqual } = require('node:util')
 const { BadRequest } = require('../channel/errors')
 const { ground, stopBot } = require('../bots/bot')
@@ -12,12 +12,12 @@ const { Witness } = require('./witness')
 const NEAR = 0.02
 const NEAR_PERSON = 0.3
 const FULL = 20
-// Of a person of whom nothing is known yet.
+// State of a person of whom nothing is known yet.
 const NOBODY = { position: [0, 0, 0], yaw: 0, pitch: 0, on_ground: true, equipment: {}, inventory: {}, health: FULL, food: FULL }
 const SLOTS = 46
 const AT_ONCE = 8
 const FIRST_HOTBAR = 36
-// Ticks of the server.
+// Number of ticks of the server.
 const PLACING_TICKS = 200
 const ASKED_EVERY_TICKS = 10
 const COLUMNS_TICKS = 100
@@ -29,7 +29,7 @@ class Agents {
    * @param {import('./operator').Operator} operator
    * @param {object} commands of commandsFor
    * @param {object} registry
-   * @param {(agent: string) => object} connect begins the connection of one
+   * @param {(agent: string) => object} connect begins the connection of an agent
    * @param {Set<string>} invited agents whose places people may take
    */
   constructor (scene, operator, commands, registry, connect, invited) {
@@ -53,14 +53,14 @@ class Agents {
       if (players.includes(agent) && !this.invited.has(agent)) throw new BadRequest(`a player called ${agent} is on the server already; end the other run, or give the agent another name`)
     }
     const names = Object.keys(agents).sort()
-    // A server may turn away who comes with many others.
+    // Servers may refuse players who join together with many others.
     for (let first = 0; first < names.length; first += AT_ONCE) {
       await Promise.all(names.slice(first, first + AT_ONCE).map(agent => this.enter(agent, players.includes(agent), patienceMs)))
     }
     await this.place(agents)
   }
 
-  /** Let one agent in, by its bot or by a person who is there already. */
+  /** Let one agent in: as its bot, or as a person who is on the server already. */
   async enter (agent, isThere, patienceMs) {
     const { operator, region } = this
     const witness = new Witness(agent, region, this.scene, this.Item)
@@ -78,13 +78,13 @@ class Agents {
     region.bodies.set(agent, { get bot () { return link.bot }, player: witness })
   }
 
-  /** A person has come in by an agent's name. */
+  /** Let a person who has joined under an agent's name replace its bot. */
   yield (agent) {
     const latest = this.latest.get(agent) ?? NOBODY
     this.scene.people.come(this.scene.witnesses.get(agent), latest)
   }
 
-  /** Agents whose persons have left are bots again. */
+  /** Return agents to their bots when their people have left. */
   endTick () {
     for (const agent of this.scene.people.endTick()) {
       this.scene.people.leave(agent)
@@ -92,7 +92,7 @@ class Agents {
     }
   }
 
-  /** Send away who may no longer be an agent. @returns {string[]} the agents who are people now */
+  /** Kick people whose agents may no longer be played by people. @returns {string[]} agents that people play now */
   invite () {
     const { operator, commands } = this
     for (const [agent, link] of this.links) {
@@ -104,12 +104,12 @@ class Agents {
     return [...this.links].filter(([, link]) => link.isYielded && link.isForPerson).map(([agent]) => agent).sort()
   }
 
-  /** @returns {object[]} the bots of agents who are no people */
+  /** Return the bots of agents that people do not play. @returns {object[]} */
   bots () {
     return [...this.links.values()].filter(({ isHere }) => isHere).map(({ bot }) => bot)
   }
 
-  /** Let an agent leave. */
+  /** Remove an agent. */
   async remove (agent) {
     this.scene.people.leave(agent)
     const link = this.links.get(agent)
@@ -120,7 +120,7 @@ class Agents {
     await link?.close()
   }
 
-  /** Gravity holds for one who has come in once the ground is there. */
+  /** Switch on the physics of a bot once its surroundings have arrived. */
   async stand (agent) {
     const { bot } = this.links.get(agent)
     if (!this.latest.has(agent)) return
@@ -128,12 +128,12 @@ class Agents {
     bot.physicsEnabled = true
   }
 
-  /** Make agents be where, and have what, they are to. */
+  /** Put agents into their given positions and states. */
   async place (agents) {
     const { operator } = this
     const placing = Object.entries(agents)
     for (const [agent, state] of placing) this.command(agent, state)
-    // One who was there before is moved all the same.
+    // Agents that were there before are moved all the same.
     await operator.settled()
     await Promise.all(placing.map(([agent]) => this.isPerson(agent) ? null : this.answered(agent)))
     await Promise.all(placing.map(([agent, state]) => this.arrived(agent, state)))
@@ -143,7 +143,7 @@ class Agents {
     }
   }
 
-  /** Types what puts an agent where it is to be, with what it is to have. */
+  /** Type the commands that move an agent and set its possessions. */
   command (agent, state) {
     const { operator, commands } = this
     const { health, food } = this.isPerson(agent) ? this.look(agent) : this.bot(agent)
@@ -171,7 +171,7 @@ class Agents {
     const { witnesses, people } = this.scene
     const person = people.here.get(agent) ?? null
     const position = () => witnesses.get(agent).position
-    // A client goes on by itself once it has been moved, and others see where it is in steps.
+    // A client moves on by itself after a teleport, and others see its position in steps.
     const there = () => position().distanceTo({ x, y, z }) < (person === null ? NEAR : NEAR_PERSON)
     const has = () => isDeepStrictEqual(this.look(agent).inventory, sorted(state.inventory))
     const isDone = person === null || this.operator.can('data') ? () => there() && has() : there
@@ -180,7 +180,7 @@ class Agents {
     await person?.ask()
     while (!await operator.until(isDone, ASKED_EVERY_TICKS) && clock.age < due) await (person?.ask() ?? this.askSlots(agent))
     if (isDone()) {
-      // Before anything else is waited for: it may lose its connection meanwhile.
+      // Set this before any further wait, during which the bot may lose its connection.
       witnesses.get(agent).stoodAt = position().floored()
       if (person === null) await this.sees(this.bot(agent))
       return
@@ -189,13 +189,15 @@ class Agents {
     throw new BadRequest(`${agent} ${what} on the server; it said last: ${this.operator.lines.at(-1) ?? 'nothing'}`)
   }
 
-  /** Has a bot shown all it has anew, as a server does for a click of long ago: what it was shown of single slots may be wrong. */
+  /**
+   * Make the server resend a bot's whole inventory, as after an outdated click: single slots may have arrived wrong.
+   */
   async askSlots (agent) {
     const { isHere, bot } = this.links.get(agent)
     if (isHere && !bot.currentWindow) bot._syncWindow(bot.inventory).catch(() => {})
   }
 
-  /** Resolve when a bot has been shown the box, or the part of it that the server shows from there. */
+  /** Resolve when a bot has received the box, or the part of it that the server shows from there. */
   async sees (bot) {
     await this.operator.shown(bot, this.region.box, COLUMNS_TICKS)
     const here = bot.entity.position.toArray().map(Math.floor)
@@ -215,7 +217,7 @@ class Agents {
     return this.links.get(agent).bot
   }
 
-  /** @returns {object} AGENT by name; one who is away is as it was last */
+  /** Return AGENT by name; for an absent agent its last state. @returns {object} */
   states () {
     for (const [agent, link] of this.links) if (link.isHere || link.isYielded) this.latest.set(agent, this.look(agent))
     return Object.fromEntries([...this.latest].sort(([a], [b]) => (a < b ? -1 : 1)))
@@ -245,9 +247,9 @@ class Agents {
   }
 
   /**
-   * End what agents were doing; resolves when all they did has been handled and seen. Bots that were cut off are waited for:
-   * whether a program failed with its bot alone, or the server has ended, shows only then.
-   * @throws {Unplayable} if one does not come back
+   * End the acts of agents. Resolve when the server has handled all of them and the operator has seen the effects.
+   * Wait for bots that were disconnected: only then it is known whether only the bot failed or the server has stopped.
+   * @throws {Unplayable} if a bot does not come back
    */
   async rest (agents) {
     await this.present()
@@ -265,12 +267,14 @@ class Agents {
     await this.operator.until(() => this.scene.isQuiet)
   }
 
-  /** Resolve when the server has handled what an agent's client has sent, and the client what was sent to it before. */
+  /**
+   * Resolve when the server has handled an agent's packets and the agent's client has received all earlier packets.
+   */
   async answered (agent) {
     await this.operator.hasSettled(this.bot(agent), this.operator.patienceTicks)
   }
 
-  /** Resolve when all agents and the operator are connected. @throws {Unplayable} if one was given up */
+  /** Resolve when all agents and the operator are connected. @throws {Unplayable} if a connection was given up */
   async present () {
     for (const link of [this.operator.link, ...this.links.values()]) await link.present()
   }

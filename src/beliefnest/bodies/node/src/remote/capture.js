@@ -1,5 +1,5 @@
 'use strict'
-/** Reads a place of a server elsewhere as it is, and changes nothing there. */
+/** Capture of a place on a remote server: reads it and changes nothing. */
 const { Box } = require('../regions/box')
 const { rounded, sorted } = require('../regions/facts')
 const { fromDegrees, wrap } = require('../server/angles')
@@ -17,11 +17,12 @@ const FULL = 20
 const SPECTATOR = 3
 
 /**
- * @param {object} session of beginSession, and our `registry`
- * @param {{x: number, z: number}} origin where scenario (0, y, 0) lies on the server
- * @param {number[][]} corners of the box, scenario coordinates
- * @returns {Promise<object>} SNAPSHOT, with `unread`: [x, y, z] of containers that could not be looked into, and
- *   `unasked`: names of players of whom only what they wear and hold is known, `strange`: names of blocks that ours has not
+ * Read a place.
+ * @param {object} session result of beginSession, and our `registry`
+ * @param {{x: number, z: number}} origin server position of scenario (0, y, 0)
+ * @param {number[][]} corners corners of the box, scenario coordinates
+ * @returns {Promise<object>} SNAPSHOT, with `unread`: [x, y, z] of containers that could not be opened, `unasked`:
+ *   names of players of whom only visible equipment is known, and `strange`: names of blocks that our version lacks
  */
 async function capture ({ operator, clock, theirs, registry }, origin, corners) {
   const region = new RemotePlace({ name: 'captured', box: new Box(...corners), origin, tick: 0, known: [] }, clock)
@@ -40,7 +41,7 @@ async function capture ({ operator, clock, theirs, registry }, origin, corners) 
   })
 }
 
-/** @returns {Promise<object>} all that there is in the place of a set-up */
+/** Return all contents of the place of a set-up. @returns {Promise<object>} */
 async function look (setup, commands) {
   const { operator, scene, region } = setup
   const present = setup.present()
@@ -84,7 +85,7 @@ async function players (operator, commands, region) {
   return { agents: sorted(agents), unasked }
 }
 
-/** An agent as the server's own data of it say. */
+/** Return an agent from the server's own data of it. */
 function told (region, data) {
   const [x, y, z] = data.Pos
   const { yaw, pitch } = fromDegrees(...data.Rotation)
@@ -105,7 +106,7 @@ function pose ({ position, yaw, headYaw, pitch, onGround }) {
   }
 }
 
-/** What can be seen of what somebody has. */
+/** Return the visible possessions of a player. */
 function seen ({ equipment }) {
   const worn = wornBy({ equipment })
   const inventory = {}

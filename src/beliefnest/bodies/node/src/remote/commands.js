@@ -1,34 +1,35 @@
 'use strict'
-/** The texts of the vanilla commands that an operator types; places are scenario coordinates, angles as on the channel. */
+/** Vanilla commands that an operator types. Positions are scenario coordinates, angles those of the channel. */
 const { toDegrees } = require('../server/angles')
 
-/** What an operator needs, without which nothing can be set up. */
+/** Commands that an operator needs to set up a place. */
 const NEEDED = ['fill', 'setblock', 'tp', 'item', 'clear', 'forceload', 'gamemode', 'kill']
-/** What is used where it is there, and what cannot be done where it is not. */
+/** Optional commands, each with the limitation that applies without it. */
 const USEFUL = {
   effect: 'health and hunger are not restored',
   summon: 'no items can lie in the box at the start',
-  data: 'signs cannot be written on at the start, and what people have stays as it was known',
-  kick: 'nobody can be taken over while they are there'
+  data: 'signs cannot be written on at the start, and the inventories of people are not updated',
+  kick: 'people who are connected cannot be taken over'
 }
 
 const SLOTS = { 5: 'armor.head', 6: 'armor.chest', 7: 'armor.legs', 8: 'armor.feet', 45: 'weapon.offhand' }
 const FIRST_OWN = 9
 const FIRST_HOTBAR = 36
 
-/** @returns {string} the game's name of a slot of an inventory */
+/** Return the game's name of an inventory slot. @returns {string} */
 function slotName (slot) {
   if (slot in SLOTS) return SLOTS[slot]
   return slot >= FIRST_HOTBAR ? `hotbar.${slot - FIRST_HOTBAR}` : `inventory.${slot - FIRST_OWN}`
 }
 
-/** A text as the game's own notation has it. */
+/** Return a text in the game's own notation. */
 const quoted = text => `'${text.replace(/[\\']/g, found => `\\${found}`)}'`
 
 /**
+ * Return the functions that build commands for a place.
  * @param {import('../regions/place').Place} place
- * @param {(state: number) => string} textOf a block state
- * @param {object} version of the server, of its registry: the notation of items and texts depends on it
+ * @param {(state: number) => string} textOf returns the text of a block state
+ * @param {object} version version of the server, from its registry: the notation of items and texts depends on it
  */
 function commandsFor (place, textOf, version) {
   const countOf = count => version['>=']('1.20.5') ? `count:${count}` : `Count:${count}b`

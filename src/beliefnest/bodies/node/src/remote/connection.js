@@ -1,28 +1,29 @@
 'use strict'
 /**
- * Connects to a Minecraft server over TCP, as an agent that knows only its region's coordinates
- * and agents' names: packets are translated on this side of the wire.
+ * Connection to a Minecraft server over TCP for an agent that knows only its region's coordinates and agents' names:
+ * packets are translated on this side.
  */
 const minecraft = require('minecraft-protocol')
 const { OFFLINE, requireName } = require('./accounts')
 const { Translator } = require('../net/translate')
 
-// Milliseconds without a sign of the server after which a connection counts as lost.
+// Milliseconds of silence after which a connection counts as lost.
 const SILENCE_MS = 30_000
 
 /**
+ * Connect a player.
  * @param {object} options
  * @param {string} [options.host]
  * @param {number} options.port
- * @param {string} options.version of Minecraft, one of those held
- * @param {string} options.username as the server is to know the player
- * @param {string} [options.agent] as the bot is to know itself
- * @param {{x: number, z: number}} options.origin where scenario (0, y, 0) lies on the server
- * @param {Map<string, string>} [options.agentOf] agent by the server's name of a player
- * @param {object} [options.login] how to, of accounts.js
- * @param {Set<string>} [options.hidden] names of players that the bot is not to know of, as long as they are in it
- * @returns {import('minecraft-protocol').Client} which emits `sent` (name, params) for every packet that its bot
- *   sends, as the bot means it
+ * @param {string} options.version version of Minecraft, one of those held
+ * @param {string} options.username name of the player on the server
+ * @param {string} [options.agent] name of the player in the bot's own view
+ * @param {{x: number, z: number}} options.origin server position of scenario (0, y, 0)
+ * @param {Map<string, string>} [options.agentOf] agent's name by the server's name of the player
+ * @param {object} [options.login] login options from accounts.js
+ * @param {Set<string>} [options.hidden] names of players that the bot must not see; the set may change
+ * @returns {import('minecraft-protocol').Client} client that emits `sent` (name, params) for every packet of its bot,
+ *   before the translation
  */
 function connect ({ host = '127.0.0.1', port, version, username, agent = username, origin, agentOf = new Map(), hidden = new Set(), login = OFFLINE }) {
   const translator = new Translator(origin, agentOf)
@@ -46,7 +47,7 @@ function translateOutgoing (client, translator) {
   }
 }
 
-// A packet is emitted under several names; all who listen get the same object.
+// A packet is emitted under several names; translate it once, so that all listeners get the same object.
 function translateIncoming (client, translator, hidden) {
   const emit = client.emit
   const translated = new WeakMap()

@@ -1,5 +1,5 @@
 'use strict'
-/** What is known to be in the containers of a place: what was put in at the start, and what open windows show. */
+/** Known contents of the containers of a place, from the set-up and from open windows. */
 const { countByName } = require('../server/plugins/lib/items')
 const { byPlace, keyOf, listOf, vecOf } = require('../server/plugins/lib/positions')
 const { sorted } = require('../regions/facts')
@@ -10,7 +10,7 @@ class Contents {
     this.changed = new Map()
   }
 
-  /** A container holds exactly this. */
+  /** Set the contents of a container. */
   know (position, items) {
     const key = keyOf(position)
     const before = this.held.get(key)
@@ -19,7 +19,7 @@ class Contents {
     this.changed.set(key, vecOf(position))
   }
 
-  /** A container holds these stacks, as a window shows. */
+  /** Set the contents of a container to the stacks of a window. */
   show (position, stacks) {
     this.know(position, countByName(stacks))
   }
@@ -28,22 +28,22 @@ class Contents {
     return this.held.has(keyOf(position))
   }
 
-  /** @returns {object} ITEMS of a container that there is */
+  /** Return the ITEMS of a known container. @returns {object} */
   get (position) {
     return this.held.get(keyOf(position)).items
   }
 
-  /** No container is left at a position. */
+  /** Forget the container at a position; it no longer exists. */
   forget (position) {
     if (this.held.delete(keyOf(position))) this.changed.set(keyOf(position), vecOf(position))
   }
 
-  /** @returns {Array} [x, y, z, ITEMS] of all, in order */
+  /** Return [x, y, z, ITEMS] of all containers, in order. @returns {Array} */
   states () {
     return [...this.held.values()].map(({ position, items }) => [...listOf(position), sorted(items)]).sort(byPlace)
   }
 
-  /** @returns {Array} [x, y, z, ITEMS or null] of those that changed since the last call */
+  /** Return [x, y, z, ITEMS or null] of the containers that changed since the last call. @returns {Array} */
   drain () {
     const rows = [...this.changed.entries()].map(([key, position]) => {
       const held = this.held.get(key)

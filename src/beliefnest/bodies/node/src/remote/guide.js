@@ -1,10 +1,10 @@
 'use strict'
-/** A player that stands in for the operator where that is not: it looks, and what has to be typed the operator types. */
+/** Player that looks in the operator's place at a distant area. Its commands are typed by the operator. */
 const { Operator } = require('./operator')
 
 class Guide extends Operator {
   /**
-   * @param {import('./link').Link} link of the guide
+   * @param {import('./link').Link} link link of the guide
    * @param {Operator} operator
    */
   constructor (link, operator) {
@@ -24,7 +24,7 @@ class Guide extends Operator {
     return this.operator.ask(command)
   }
 
-  /** Resolve when what the operator typed is done, and the guide has been told of it. */
+  /** Resolve when the operator's commands are done and the guide has received their effects. */
   async settled () {
     await this.operator.settled()
     await super.settled()

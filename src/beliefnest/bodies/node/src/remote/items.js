@@ -1,21 +1,21 @@
 'use strict'
-/** Dropped items of a place on a server elsewhere: their numbers on the timeline, and who threw them. */
+/** Dropped items of a place on a remote server: their numbers on the timeline, and who threw them. */
 const { rounded } = require('../regions/facts')
 
-// Every tick has numbers of its own, as in the embedded world.
+// Each tick has its own numbers, as in the embedded world.
 const NUMBERS_PER_TICK = 100
 
 class Items {
   constructor (region) {
     this.region = region
     this.entities = () => ({})
-    // By the server's number of the entity: {number, throws}.
+    // By entity id on the server: {number, throws}.
     this.known = new Map()
     this.awaited = []
     this.last = 0
   }
 
-  /** Items that are about to be laid, with their numbers. */
+  /** Announce items that commands are about to summon, with their numbers. */
   await (items) {
     this.known.clear()
     this.awaited = Object.entries(items).map(([number, item]) => ({ number: Number(number), ...item }))
@@ -53,7 +53,7 @@ class Items {
     if (this.known.has(id)) this.known.get(id).throws = throws
   }
 
-  /** @returns {object} ITEM by number, of those in the box */
+  /** Return ITEM by number, for the items in the box. @returns {object} */
   states () {
     const found = {}
     for (const [id, { number }] of this.known) {

@@ -1,28 +1,30 @@
 'use strict'
 /**
- * Containers that somebody opens whose clicks nobody hears: a person, or a player who is no agent. Their lids tell when;
- * what was moved is what the server says they hold then, less what agents' own clicks account for.
+ * Containers that are opened by people or by players who are no agents, whose clicks we do not receive. The lid shows
+ * when such a container is open. The items moved are the difference between the server's data and the known contents,
+ * except what agents' own clicks have moved.
  */
 const { difference } = require('../server/plugins/lib/items')
 const { keyOf, listOf, vecOf } = require('../server/plugins/lib/positions')
 
-// Ticks between two looks into a container that stays open.
+// Number of ticks between two checks of a container that stays open.
 const LOOKED_EVERY = 10
 const MOVES = { deposit_item_into_chest: 1, get_item_from_chest: -1 }
 
 class Lids {
   /**
    * @param {import('./scene').Scene} scene
-   * @param {(position: number[]) => Promise<object | null>} read ITEMS of a container, as the server has it
+   * @param {(position: number[]) => Promise<object | null>} read returns the ITEMS of a container from the server's
+   *   data
    */
   constructor (scene, read) {
     this.scene = scene
     this.read = read
-    // By place: {position, who, items: what is accounted for, lookAt: the next tick, isShut, isBusy}.
+    // By position: {position, who, items: known contents, lookAt: tick of the next check, isShut, isBusy}.
     this.open = new Map()
   }
 
-  /** A lid moved: so many look in. */
+  /** Handle a moved lid; `viewers` is the number of players who look into the container. */
   moved (place, viewers) {
     const { scene } = this
     const position = vecOf(place)
@@ -38,7 +40,7 @@ class Lids {
     else if (viewers === 0 && scene.people.here.size > 0) this.begin(position, { who: scene.people.whoActed(position), isShut: true, lookAt: tick })
   }
 
-  /** Somebody who is no bot looks in; who it is shows by and by. */
+  /** Begin a session of a player who is no bot; the scene finds out later who it is. */
   follow (position) {
     const session = this.begin(position, { who: null, isShut: false, lookAt: this.scene.region.tick + LOOKED_EVERY })
     this.scene.explainLater(position, who => {
@@ -53,14 +55,14 @@ class Lids {
     return session
   }
 
-  /** What an agent's own clicks moved. */
+  /** Apply the moves of an agent's own clicks, so that they are not attributed to the other player. */
   account ({ kind, detail: { position, items } }) {
     const session = MOVES[kind] === undefined ? undefined : this.open.get(position.join())
     if (session === undefined) return
     for (const [name, count] of Object.entries(items)) add(session.items, name, MOVES[kind] * count)
   }
 
-  /** At the end of a tick: looks into what is due. */
+  /** At the end of a tick, check the containers that are due. */
   endTick () {
     const { tick } = this.scene.region
     for (const session of this.open.values()) {
@@ -70,7 +72,7 @@ class Lids {
     }
   }
 
-  /** Whether nothing that was moved is still to be told. */
+  /** Return true if all moves have been reported. */
   get isQuiet () {
     return [...this.open.values()].every(({ isShut, isBusy }) => !isShut && !isBusy)
   }

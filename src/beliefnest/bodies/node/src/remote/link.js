@@ -1,5 +1,5 @@
 'use strict'
-/** One player's connection to a server: begun, and begun again with growing pauses when it is lost. */
+/** Connection of one player to a server. A lost connection is opened again, after growing pauses. */
 const { EventEmitter, once } = require('node:events')
 const { setTimeout: sleep } = require('node:timers/promises')
 const { REAL_TIME, startBot } = require('../bots/bot')
@@ -8,19 +8,19 @@ const reasons = require('./reasons')
 const FIRST_PAUSE_MS = 250
 const POLL_MS = 20
 const LONGEST_PAUSE_MS = 8000
-// As long as a code for logging in holds.
+// Lifetime of a login code.
 const ACCOUNT_MS = 900_000
 const GOODBYE_MS = 1000
-// What the game says to a player when another one of the same name comes in.
+// Message of the game to a player when another one with the same name joins.
 const ANOTHER = 'multiplayer.disconnect.duplicate_login'
 
 class Link extends EventEmitter {
   /**
-   * @param {string} name of the player
+   * @param {string} name name of the player
    * @param {() => object} connect begins a connection (connection.js)
-   * @param {object} server what reasons.js tells of it
-   * @param {number} patienceMs after which a lost connection is given up
-   * @param {(link: Link) => Promise<void>} [arrive] what is to be done whenever the player has come in
+   * @param {object} server server, as in reasons.js
+   * @param {number} patienceMs time after which a lost connection is given up
+   * @param {(link: Link) => Promise<void>} [arrive] called whenever the player has joined
    */
   constructor (name, connect, server, patienceMs, arrive = async () => {}) {
     super()
@@ -30,29 +30,29 @@ class Link extends EventEmitter {
     this.patienceMs = patienceMs
     this.arrive = arrive
     this.bot = null
-    // Connected; and, moreover, after `arrive`.
+    // isHere: connected; isReady: connected, and `arrive` has ended.
     this.isHere = false
     this.isReady = false
     this.failure = null
     this.closed = false
-    // Whether a person may come in by this name, and has: then they are the player.
+    // isForPerson: a person may join under this name; isYielded: a person has joined and plays.
     this.isForPerson = false
     this.isYielded = false
   }
 
-  /** @throws {Unplayable} if the server does not let the player in */
+  /** Connect for the first time. @throws {Unplayable} if the server does not let the player in */
   async open () {
     const client = this.connect()
     const bot = startBot(client, REAL_TIME)
     this.emit('begun', bot, client)
     bot.physicsEnabled = false
-    // Whoever waits listens for itself; an error that nobody hears would end the process.
+    // Waiting code has listeners of its own; Node ends the process on an error without a listener.
     bot.on('error', () => {})
     let told = null
     const ended = reason => this.lost(told?.text ?? reason, told?.key)
     try {
       await this.spawned(bot, client)
-      // It may have ended while that was found out.
+      // The connection may have ended during the steps above.
       if (client.ended) throw reasons.unreachable(this.server, 'it ended the connection')
       this.bot = bot
       this.isHere = true
@@ -62,7 +62,7 @@ class Link extends EventEmitter {
       this.isReady = this.isHere
     } catch (error) {
       this.isHere = false
-      // Whoever opened it knows.
+      // The caller of `open` receives the error itself.
       bot.off('end', ended)
       client.end('given up')
       throw error
@@ -86,7 +86,7 @@ class Link extends EventEmitter {
     try {
       await Promise.race(waiting)
     } catch (error) {
-      // Whatever is waited for, an error of the connection ends it.
+      // Whatever the wait was for, an error of the connection ends it.
       throw error instanceof reasons.Unplayable ? error : this.broken(error)
     } finally {
       ending.abort()
@@ -94,7 +94,7 @@ class Link extends EventEmitter {
     }
   }
 
-  /** @returns {Unplayable} what an error of the connection means before the player is there */
+  /** Return the reason for a connection error before the player has joined. @returns {Unplayable} */
   broken ({ code, message }) {
     return this.server.accounts === null || code !== undefined
       ? reasons.unreachable(this.server, code ?? message)
@@ -112,13 +112,13 @@ class Link extends EventEmitter {
     this.reconnect(reason)
   }
 
-  /** Let a person be this player. */
+  /** Let a person play under this name. */
   yield () {
     this.isYielded = true
     this.emit('yielded')
   }
 
-  /** Come in again after a person had this player's place. */
+  /** Join again, after a person has played under this name. */
   takeBack () {
     if (!this.isYielded || this.closed) return
     this.isYielded = false
@@ -147,7 +147,10 @@ class Link extends EventEmitter {
     }
   }
 
-  /** Resolve when the player is connected and has arrived, or a person is it. @throws {Unplayable} if it was given up */
+  /**
+   * Resolve when the player has connected and arrived, or a person plays it.
+   * @throws {Unplayable} if it was given up
+   */
   async present () {
     while (!this.isReady && !(this.isYielded && this.isForPerson)) {
       if (this.failure !== null) throw this.failure
@@ -161,14 +164,14 @@ class Link extends EventEmitter {
     const { _client: client } = this.bot
     const ended = once(this.bot, 'end')
     client.end('the world is given up')
-    // A server that stands still does not say goodbye.
+    // A server that hangs does not close the connection.
     const late = setTimeout(() => client.socket.destroy(), GOODBYE_MS)
     await ended
     clearTimeout(late)
   }
 }
 
-/** What a server says at a disconnection, as text and as the key of the game's own text. */
+/** Return a server's reason for a disconnection: its text, and the key of the game's own text. */
 function reasonOf (bot, reason) {
   const ChatMessage = require('prismarine-chat')(bot.registry)
   const message = ChatMessage.fromNotch(reason)

@@ -1,15 +1,15 @@
 'use strict'
-/** A player that marks where an agent is believed to be: it stands where the operator puts it, and does nothing. */
+/** Player that marks where an agent is believed to be. The operator moves it; it does nothing itself. */
 const { Link } = require('./link')
 
 const SLOTS = { main_hand: 36, off_hand: 45, head: 5, chest: 6, legs: 7, feet: 8 }
 
 class Marker {
   /**
-   * @param {string} name of the player
+   * @param {string} name name of the player
    * @param {() => object} connect begins its connection
    * @param {import('./operator').Operator} operator
-   * @param {object} commands of the exhibit
+   * @param {object} commands commands of the exhibit
    */
   constructor (name, connect, operator, commands) {
     this.name = name
@@ -21,13 +21,13 @@ class Marker {
     this.link.on('failed', error => process.stderr.write(`${name}: ${error.message}\n`))
   }
 
-  /** Let it in. @throws {Unplayable} if the server does not */
+  /** Let the marker join. @throws {Unplayable} if the server refuses it */
   async open (pose) {
     this.pose = pose
     await this.link.open()
   }
 
-  /** Nothing that happens to others, as falling or hunger, happens to one who only stands there. */
+  /** Prepare the marker so that neither gravity nor hunger affects it. */
   async begin () {
     this.operator.type(this.commands.mode(this.name, 'creative'))
     this.operator.type(this.commands.clear(this.name))

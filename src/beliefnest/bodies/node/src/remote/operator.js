@@ -1,5 +1,5 @@
 'use strict'
-/** The bot that serves a place on a server elsewhere: it types commands, and its client is what the place looks like. */
+/** Bot that manages a place on a remote server: it types commands, and its client shows the state of the place. */
 const { setTimeout: sleep } = require('node:timers/promises')
 const { Vec3 } = require('vec3')
 const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
@@ -10,28 +10,29 @@ const { parseSnbt } = require('./snbt')
 const { columnsLacking } = require('./shown')
 
 const POLL_MS = 10
-// Ticks that go on on the server until what was asked of it counts as not to come.
+// Number of server ticks after which an answer or effect is no longer expected.
 const ANSWER_TICKS = 100
 const TICKS_PER_SECOND = 20
-// Ticks after which the user is told what is waited for.
+// Number of ticks after which the user is told about a wait.
 const PATIENT_TICKS = 40
 const MOST_LINES = 20
 const TOP = 1
-// How many commands are typed before the server's answer is awaited: the more, the sooner it answers.
+// Number of commands that are typed before the operator waits for the server. It grows while the server answers
+// quickly.
 const FEWEST_AT_ONCE = 8
 const MOST_AT_ONCE = 256
 const FIRST_AT_ONCE = 32
 const SOON_MS = 150
 const LATE_MS = 1000
-// How a server answers `/data get`, in every version of the game that has it.
+// Answer of a server to `/data get`, in every version that has the command.
 const DATA = /^.{1,200}? has the following (?:block|entity) data: (.+)$/s
 
 class Operator {
   /**
    * @param {import('./link').Link} link
-   * @param {object} server what reasons.js tells of it
-   * @param {import('./serverClock').ServerClock} clock told by the operator's connection
-   * @param {object} [settling] of settling.js
+   * @param {object} server server, as in reasons.js
+   * @param {import('./serverClock').ServerClock} clock set by the operator's connection
+   * @param {object} [settling] see settling.js
    */
   constructor (link, server, clock, settling = new ByCompletions()) {
     this.link = link
@@ -39,7 +40,7 @@ class Operator {
     this.clock = clock
     this.settling = settling
     this.lines = []
-    // The question that is asked last: answers do not say to which one they are.
+    // Last question. Questions are asked one at a time, because answers do not say to which one they belong.
     this.asked = Promise.resolve()
     this.commandNames = null
     this.atOnce = FIRST_AT_ONCE
@@ -54,13 +55,13 @@ class Operator {
     return this.link.bot
   }
 
-  /** Types a command; what comes of it is looked at elsewhere. */
+  /** Type a command; its effect is checked elsewhere. */
   type (command) {
     this.settling.type(this.bot, command)
   }
 
   /**
-   * Types commands, as fast as the server does what they say; it may send away who is faster.
+   * Type commands as fast as the server executes them; a server may kick a faster player.
    * @throws {Unplayable} if the server does not answer within its patience
    */
   async typeAll (commands) {
@@ -79,15 +80,15 @@ class Operator {
     return this.commandNames?.has(name) ?? false
   }
 
-  /** Ticks in which the server has to do what it is waited for. */
+  /** Return the number of ticks in which the server has to react. */
   get patienceTicks () {
     return this.server.patience * TICKS_PER_SECOND
   }
 
   /**
-   * Wait for the commands that are needed: a server may tell of some first, and of all later.
-   * @param {(text: string) => void} tell shows something to the user
-   * @throws {Unplayable} if they do not come within the patience
+   * Wait until the operator may use the required commands. A server may send its list of commands in several parts.
+   * @param {(text: string) => void} tell shows a text to the user
+   * @throws {Unplayable} if rights are missing after the patience
    */
   async requireRights (tell) {
     const lacking = () => NEEDED.filter(name => !this.can(name))
@@ -98,7 +99,7 @@ class Operator {
   }
 
   /**
-   * Resolve when the server has done what was typed before and has told of it.
+   * Resolve when the server has executed all typed commands and sent their effects.
    * @throws {Unplayable} if the server does not answer within its patience
    */
   async settled () {
@@ -110,14 +111,18 @@ class Operator {
     throw reasons.stalled(this.server, this.server.patience)
   }
 
-  /** @returns {Promise<boolean>} true if the server has done within so many ticks what a player's client has sent */
+  /**
+   * Return true if the server has handled all packets of a player's client within a number of ticks.
+   * @returns {Promise<boolean>}
+   */
   hasSettled (bot, ticks) {
     return this.settling.settled(bot, (condition, limit) => this.until(condition, limit), ticks)
   }
 
   /**
-   * @param {string} command a `/data get`
-   * @returns {Promise<object | Array | null>} the data; null if the server gives none that can be read
+   * Ask the server for data.
+   * @param {string} command a `/data get` command
+   * @returns {Promise<object | Array | null>} the data; null if the server sends none that can be parsed
    */
   ask (command) {
     const answer = this.asked.catch(() => {}).then(() => this.askNow(command))
@@ -145,11 +150,11 @@ class Operator {
   }
 
   /**
-   * Wait for what the server does in its own time: a slow one, or a slow machine, is waited for longer.
+   * Wait for an effect in the server's time: for a slow server, or on a slow machine, the wait is longer.
    * @param {() => boolean} condition
-   * @param {number} [ticks] of the server
-   * @returns {Promise<boolean>} true if the condition came to hold before the server had gone on by so many ticks
-   * @throws {Unplayable} if the server stands still, or the operator's connection is given up
+   * @param {number} [ticks] number of server ticks
+   * @returns {Promise<boolean>} true if the condition held before that number of ticks had passed
+   * @throws {Unplayable} if the server hangs, or the operator's connection is given up
    */
   async until (condition, ticks = ANSWER_TICKS) {
     const due = this.clock.age + ticks
@@ -161,7 +166,7 @@ class Operator {
     return true
   }
 
-  /** @throws {Unplayable} if the server does not go on, or the operator's connection was given up */
+  /** Fail if the server hangs or the operator's connection was given up. @throws {Unplayable} */
   requireServer () {
     const { link, server, clock } = this
     if (link.failure !== null) throw link.failure
@@ -170,7 +175,7 @@ class Operator {
   }
 
   /**
-   * Do what needs the operator's connection all the time; what it has typed may be lost with that.
+   * Run an action that needs the operator's connection throughout, because typed commands are lost with it.
    * @param {() => Promise} action
    * @throws {Unplayable} as soon as the connection is lost
    */
@@ -187,8 +192,8 @@ class Operator {
   }
 
   /**
-   * Wait until a player has been shown a box, as long as the server shows it more of that.
-   * @returns {Promise<boolean>} true if it has been shown all
+   * Wait until a player has received a box. The wait goes on as long as more of the box arrives.
+   * @returns {Promise<boolean>} true if all of it has arrived
    */
   async shown (bot, box, ticks) {
     for (let lacking = columnsLacking(bot, box); lacking > 0; lacking = columnsLacking(bot, box)) {
@@ -199,9 +204,10 @@ class Operator {
   }
 
   /**
+   * Return the states of a box in our version's numbers.
    * @param {import('../regions/box').Box} box
    * @param {import('./versions').BlockMapping} mapping
-   * @returns {Int32Array} the states of a box, in its array order, as our version counts them
+   * @returns {Int32Array} in the box's array order
    */
   readStates (box, mapping) {
     const states = new Int32Array(box.size)
@@ -213,7 +219,7 @@ class Operator {
     return states
   }
 
-  /** Resolve when the operator's client is at a place. */
+  /** Resolve when the operator's client is at a position. */
   async go (command, [x, y, z]) {
     const there = new Vec3(x, y, z)
     this.type(command)
@@ -223,7 +229,7 @@ class Operator {
   /**
    * Look into a container from above.
    * @param {object} commands of commandsFor
-   * @returns {Promise<Array | null>} its stacks by slot; null if it does not open
+   * @returns {Promise<Array | null>} stacks by slot; null if it does not open
    */
   async lookInto (commands, [x, y, z]) {
     const { bot } = this
@@ -243,7 +249,7 @@ class Operator {
   }
 }
 
-/** Names of the commands that a player may type. */
+/** Return the names of the commands that a player may use. */
 function namesOf ({ nodes, rootIndex }) {
   return new Set(nodes[rootIndex].children.map(index => nodes[index].extraNodeData?.name))
 }

@@ -1,11 +1,12 @@
 'use strict'
 /**
- * Agents who are people with a client of their own, on a server elsewhere. Nobody hears what their clients send: what
- * they did is what the operator sees come of it, beside them and before their eyes.
+ * Agents that people play with clients of their own, on a remote server. We do not receive their clients' packets;
+ * what they do is inferred from the effects that the operator sees near them and in their line of sight.
  */
 const { Person } = require('./person')
 
-// Ticks after which one whom the server does not list has left: another connection may take the same place.
+// Number of ticks after which a player whom the server does not list has left. A new connection may replace the old
+// one before.
 const GONE_AFTER = 20
 
 class People {
@@ -18,12 +19,12 @@ class People {
     this.region = region
     this.operator = operator
     this.commands = commands
-    // By agent; and how many ticks each has been away.
+    // By agent: its person, and for how many ticks they have been missing.
     this.here = new Map()
     this.away = new Map()
   }
 
-  /** A person has taken the place of an agent's bot. */
+  /** Begin to follow a person who has replaced an agent's bot. */
   come (witness, latest) {
     const person = new Person(witness, this.operator, this.commands, latest)
     witness.person = person
@@ -40,24 +41,30 @@ class People {
     this.away.delete(agent)
   }
 
-  /** Follow the operator's connection. */
+  /** Listen to the operator's connection. */
   attach (bot) {
     bot.on('entitySwingArm', ({ username }) => this.here.get(username)?.swing(this.region.tick))
     bot.on('chat', (speaker, text) => this.said(speaker, text))
   }
 
-  /** Somebody said, or whispered to an agent, what was heard now. */
+  /** Handle words that were heard now, said aloud or whispered to an agent. */
   said (speaker, text, to) {
     if (!this.here.has(speaker)) return
     this.region.emit({ kind: 'chat', actor: speaker, detail: to === undefined ? { text } : { text, to } })
   }
 
-  /** @returns {object | null} the witness of who most probably has used, mined or placed the block there */
+  /**
+   * Return the witness of the person who most probably used, mined or placed the block; null if there is none.
+   * @returns {object | null}
+   */
   whoActed (position) {
     return this.nearest(position, person => person.mayHaveActedOn(position, this.region.tick))
   }
 
-  /** @returns {object | null} the witness of who most probably has written on the sign there */
+  /**
+   * Return the witness of the person who most probably wrote on the sign; null if there is none.
+   * @returns {object | null}
+   */
   whoWrote (position) {
     return this.nearest(position, person => person.offAim(position) < Infinity)
   }
@@ -68,12 +75,15 @@ class People {
     return found?.person.witness ?? null
   }
 
-  /** @returns {string | null} the agent from whose hand something came that appears at a place */
+  /**
+   * Return the agent who most probably threw an item that appears at a position; null if there is none.
+   * @returns {string | null}
+   */
   whoThrew (position) {
     return [...this.here.values()].find(person => person.mayHaveThrown(position))?.agent ?? null
   }
 
-  /** At the end of a tick. @returns {string[]} agents whose persons have left */
+  /** At the end of a tick, update everybody. @returns {string[]} agents whose people have left */
   endTick () {
     if (!this.operator.link.isHere) return []
     for (const [agent, person] of this.here) {

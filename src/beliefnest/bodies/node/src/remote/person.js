@@ -1,30 +1,33 @@
 'use strict'
-/** A person who is an agent on a server elsewhere: what the operator sees of them, and what the server says they have. */
+/**
+ * Person who plays an agent on a remote server: what the operator sees of them, and the server's data of their
+ * possessions.
+ */
 const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
 const { rounded, sorted } = require('../regions/facts')
 const { wrap } = require('../server/angles')
 const { possessionsIn } = require('../places/held')
 const { listOf } = require('../server/plugins/lib/positions')
 
-// Ticks after which one who stands has arrived, as in the embedded world.
+// Number of ticks after which a standing person counts as arrived, as in the embedded world.
 const STANDING_TICKS = 10
-// Ticks between two questions to the server about what somebody has.
+// Number of ticks between two queries of a person's possessions.
 const ASKED_EVERY = 20
-// Ticks for which an arm that swung may be about something.
+// Number of ticks after a swing of the arm in which an effect may be its consequence.
 const SWUNG_WITHIN = 20
 const REACH = 6
-// Radians off the line of sight at which a block still may be what somebody acts on.
+// Largest angle, in radians, between the line of sight and a block on which the person may act.
 const AIM = 0.8
 const FROM_THE_HAND = 1.5
-// Places of what somebody wears and holds, as the protocol counts them.
+// Equipment slots in the protocol's order.
 const SLOTS = ['main_hand', 'off_hand', 'feet', 'legs', 'chest', 'head']
 
 class Person {
   /**
-   * @param {import('./witness').Witness} witness of the agent
+   * @param {import('./witness').Witness} witness witness of the agent
    * @param {import('./operator').Operator} operator
    * @param {object} commands of commandsFor
-   * @param {object} latest AGENT as it was known before
+   * @param {object} latest last known AGENT
    */
   constructor (witness, operator, commands, latest) {
     this.witness = witness
@@ -39,7 +42,7 @@ class Person {
     this.stood = { place: null, ticks: 0 }
   }
 
-  /** What the operator sees of them; as it was last where they are out of its sight. */
+  /** Return the entity that the operator sees; the last one seen if they are out of sight. */
   get entity () {
     this.last = this.operator.bot.players[this.agent]?.entity ?? this.last
     return this.last
@@ -57,7 +60,10 @@ class Person {
     this.swungAt = tick
   }
 
-  /** @returns {number} radians between where they look and the middle of a block; Infinity where they cannot reach it */
+  /**
+   * Return the angle, in radians, between their view and the middle of a block; Infinity if they cannot reach it.
+   * @returns {number}
+   */
   offAim (position) {
     if (this.entity === null) return Infinity
     const way = position.offset(0.5, 0.5, 0.5).minus(this.eye)
@@ -68,17 +74,17 @@ class Person {
     return Math.acos(Math.max(-1, Math.min(1, gaze.dot(way) / way.norm())))
   }
 
-  /** Whether they may just have used, mined or placed the block there. */
+  /** Return true if they may just have used, mined or placed the block. */
   mayHaveActedOn (position, tick) {
     return tick - this.swungAt <= SWUNG_WITHIN && this.offAim(position) <= AIM
   }
 
-  /** Whether what appears at a place may come from their hand. */
+  /** Return true if an item that appears at a position may come from their hand. */
   mayHaveThrown (position) {
     return this.entity !== null && this.eye.distanceTo(position) <= FROM_THE_HAND
   }
 
-  /** @returns {object} AGENT */
+  /** Return AGENT. @returns {object} */
   state () {
     if (this.entity === null) return this.latest
     const { position, yaw, headYaw, pitch, onGround } = this.entity
@@ -88,7 +94,7 @@ class Person {
     return this.latest
   }
 
-  /** At the end of a tick: who has come to stand after walking has moved there. */
+  /** At the end of a tick, report a `move_to` if they have come to stand after walking. */
   endTick (tick) {
     if (this.entity === null) return
     const { stood, entity: { position } } = this
@@ -99,7 +105,7 @@ class Person {
     this.ask().catch(error => this.witness.scene.fail(error))
   }
 
-  /** Ask the server what they have; without an answer it stays what was known. */
+  /** Query their possessions from the server; without an answer the known ones stay. */
   async ask () {
     if (!this.operator.can('data')) return
     this.isAsking = true
@@ -114,7 +120,7 @@ class Person {
   }
 }
 
-/** @returns {object} name by slot of what can be seen that somebody wears and holds */
+/** Return the names of visible equipment by slot. @returns {object} */
 function wornBy ({ equipment }) {
   return Object.fromEntries(SLOTS.flatMap((slot, index) => equipment[index] ? [[slot, equipment[index].name]] : []))
 }

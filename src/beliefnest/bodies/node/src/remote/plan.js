@@ -1,15 +1,19 @@
 'use strict'
-/** Which commands make a box of blocks another one: as few as can be, each within what one may change. */
+/**
+ * Planner of the commands that turn a box of blocks into another one: as few fills as it finds, each within the
+ * command's limit.
+ */
 
 const MOST_BLOCKS = 32768
 
 /**
+ * Return fills that set all differing blocks.
  * @param {import('../regions/box').Box} box
- * @param {Int32Array} present states, in the box's array order
- * @param {Int32Array} wanted
- * @param {(state: number) => number} rank lower ones are set first
- * @returns {{state: number, low: number[], high: number[]}[]} cuboids that together are all that differs, in the order
- *   in which they are to be set
+ * @param {Int32Array} present present states, in the box's array order
+ * @param {Int32Array} wanted wanted states
+ * @param {(state: number) => number} rank order of the states: lower ranks are set first
+ * @returns {{state: number, low: number[], high: number[]}[]} cuboids that together cover all differences, in the
+ *   order of the commands
  */
 function planFills (box, present, wanted, rank) {
   const open = new Uint8Array(box.size)
@@ -22,7 +26,10 @@ function planFills (box, present, wanted, rank) {
     .sort(([a, one], [b, other]) => a - b || one.low[1] - other.low[1]).map(([, cuboid]) => cuboid)
 }
 
-/** The largest cuboid of one state from a corner on, along z, then x, then y; its cells are taken. */
+/**
+ * Return a large cuboid of one state that begins at a corner; it grows along z, then x, then y. Mark its cells as
+ * taken.
+ */
 function grow (box, open, wanted, low) {
   const state = wanted[box.index(...low)]
   const high = [...low]

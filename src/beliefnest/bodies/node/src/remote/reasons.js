@@ -1,33 +1,34 @@
 'use strict'
-/** Why a server cannot be played on, in words for the person who runs it: what was found, and what to type. */
+/** Reasons why a server cannot be played on, in words for its user: what was found, and what to type. */
 
 const { withoutSecrets } = require('./accounts')
 
 class Unplayable extends Error {
-  /** Of the channel: the world failed, and the message is all there is to say. */
+  /** Kind of the failure for the channel: the world failed, and the message says everything. */
   get kind () { return 'world' }
 }
 
 const where = ({ host, port }) => `the server at ${host}:${port}`
 
-/** What the game says when it refuses a player, by the key of its text. */
+/** Texts for the game's own refusals, by the key of the game's text. */
 const REFUSALS = {
   'multiplayer.disconnect.server_full': ({ agents }) =>
     `is full: it has no room for the ${agents.length} agents and the operator; raise max-players in server.properties and restart it`,
   'multiplayer.disconnect.not_whitelisted': ({ agents, operator }) =>
-    `lets in players of its list only; on its console: ${[operator, ...agents].map(name => `whitelist add ${name}`).join(', ')}`,
+    `lets in only the players on its whitelist; on its console: ${[operator, ...agents].map(name => `whitelist add ${name}`).join(', ')}`,
   'multiplayer.disconnect.unverified_username': () =>
     'asks Microsoft who players are (online mode); set online-mode=false in server.properties and restart it, or log in with ' +
     'accounts: ?accounts=FOLDER',
   'multiplayer.disconnect.duplicate_login': () =>
-    'has sent a player away because another one of the same name came; end the other run, or give agents other names',
-  'multiplayer.disconnect.name_taken': () => 'has a player of that name already; end the other run, or give agents other names'
+    'has disconnected a player because another one with the same name joined; end the other run, or give the agents other names',
+  'multiplayer.disconnect.name_taken': () => 'already has a player of that name; end the other run, or give agents other names'
 }
 
 /**
+ * Return the error for a refused player.
  * @param {{host: string, port: number, operator: string, agents: string[]}} server
- * @param {string} player who was refused
- * @param {{key?: string, text: string}} told
+ * @param {string} player name of the refused player
+ * @param {{key?: string, text: string}} told the server's reason
  */
 function refusal (server, player, { key, text }) {
   const known = REFUSALS[key]
@@ -36,7 +37,7 @@ function refusal (server, player, { key, text }) {
 }
 
 const unreachable = (server, why) => new Unplayable(
-  `${where(server)} does not answer (${why}); start it, or mend the address: minecraft://HOST:PORT`)
+  `${where(server)} does not answer (${why}); start it, or correct the address: minecraft://HOST:PORT`)
 
 const noLogin = (server, player, why) => new Unplayable(
   `${player} cannot log in to ${where(server)}: ${withoutSecrets(why)}`)
@@ -44,51 +45,51 @@ const noLogin = (server, player, why) => new Unplayable(
 const onlineMode = server => refusal(server, '', { key: 'multiplayer.disconnect.unverified_username', text: '' })
 
 const wrongVersion = (server, found, held) => new Unplayable(
-  `${where(server)} speaks Minecraft ${found}; this installation has what is needed for ${held.join(', ')}. Run a server of one ` +
-  'of these, or install further versions (docs/servers.md: pip install ./packages/versions); one that speaks several, or lies about it, is ' +
+  `${where(server)} speaks Minecraft ${found}; this installation has the data of ${held.join(', ')}. Run a server of one ` +
+  'of these, or install further versions (docs/servers.md: pip install ./packages/versions); a server that accepts several versions, or reports a wrong one, is ' +
   `played on with ?version=${held[0]}`)
 
 const notHeld = ({ version }, held) => new Unplayable(
-  `?version=${version} asks for a Minecraft of which this installation does not have what is needed; it has that for ${held.join(', ')}, ` +
+  `?version=${version} asks for a version of Minecraft whose data this installation does not have; it has the data of ${held.join(', ')}, ` +
   'and further versions can be installed (docs/servers.md: pip install ./packages/versions)')
 
 const noOperator = (server, lacking) => new Unplayable(
   `on ${where(server)} ${server.operator} may not use ${lacking.map(name => `/${name}`).join(', ')}; on its console: op ${server.operator}. ` +
-  'If it is an operator already, the server has no such commands, and cannot be played on')
+  'If it is an operator already, the server has no such commands and cannot be used')
 
 const noCommands = server => new Unplayable(
-  `${where(server)} does not tell which commands there are, as the game's own does; without /fill, /setblock and others it cannot be played on`)
+  `${where(server)} does not list its commands, as a vanilla server does; without /fill, /setblock and others it cannot be used`)
 
 
-/** What is said of a server that can be played on, and lacks something. */
+/** Warning about a usable server that lacks something. */
 const lesser = (server, lacking) =>
-  `${where(server)} lets ${server.operator} not use ${lacking.map(([name, without]) => `/${name} (${without})`).join(', ')}`
+  `${where(server)} does not let ${server.operator} use ${lacking.map(([name, without]) => `/${name} (${without})`).join(', ')}`
 
 const noCompletions = server =>
-  `${where(server)} does not answer requests for completions of commands, as vanilla ones do; commands are typed singly, and 3 ticks waited for where its answer would say ` +
-  'that all is done: what comes later is told later'
+  `${where(server)} does not answer requests for completions of commands, as vanilla servers do. Commands are typed one by one, with a wait of 3 ticks where the answer would show ` +
+  'that all commands are done; later effects are recorded later'
 
 const waitingForCommands = (server, lacking) =>
-  `${where(server)} does not let ${server.operator} use ${lacking.map(name => `/${name}`).join(', ')} yet; this is waited for during ${server.patience} s. ` +
+  `${where(server)} does not let ${server.operator} use ${lacking.map(name => `/${name}`).join(', ')} yet; waiting up to ${server.patience} s for it. ` +
   `On its console: op ${server.operator}`
 
-/** What is done when a server runs again. */
-const GO_ON = 'what was recorded until the last call is kept: when the server runs again, go on with the same command and --out, or with Nest.resume'
+/** Advice for the time after an interruption. */
+const GO_ON = 'the record up to the last call is kept: when the server runs again, continue with the same command and --out, or with Nest.resume'
 
 const cutOff = (server, player, why) => new Unplayable(
-  `the connection of ${player} to ${where(server)} was lost (${why}) before everything was set up there; look whether the server runs, and run the command again`)
+  `the connection of ${player} to ${where(server)} was lost (${why}) before everything was set up there; check that the server runs, and run the command again`)
 
 const left = (server, player) => new Unplayable(`${player} has left ${where(server)}`)
 
 const tooFar = (server, { low, high }) => new Unplayable(
-  `${where(server)} does not show all of the box from (${low.join(', ')}) to (${high.join(', ')}); raise view-distance in server.properties and restart it`)
+  `${where(server)} does not send the whole box from (${low.join(', ')}) to (${high.join(', ')}); raise view-distance in server.properties and restart it`)
 
 const spawnProtected = server => new Unplayable(
   `on ${where(server)} agents cannot use blocks where the box is; set spawn-protection=0 in server.properties and restart it, ` +
   'or play farther from its spawn: ?at=X,Z (multiples of 16)')
 
 const stalled = (server, seconds) => new Unplayable(
-  `${where(server)} has not gone on for ${seconds} s; ${GO_ON}`)
+  `${where(server)} has not answered for ${seconds} s; ${GO_ON}`)
 
 const gone = (server, player, why, seconds) => new Unplayable(
   `the connection of ${player} to ${where(server)} was lost (${why}) and did not come back within ${seconds} s; ` +

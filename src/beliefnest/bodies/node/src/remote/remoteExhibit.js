@@ -1,5 +1,8 @@
 'use strict'
-/** An exhibit on a server elsewhere: built and kept by the operator's commands, looked at by a guide, with a player for each agent. */
+/**
+ * Exhibit on a remote server: the operator's commands build and change it, a guide looks at it, and each agent in it
+ * is a player.
+ */
 const { Exhibit } = require('../exhibits/exhibit')
 const { Place } = require('../regions/place')
 const { keyOf, listOf, vecOf } = require('../server/plugins/lib/positions')
@@ -8,16 +11,16 @@ const { Guide } = require('./guide')
 const { Link } = require('./link')
 const { Marker } = require('./marker')
 
-// What happens here is no simulator's.
+// Recorder that ignores everything: events in an exhibit belong to no simulator.
 const DEAF = { blockChanged () {}, signChanged () {}, event () {} }
 
-/** Reality goes on whatever becomes of what is only looked at. */
+/** Log a failure of an exhibit; it must not end the real world. */
 const note = (who, error) => process.stderr.write(`${who}: ${error.stack}\n`)
 
 class RemoteExhibit {
   /**
    * @param {object} told EXHIBIT of the channel
-   * @param {string} guideName of a player
+   * @param {string} guideName name of the guide's player
    * @param {import('./remoteRegions').RemoteRegions} regions
    */
   constructor (told, guideName, regions) {
@@ -35,14 +38,14 @@ class RemoteExhibit {
     link.on('back', () => this.later(() => this.refresh()))
     link.on('failed', error => note(guideName, error))
     this.markers = new Map()
-    // Stacks that containers were given, by place.
+    // Stacks that each container was given, by position.
     this.given = new Map()
     this.saved = null
     this.turn = Promise.resolve()
     this.onBack = () => this.later(() => this.refresh())
   }
 
-  /** @throws {BadRequest} if the place holds other blocks, or does not become so */
+  /** Build the exhibit. @throws {BadRequest} if the place holds other blocks, or the server builds something else */
   async build () {
     const { exhibit, guide, regions, scene, setup } = this
     await guide.link.open()
@@ -75,7 +78,7 @@ class RemoteExhibit {
     return slotted(Item, registry, this.scene.states.describe(this.exhibit.at(vecOf({ x: position[0], y: position[1], z: position[2] }))).name, items)
   }
 
-  /** Somebody has been away: what changed meanwhile is made up for. */
+  /** Restore everything after the guide or the operator was disconnected. */
   async refresh () {
     await this.setup.arrive()
     this.scene.settle(this.setup.present())
@@ -87,7 +90,7 @@ class RemoteExhibit {
     this.turn = this.turn.then(action).catch(error => note(this.exhibit.name, error))
   }
 
-  /** Changes what differs, in turn; nobody waits for it. */
+  /** Change the parts that differ, one change after another; the caller does not wait. */
   show ({ tick, ...changes }, now) {
     const { exhibit } = this
     exhibit.lag = Math.max(exhibit.lag, now - tick)
@@ -135,7 +138,7 @@ class RemoteExhibit {
     this.later(() => marker?.close())
   }
 
-  /** Let everybody leave, and puts back what was there before. */
+  /** Remove all players, and restore the blocks that were there before. */
   async close () {
     const { guide, setup, scene, saved, regions: { server } } = this
     guide.operator.link.off('back', this.onBack)

@@ -1,5 +1,5 @@
 'use strict'
-/** The exhibits on a server elsewhere. */
+/** Exhibits on a remote server. */
 const { BadRequest } = require('../channel/errors')
 const { RemoteExhibit } = require('./remoteExhibit')
 
@@ -16,7 +16,7 @@ class RemoteExhibits {
     if (this.regions.server.accounts !== null) {
       throw new BadRequest('beliefs cannot be visited on a server in online mode: everybody shown there would need an account; play on one in offline mode, or in the embedded world with realtime=True')
     }
-    if (this.byName.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already`)
+    if (this.byName.has(told.exhibit)) throw new BadRequest(`${told.exhibit} is shown already; close it first`)
     const exhibit = new RemoteExhibit(told, this.guideName(), this.regions)
     try {
       await this.regions.operator.attended(() => exhibit.build())
@@ -28,7 +28,7 @@ class RemoteExhibits {
     return null
   }
 
-  /** A player's name that begins as the operator's and that nobody has. */
+  /** Return a free player name that begins with the operator's. */
   guideName () {
     const { unseen, server, operator: { bot } } = this.regions
     for (let number = 1; ; number++) {

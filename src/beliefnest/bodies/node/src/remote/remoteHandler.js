@@ -1,5 +1,5 @@
 'use strict'
-/** Answers the channel's requests with a server elsewhere, in real time. */
+/** Handler of the channel's requests for a remote server, in real time. */
 const { RealtimeHandler, requireBots } = require('../realtimeHandler')
 const { capture } = require('./capture')
 const { RemoteExhibits } = require('./remoteExhibits')

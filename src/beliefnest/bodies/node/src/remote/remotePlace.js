@@ -1,10 +1,10 @@
 'use strict'
-/** A place on a server elsewhere: its ticks are those of the server's age. */
+/** Part of a remote server's world. Its ticks follow the server's age. */
 const { Place } = require('../regions/place')
 
 class RemotePlace extends Place {
   /**
-   * @param {object} options of Place
+   * @param {object} options options of Place
    * @param {import('./serverClock').ServerClock} clock
    */
   constructor (options, clock) {
@@ -17,13 +17,13 @@ class RemotePlace extends Place {
     this.pulse = null
   }
 
-  /** Count on from a tick, from now. */
+  /** Count on from a tick, beginning now. */
   rebase (tick) {
     this.tick = tick
     this.start = this.clock.age - tick
   }
 
-  /** @returns {number} the tick that the server is in */
+  /** Return the tick of the server's present age. @returns {number} */
   now () {
     return Math.max(this.tick, this.clock.age - this.start)
   }

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * The real world on a server elsewhere, as the channel asks for regions: one place, which goes on between the calls.
- * What happens there meanwhile is told with the next call.
+ * Real world on a remote server, with the interface of regions: one place, which runs on between calls. The next call
+ * reports the events in between.
  */
 const { setTimeout: sleep } = require('node:timers/promises')
 const { BadRequest } = require('../channel/errors')
@@ -22,8 +22,9 @@ const NOTHING = new Uint8Array(0)
 
 class RemoteRegions {
   /**
-   * @param {object} server `host`, `port`, `operator`, `at` (where scenario (0, 0) lies: x, z), `overwrite`, `keep`, `patience` (s)
-   * @param {object} session of beginSession
+   * @param {object} server `host`, `port`, `operator`, `at` (server position of scenario (0, 0): x, z), `overwrite`,
+   *   `keep`, `patience` (s)
+   * @param {object} session result of beginSession
    * @param {object} registry
    * @param {(frame: object) => void} send
    */
@@ -38,11 +39,11 @@ class RemoteRegions {
     this.open = null
     // Agents whose places people may take.
     this.invited = new Set()
-    // Players of ours whom agents are not to know of.
+    // Our own players that agents must not see.
     this.unseen = new Set([server.operator])
-    // Why the place was given up, if it was.
+    // Reason why the place was given up; null while it is played.
     this.failure = null
-    // What a Runner asks of regions.
+    // Interface for a Runner. Bodies need no rest here, because time goes on.
     this.bodies = {
       async rest () {},
       stand: async () => true,
@@ -51,18 +52,18 @@ class RemoteRegions {
     this.clock = { advance: () => new Promise(resolve => { setImmediate(resolve) }) }
   }
 
-  /** @returns {Function} by which skills wait for ticks of the server (bots/ticking.js) */
+  /** Return the function with which skills wait for ticks of the server (bots/ticking.js). @returns {Function} */
   waitOf (region, bot, ended) {
     return waitFor(bot, () => region.now(), ended)
   }
 
-  /** @throws {BadRequest} if there is no such region */
+  /** Return the region. @throws {BadRequest} if there is no such region */
   get (name) {
     if (this.open?.region.name !== name) throw new BadRequest(`there is no region ${name} on this server`)
     return this.open.region
   }
 
-  /** @returns {Promise<object>} SNAPSHOT, once every agent stands there */
+  /** Create a region. Resolve when every agent stands in it. @returns {Promise<object>} SNAPSHOT */
   async create ({ region: name, box: corners, tick, blocks, containers, agents, items, signs = [], known = Object.keys(agents) }) {
     if (this.failure !== null) throw this.failure
     if (this.open !== null) throw new BadRequest(`${this.open.region.name} is played on this server; there can be one place at a time`)
@@ -80,7 +81,7 @@ class RemoteRegions {
     return this.snapshot(region)
   }
 
-  /** Make the place so; after a lost connection nothing more is made. @throws {Unplayable} as soon as it is lost */
+  /** Run an action of the set-up; stop as soon as the connection is lost. @throws {Unplayable} if it is lost */
   async make (action) {
     try {
       return await this.operator.attended(action)
@@ -90,16 +91,16 @@ class RemoteRegions {
     }
   }
 
-  /** Begin a player's connection. @param {{x: number, z: number}} origin of what it is to take for the world's middle */
+  /** Begin a player's connection. @param {{x: number, z: number}} origin server position of the player's (0, y, 0) */
   connection (username, origin) {
     const { version, server, unseen: hidden } = this
     return connect({ host: server.host, port: server.port, version, username, origin, hidden, login: server.loginOf(username) })
   }
 
   /**
-   * What makes a place of the server as asked, and follows it.
-   * @param {import('./operator').Operator} operator who looks at it
-   * @param {(error: Error) => void} fail hears that contents could not be looked at
+   * Return the objects that set up a place of the server and follow it.
+   * @param {import('./operator').Operator} operator operator, or a guide in its place
+   * @param {(error: Error) => void} fail called if contents cannot be read
    */
   tools (place, operator, fail) {
     const commands = commandsFor(place, state => this.mapping.textForServer(state), this.registry.version)
@@ -147,7 +148,7 @@ class RemoteRegions {
     return { states: present, containers }
   }
 
-  /** From now on what happens is told. */
+  /** Begin to report events. */
   begin (open, tick, agents) {
     const { region } = open
     region.rebase(tick)
@@ -156,14 +157,14 @@ class RemoteRegions {
     region.pulse = setInterval(() => this.tickUndriven(open), POLL_MS)
   }
 
-  /** Take as known what was asked for: where the server has it otherwise, the next frame tells that. */
+  /** Take the requested state as known; the next frame reports where the server differs from it. */
   know ({ region, scene }, agents) {
     scene.endTick()
     region.recorder.settle()
     for (const [agent, state] of Object.entries(agents)) if (state !== null) region.recorder.known.agents.set(agent, state)
   }
 
-  /** The operator has been away: what changed meanwhile it finds by looking. */
+  /** After the operator was disconnected, find the changed blocks by comparing all of them. */
   async lookAgain ({ region, scene, setup }) {
     await setup.arrive()
     const present = setup.present()
@@ -177,7 +178,7 @@ class RemoteRegions {
     this.makeFrame(open)
   }
 
-  /** @returns {boolean} true if anything has changed */
+  /** Make the frame of a tick. @returns {boolean} true if anything has changed */
   makeFrame ({ region, scene, agents }) {
     scene.endTick()
     agents.endTick()
@@ -188,7 +189,7 @@ class RemoteRegions {
     return true
   }
 
-  /** Run a call on a region: its ticks are then the call's to take. */
+  /** Run a call on a region. The call itself then advances the ticks. */
   async resumed (region, action) {
     await this.present()
     region.faults.length = 0
@@ -204,8 +205,8 @@ class RemoteRegions {
   }
 
   /**
-   * Say whose places people may take; who has one of another agent is sent away.
-   * @returns {string[]} who is there
+   * Set the agents whose places people may take; kick people who play other agents.
+   * @returns {string[]} agents that people play now
    */
   invite (names) {
     this.invited.clear()
@@ -213,7 +214,7 @@ class RemoteRegions {
     return this.open === null ? [] : this.open.agents.invite()
   }
 
-  /** The next tick; what happened in it is sent. @returns {Promise<boolean>} true if anything has */
+  /** Wait for the next tick and send its frame. @returns {Promise<boolean>} true if anything has changed */
   async tick (region, before) {
     while (region.now() <= region.tick) {
       try {
@@ -234,7 +235,7 @@ class RemoteRegions {
     throw error
   }
 
-  /** Resolve when all players are connected. @throws {Unplayable} if the place was, or has to be, given up */
+  /** Resolve when all players are connected. @throws {Unplayable} if the place was given up, or has to be */
   async present () {
     if (this.failure !== null) throw this.failure
     await this.open.agents.present().catch(error => this.fail(error))
@@ -248,7 +249,7 @@ class RemoteRegions {
     })
   }
 
-  /** Make the place so; what happened there since the last call is forgotten with what it led to. */
+  /** Set the region's state. Events since the last call are forgotten, with all their effects. */
   async apply ({ region: name, blocks, containers, agents, items, tick, signs = [] }) {
     const region = this.get(name)
     region.isDriven = true
@@ -287,11 +288,11 @@ class RemoteRegions {
   async destroy (name) {
     this.get(name)
     await this.giveUp(this.open)
-    // Nothing more can be played in this session.
+    // A session whose place was given up cannot continue.
     if (this.failure !== null) throw this.failure
   }
 
-  /** Let agents leave and puts back what was there, unless it is to be kept. */
+  /** Remove all agents, and restore the blocks that were there before unless the new ones are to be kept. */
   async giveUp (open) {
     const { region, agents, saved } = open
     clearInterval(region.pulse)
@@ -313,7 +314,7 @@ class RemoteRegions {
     await this.operator.settled()
   }
 
-  /** @returns {object} SNAPSHOT of what is there now */
+  /** Return the SNAPSHOT of the present state. @returns {object} */
   snapshot ({ tick }) {
     const { scene, agents } = this.open
     return {
@@ -321,14 +322,14 @@ class RemoteRegions {
     }
   }
 
-  /** End all that is open. */
+  /** Close all connections. */
   async close () {
     if (this.open !== null) await this.giveUp(this.open)
     await this.operator.link.close()
   }
 }
 
-/** All containers of the box, those of which nothing is said as empty. */
+/** Return the contents of all containers of the box; those that are not mentioned are empty. */
 function withEmpty (positions, containers) {
   const said = new Set(containers.map(([x, y, z]) => `${x},${y},${z}`))
   return [...containers, ...positions.filter(position => !said.has(position.join())).map(position => [...position, {}])]

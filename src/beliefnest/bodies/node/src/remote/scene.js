@@ -1,7 +1,7 @@
 'use strict'
 /**
- * What happens in a place on a server elsewhere, as its operator sees and hears it: blocks, dropped items, words. Who
- * did it is found among what the agents tried just before.
+ * Events of a place on a remote server, as its operator sees and hears them: blocks, dropped items, words. The actor
+ * of an effect is found among the attempts that agents have just made.
  */
 const { Vec3 } = require('vec3')
 const { halvesAt } = require('../server/plugins/lib/doubleChest')
@@ -16,12 +16,12 @@ const { Lids } = require('./lids')
 const { People } = require('./people')
 
 const BY_HAND = /(_door|_trapdoor|_fence_gate)$/
-// Ticks after which words that nobody heard are not waited for any more.
+// Number of ticks after which words that nobody heard are given up.
 const UNHEARD_AFTER = 60
-// Ticks within which what lies where a block was is what was mined.
+// Number of ticks in which an item that appears where a block was mined counts as its drop.
 const FALLS_WITHIN = 5
 const LID = 1
-// Ticks within which an arm is seen to swing after what it did.
+// Number of ticks in which a swing of an arm may follow the effect of the act.
 const SWINGS_WITHIN = 10
 
 class Scene {
@@ -30,7 +30,8 @@ class Scene {
    * @param {import('./versions').BlockMapping} mapping
    * @param {import('./operator').Operator} operator
    * @param {object} commands of commandsFor
-   * @param {(position: number[]) => Promise<object | null>} read ITEMS of a container, as the server has it
+   * @param {(position: number[]) => Promise<object | null>} read returns the ITEMS of a container from the server's
+   *   data
    */
   constructor (region, mapping, operator, commands, read) {
     this.region = region
@@ -40,23 +41,23 @@ class Scene {
     this.items = new Items(region)
     this.people = new People(region, operator, commands)
     this.lids = new Lids(this, read)
-    // Takes why the place cannot be followed any more.
+    // Called with the reason if the place can no longer be followed.
     this.fail = () => {}
     this.mined = []
-    // What is written on signs that are written on.
+    // Texts of the signs that have one.
     this.signs = new Map()
     this.witnesses = new Map()
     this.expected = []
     this.thrown = []
-    // What was done with blocks in this tick, told after what it did to them.
+    // Acts on blocks in this tick; they are recorded after their effects.
     this.deeds = []
-    // What no bot tried, and a person may be seen to have done: {position, tick, tell}.
+    // Effects that no bot has attempted and a person may have caused: {position, tick, tell}.
     this.unexplained = []
     this.blocks = null
     this.serv = servFor(this)
   }
 
-  /** Take the states of the box as what is there. */
+  /** Set the known states of the box. */
   settle (states) {
     this.blocks = states.slice()
   }
@@ -70,7 +71,7 @@ class Scene {
     return halvesAt(place => this.at(place), position)
   }
 
-  /** A block of the box became `state`. */
+  /** Handle a block of the box that became `state`. */
   blockChanged (position, state) {
     const { box, recorder } = this.region
     if (this.blocks === null || !box.contains(position.x, position.y, position.z)) return
@@ -90,7 +91,7 @@ class Scene {
     if (slotsIn(after.name) > 0) this.contents.know(position, {})
   }
 
-  /** A sign shows this text. */
+  /** Handle the text that a sign now shows. */
   signShown (position, text) {
     const { box, recorder } = this.region
     if (this.blocks === null || !box.contains(position.x, position.y, position.z) || text === this.signText(position)) return
@@ -108,7 +109,7 @@ class Scene {
     return this.signs.get(keyOf(position))?.text ?? ''
   }
 
-  /** @returns {Array} [x, y, z, text] of all signs that are written on, in order */
+  /** Return [x, y, z, text] of all signs with a text, in order. @returns {Array} */
   signStates () {
     return [...this.signs.values()].map(({ position, text }) => [...listOf(position), text]).sort(byPlace)
   }
@@ -133,14 +134,20 @@ class Scene {
     this.did(this.whoTried('use', position), position, kind, detail)
   }
 
-  /** What was done at a place, by whom if it was a bot; a person who did it is found by and by. */
+  /**
+   * Record an act on a block. `who` is the witness of the bot that did it; null if a person may have, who is found
+   * later.
+   */
   did (who, position, kind, detail) {
     const tell = actor => this.deeds.push({ who: actor, kind, detail })
     if (who === null) this.explainLater(position, tell)
     else tell(who)
   }
 
-  /** Call `tell` with the witness of who is seen to have acted on a place, now or within a moment; if somebody is. */
+  /**
+   * Call `tell` with the witness of the person who is seen to have acted on a position, now or within a moment; do not
+   * call it if nobody is.
+   */
   explainLater (position, tell) {
     this.unexplained.push({ position: vecOf(position), tick: this.region.tick, tell })
   }
@@ -154,7 +161,10 @@ class Scene {
     })
   }
 
-  /** A door is where its lower half is, whichever half was used; the half that changes first tells it. */
+  /**
+   * Record the use of a door. Its position is that of its lower half, whichever half was used; the half that changes
+   * first causes the event.
+   */
   usedDoor (position, { name, properties }) {
     const isUpper = name.endsWith('_door') && properties.half === 'upper'
     const lower = isUpper ? position.offset(0, -1, 0) : position
@@ -164,7 +174,7 @@ class Scene {
     this.did(this.whoTried('use', lower) ?? this.whoTried('use', upper), lower, 'use_door', { position: listOf(lower), open: properties.open })
   }
 
-  /** What appears beside what somebody used with a block in hand, or in its place, that one has put. */
+  /** Attribute a new block to the agent who just used an item on that position or next to it. */
   placed (position, after) {
     if (after.properties.half === 'upper' && after.name.endsWith('_door')) return
     const faces = [[0, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0]]
@@ -172,12 +182,12 @@ class Scene {
     this.did(who, position, 'place_block', { position: listOf(position), block: this.states.text(after.stateId) })
   }
 
-  /** The agent whose bot has tried that. */
+  /** Return the witness of the agent whose bot has just attempted an act; null if there is none. */
   whoTried (kind, position) {
     return [...this.witnesses.values()].find(witness => witness.hasTried(kind, position)) ?? null
   }
 
-  /** Whether a bot has just used the block there, or is about to be shown what it holds. */
+  /** Return true if a bot has just used the block, or is about to see its contents. */
   isUsedByBot (position) {
     return [...this.witnesses.values()].some(witness => witness.usesNow(position))
   }
@@ -186,7 +196,7 @@ class Scene {
     return [...this.witnesses.values()].some(({ windows }) => windows.shows(position))
   }
 
-  /** An item that nobody's bot threw appeared: a person may have, unless it is what was mined there. */
+  /** Attribute an item to a person if no bot threw it and it is not the drop of a mined block. */
   thrownByPerson ({ position }, { name, count }) {
     const now = this.region.tick
     const isMined = this.mined.some(({ position: place, tick }) => now - tick <= FALLS_WITHIN && place.offset(0.5, 0.5, 0.5).distanceTo(position) <= 1)
@@ -194,12 +204,12 @@ class Scene {
     if (agent !== null) this.thrown.push({ agent, name, count, tick: now })
   }
 
-  /** An agent has sent words: they are told when they are heard. */
+  /** Remember words that an agent has sent; they are recorded when they are heard. */
   expect (words) {
     this.expected.push({ ...words, tick: this.region.tick })
   }
 
-  /** A line of text that a player was shown; `null` is the operator. */
+  /** Handle a line that a player received; agent `null` is the operator. */
   heardBy (agent, text) {
     const line = spaced(text)
     const index = this.expected.findIndex(({ actor, text: said, to }) => line.includes(actor) && line.endsWith(spaced(said)) &&
@@ -209,14 +219,14 @@ class Scene {
     this.region.emit({ kind: 'chat', actor, detail: to === undefined ? { text: said } : { text: said, to } })
   }
 
-  /** Whether all that agents said has been heard, or will not be. */
+  /** Return true if all words of agents have been heard or given up, and no container is being checked. */
   get isQuiet () {
     if (!this.lids.isQuiet) return false
     this.expected = this.expected.filter(({ tick }) => this.region.tick - tick <= UNHEARD_AFTER)
     return this.expected.length === 0
   }
 
-  /** Follow the operator's connection. */
+  /** Listen to the operator's connection. */
   attach (bot, client) {
     bot.on('blockUpdate', (_, block) => { if (block !== null) this.blockChanged(block.position, this.mapping.fromServer(block.stateId)) })
     bot.on('messagestr', text => this.heardBy(null, text))
@@ -255,10 +265,10 @@ class Scene {
   }
 }
 
-/** Words as servers hand them on: each run of spaces is one. */
+/** Return a text as servers deliver it: each run of spaces becomes one. */
 const spaced = text => text.replace(/\s+/g, ' ').trim()
 
-/** What the plugins for reports ask of a server: agents speak scenario coordinates here. */
+/** Return the part of a server's interface that the plugins for reports use, in scenario coordinates. */
 function servFor (scene) {
   return {
     get players () { return [...scene.witnesses.values()] },

@@ -1,21 +1,23 @@
 'use strict'
 /**
- * The age of a server's world, in ticks. The server tells it now and then; in between it is counted on, as fast as the
- * server went before, and at most as far as the next telling: a slow server is waited for. It never falls.
+ * Age of a server's world, in ticks. The server sends it now and then. In between the clock counts on at the server's
+ * last speed, but not beyond the next expected message, so that it waits for a slow server. The age never decreases.
  */
 const TICK_MS = 50
-// Vanilla tells its age every 20 ticks.
+// A vanilla server sends its age every 20 ticks.
 const TELLS_EVERY = 20
-// Milliseconds that count at most between two looks at whether the server is silent.
+// Largest time, in milliseconds, that counts between two checks of whether the server is silent.
 const MOST_BETWEEN_LOOKS = 1000
 
 class ServerClock {
-  /** @param {() => number} now milliseconds */
+  /**
+   * @param {() => number} now returns milliseconds
+   */
   constructor (now = () => performance.now()) {
     this.now = now
     this.told = null
     this.toldAt = now()
-    // Milliseconds that a tick takes there, as the two latest tellings say: never less than the game's own.
+    // Milliseconds per tick according to the last two messages, but at least the game's own 50.
     this.tickMs = TICK_MS
     this.offset = 0
     this.latest = 0
@@ -23,7 +25,7 @@ class ServerClock {
     this.lookedAt = now()
   }
 
-  /** Take what the server says; one whose age has fallen was set up anew, and is counted on from here. */
+  /** Set the age that the server sent. If it has decreased, the server was set up anew; count on from here. */
   tell (age) {
     if (this.told !== null && age < this.told) this.offset = this.latest - age
     if (this.told !== null && age > this.told) this.tickMs = Math.max(TICK_MS, this.silence / (age - this.told))
@@ -32,19 +34,19 @@ class ServerClock {
     this.waited = 0
   }
 
-  /** Whether the server has ever told its age. */
+  /** Return true if the server has ever sent its age. */
   get isSet () {
     return this.told !== null
   }
 
-  /** Milliseconds since the server told its age. */
+  /** Return the milliseconds since the server last sent its age. */
   get silence () {
     return this.now() - this.toldAt
   }
 
   /**
-   * Return whether the server has told nothing for so many milliseconds of those who look again and again. Time in which this
-   * process itself was stopped is not the server's silence.
+   * Return true if the server has been silent for a number of milliseconds, measured by repeated calls. Time in which
+   * this process itself was stopped does not count.
    */
   isSilentFor (milliseconds) {
     const now = this.now()

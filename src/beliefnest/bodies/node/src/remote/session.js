@@ -1,5 +1,5 @@
 'use strict'
-/** Begins a session on a server elsewhere: looks whether it can be played on, and lets the operator in. */
+/** Start of a session on a remote server: it checks that the server can be used, and lets the operator in. */
 const minecraft = require('minecraft-protocol')
 const { OFFLINE, withAccount } = require('./accounts')
 const { USEFUL } = require('./commands')
@@ -14,10 +14,11 @@ const { held, heldFor, registryOf } = require('./versions')
 
 
 /**
- * @param {object} server as RemoteRegions has it; `version` if the server is not to be asked for it
- * @param {(text: string) => void} [tell] shows something to the user
- * @returns {Promise<{operator: Operator, clock: ServerClock, version: string, theirs: object}>} the server's version and registry
- *   besides
+ * Begin a session.
+ * @param {object} server server, as in RemoteRegions; with `version` the server is not asked for its version
+ * @param {(text: string) => void} [tell] shows a text to the user
+ * @returns {Promise<{operator: Operator, clock: ServerClock, version: string, theirs: object}>} the operator, and the
+ *   server's version and registry
  * @throws {Unplayable} with what is missing and what to do
  */
 async function beginSession (server, tell = () => {}) {
@@ -40,7 +41,10 @@ async function beginSession (server, tell = () => {}) {
   return { operator, clock, version, theirs }
 }
 
-/** Look whether the operator can do what is needed, and tells what is lacking besides. @throws {Unplayable} if it cannot */
+/**
+ * Check the operator's rights; warn the user about missing optional ones.
+ * @throws {Unplayable} if a required one is missing
+ */
 async function look (operator, tell) {
   const { clock, server } = operator
   await operator.until(() => clock.isSet)
@@ -53,7 +57,10 @@ async function look (operator, tell) {
   tell(reasons.noCompletions(server))
 }
 
-/** @returns {Promise<string>} the version held that the server speaks, as the address or its answer to a ping says */
+/**
+ * Return the held version that the server speaks, according to its address or its answer to a ping.
+ * @returns {Promise<string>}
+ */
 async function versionOf (server) {
   const { host, port, version } = server
   const spoken = version === null ? await pinged(server, { host, port }) : { name: version, key: version }

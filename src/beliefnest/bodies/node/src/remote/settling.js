@@ -1,17 +1,17 @@
 'use strict'
 /**
- * Two ways to know that a server has done what a player's client has sent, with one interface: `type` for commands, and
- * `settled`, which takes `until` of an Operator to wait with.
+ * Two ways to find out that a server has handled everything a player's client has sent. Both have the same interface:
+ * `type` for commands, and `settled`, which waits by the `until` of an Operator.
  */
 const { setTimeout: sleep } = require('node:timers/promises')
 
 const POLL_MS = 10
 const TICKS = 3
-// Ticks that go on there until what is not answered counts as done, or as never to be.
+// Number of server ticks after which a missing answer is no longer expected.
 const SILENT_TICKS = 60
 const MOST_NUMBERS = 1_000_000
 
-/** The server is asked for completions of a command: its answer comes after all that was sent before is done. */
+/** Settling by a request for completions of a command: the server answers it after everything that was sent before. */
 class ByCompletions {
   constructor () {
     this.last = 0
@@ -21,11 +21,14 @@ class ByCompletions {
     bot._client.chat(`/${command}`)
   }
 
-  /** @returns {Promise<boolean>} true if the server has done within so many ticks what the client has sent */
+  /**
+   * Return true if the server has handled everything that the client has sent, within a number of ticks.
+   * @returns {Promise<boolean>}
+   */
   async settled ({ _client: client }, until, ticks) {
     const number = this.last = this.last % MOST_NUMBERS + 1
     let isAnswered = false
-    // An answer to an earlier question says nothing about what was sent since.
+    // An answer to an earlier request says nothing about packets sent since.
     const hear = ({ transactionId }) => { isAnswered ||= transactionId === number }
     client.on('tab_complete', hear)
     client.write('tab_complete', { transactionId: number, text: '/' })
@@ -39,18 +42,21 @@ class ByCompletions {
 }
 
 /**
- * For servers that do not answer such requests, and may do at the same time what was typed one after the other: commands
- * are typed singly, and a few ticks waited for. That is a wait and no proof; what it was for is looked at afterwards.
+ * Settling for servers that do not answer such requests and may execute commands in parallel: commands are typed one
+ * by one, each followed by a wait of a few ticks. The wait proves nothing; therefore callers check the effect
+ * afterwards.
  */
 class ByWaiting {
-  /** @param {import('./serverClock').ServerClock} clock */
+  /**
+   * @param {import('./serverClock').ServerClock} clock
+   */
   constructor (clock) {
     this.clock = clock
     this.typed = Promise.resolve()
     this.done = 0
   }
 
-  /** Types a command when something was said to the last one. */
+  /** Type a command after the server has answered the last one. */
   type (bot, command) {
     this.typed = this.typed.then(() => this.said(bot, command))
   }
@@ -66,7 +72,7 @@ class ByWaiting {
     this.done += 1
   }
 
-  /** @returns {Promise<boolean>} false if nothing is done for so many ticks */
+  /** Wait a few ticks. @returns {Promise<boolean>} false if nothing is done within a number of ticks */
   async settled (_, until, ticks) {
     let isTyped = false
     this.typed.then(() => { isTyped = true })
@@ -79,7 +85,10 @@ class ByWaiting {
   }
 }
 
-/** @returns {Promise<boolean>} true if a server answers requests for completions; false if its time goes on without an answer */
+/**
+ * Return true if a server answers requests for completions; false if its time goes on without an answer.
+ * @returns {Promise<boolean>}
+ */
 function answersCompletions (operator) {
   return new ByCompletions().settled(operator.bot, (condition, ticks) => operator.until(condition, ticks), SILENT_TICKS)
 }

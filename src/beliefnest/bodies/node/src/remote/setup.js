@@ -1,5 +1,5 @@
 'use strict'
-/** Makes a place on a server elsewhere as asked, and looks whether it is. */
+/** Set-up of a place on a remote server, with checks of the result. */
 const { EYE_HEIGHT } = require('../../../../programs/skills/lib/sight')
 const { BadRequest } = require('../channel/errors')
 const { countByName } = require('../server/plugins/lib/items')
@@ -23,7 +23,7 @@ const BESIDE = [[0, -1], [1, 0], [0, 1], [-1, 0]]
 
 class Setup {
   /**
-   * @param {import('./scene').Scene} scene of the place
+   * @param {import('./scene').Scene} scene scene of the place
    * @param {import('./operator').Operator} operator
    * @param {object} commands of commandsFor
    * @param {object} registry
@@ -37,7 +37,7 @@ class Setup {
     this.Item = require('prismarine-item')(registry)
   }
 
-  /** Bring the operator to where it sees all of the box, unseen itself. */
+  /** Move the operator to where it sees the whole box and nobody sees it. */
   async arrive () {
     const { operator, commands, region: { box } } = this
     operator.type(commands.mode(operator.link.name, 'spectator'))
@@ -53,7 +53,7 @@ class Setup {
     await this.operator.go(this.commands.go(this.operator.link.name, place, { yaw: 0, pitch: -Math.PI / 2 }), place)
   }
 
-  /** @throws {BadRequest} if the box holds what is not the scenario's */
+  /** Fail if the box holds blocks that are not the scenario's. @throws {BadRequest} */
   requireFree (present, wanted) {
     const { box } = this.region
     const foreign = []
@@ -69,8 +69,8 @@ class Setup {
   }
 
   /**
-   * Make the blocks of the box so.
-   * @returns {Promise<Int32Array>} what is there then: the same blocks, as the server connects them
+   * Build the blocks of the box.
+   * @returns {Promise<Int32Array>} the states built: the same blocks, with the server's own connections
    * @throws {BadRequest} if the server builds something else
    */
   async build (wanted) {
@@ -84,22 +84,22 @@ class Setup {
     const flaws = this.flaws(present, wanted)
     if (flaws.length === 0) return present
     throw new BadRequest(
-      `the server did not build ${flaws.length} blocks of the box, as ${flaws.slice(0, MOST_TOLD).join(', ')}; it said last: ${operator.lines.at(-1) ?? 'nothing'}`)
+      `the server did not build ${flaws.length} blocks of the box, such as ${flaws.slice(0, MOST_TOLD).join(', ')}; it said last: ${operator.lines.at(-1) ?? 'nothing'}`)
   }
 
-  /** What is there now. */
+  /** Return the present states of the box. */
   present () {
     return this.operator.readStates(this.region.box, this.scene.mapping)
   }
 
-  /** What holds others first, what hangs on others last. */
+  /** Return the build order of a state: supporting blocks first, attached blocks last. */
   rank (state) {
     const { name, solid } = this.scene.states.describe(state)
     if (name.endsWith('air')) return 0
     return solid && !/_door$|_trapdoor$/.test(name) ? 1 : 2
   }
 
-  /** Where another block stands than asked for; how fences and panes connect is up to the server. */
+  /** Return descriptions of blocks that differ from the wanted ones. How fences and panes connect does not matter. */
   flaws (present, wanted) {
     const { states } = this.scene
     const told = []
@@ -113,7 +113,7 @@ class Setup {
   }
 
   /**
-   * Make containers hold exactly this, and looks into them.
+   * Fill containers and check their contents.
    * @param {Array} containers [x, y, z, ITEMS]
    */
   async stock (containers) {
@@ -128,7 +128,7 @@ class Setup {
     if (containers.length > 0) await this.goAbove()
   }
 
-  /** @returns {string[]} the commands that make a container hold exactly this */
+  /** Return the commands that set the contents of a container. @returns {string[]} */
   putIn (position, items) {
     const { name } = this.scene.at(vec(position))
     try {
@@ -139,7 +139,10 @@ class Setup {
     }
   }
 
-  /** @returns {Promise<object | null>} ITEMS of a container; null if it cannot be opened, as under a block, nor asked for */
+  /**
+   * Return the ITEMS of a container; null if it can neither be opened, as under a block, nor queried.
+   * @returns {Promise<object | null>}
+   */
   async read (position) {
     const stacks = await this.operator.lookInto(this.commands, position)
     if (stacks === null) return this.asked(position)
@@ -149,13 +152,13 @@ class Setup {
     return countByName(stacks.slice(first, first + size))
   }
 
-  /** What the server says that a container holds. */
+  /** Return the contents of a container from the server's data. */
   async asked (position) {
     const data = this.operator.can('data') ? await this.operator.ask(this.commands.dataAt(position)) : null
     return data === null ? null : totals(stacksIn(data.Items))
   }
 
-  /** Positions of all containers that stand in the box. */
+  /** Return the positions of all containers in the box. */
   containers (present) {
     const found = []
     this.region.box.forEach((x, y, z, index) => {
@@ -165,7 +168,7 @@ class Setup {
   }
 
   /**
-   * Let exactly this be written on the signs of the box.
+   * Write on the signs of the box, and clear all others.
    * @param {Array} signs [x, y, z, text]
    */
   async write (signs) {
@@ -173,7 +176,7 @@ class Setup {
     const wanted = new Map([...scene.signStates().map(([x, y, z]) => [[x, y, z].join(), '']), ...signs.map(([x, y, z, text]) => [[x, y, z].join(), text])])
     const differing = [...wanted].map(([key, text]) => [key.split(',').map(Number), text]).filter(([position, text]) => scene.signText(vec(position)) !== text)
     if (differing.length === 0) return
-    if (!operator.can('data')) throw new BadRequest('signs in the box are written on, which this server cannot be told: it has no /data')
+    if (!operator.can('data')) throw new BadRequest('the scenario has texts on signs, but this server has no /data command to write them; leave the texts out, or use another server')
     for (const [position, text] of differing) {
       const lines = text.split('\n')
       for (let line = 0; line < LINES; line++) operator.type(this.commands.write(position, line, lines[line] ?? ''))
@@ -186,8 +189,8 @@ class Setup {
   }
 
   /**
-   * Let an agent open a gate beside its eyes, which is there for no longer.
-   * @throws {Unplayable} if the server does not let it
+   * Check that agents may use blocks: let an agent open a gate beside its eyes, which exists only for this check.
+   * @throws {Unplayable} if the server refuses it
    */
   async requireUse (bot) {
     const { operator, scene, region: { box } } = this
@@ -210,14 +213,14 @@ class Setup {
     if (!opened) throw reasons.spawnProtected(operator.server)
   }
 
-  /** Let exactly these items lie in the box. */
+  /** Summon the dropped items of the box. */
   async lay (items) {
     const { operator, commands, scene } = this
     operator.type(commands.removeItems())
     await operator.settled()
     scene.items.await(items)
     if (Object.keys(items).length === 0) return
-    if (!operator.can('summon')) throw new BadRequest('items lie in the box, which this server cannot be told: it has no /summon')
+    if (!operator.can('summon')) throw new BadRequest('the scenario has dropped items, but this server has no /summon command to create them; leave the items out, or use another server')
     for (const item of Object.values(items)) operator.type(commands.layItem(item))
     await operator.settled()
     await operator.until(() => scene.items.awaited.length === 0)

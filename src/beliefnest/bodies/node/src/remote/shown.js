@@ -1,9 +1,9 @@
 'use strict'
-/** The columns of blocks that a bot has been shown. */
+/** Block columns that a bot has received. */
 
 const CHUNK_BITS = 4
 
-/** @returns {number} columns of a box that a bot has not been shown */
+/** Return the number of columns of a box that a bot has not received. @returns {number} */
 function columnsLacking ({ world }, { low, high }) {
   let lacking = 0
   for (let x = low[0] >> CHUNK_BITS; x <= high[0] >> CHUNK_BITS; x++) {

@@ -1,14 +1,14 @@
 'use strict'
 /**
- * The game's own notation of data, as `/data get` answers in it: `[{Slot: 0b, id: "minecraft:bread", Count: 2b}]`.
- * Numbers lose their kind; arrays of one kind of number are lists.
+ * Parser of SNBT, the game's text notation of data, as `/data get` answers in it: `[{Slot: 0b, id: "minecraft:bread",
+ * Count: 2b}]`. Numbers lose their type; typed arrays become lists.
  */
 
 const TOKEN = /\s*(?:([{}[\],:;])|"((?:[^"\\]|\\.)*)"|'((?:[^'\\]|\\.)*)'|([^\s{}[\],:;"']+))/sy
 const NUMBER = /^[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?[bslfdBSLFD]?$/
 const ARRAYS = ['B', 'I', 'L']
 
-/** @throws {SyntaxError} if the text is not of that notation */
+/** Parse a text. @throws {SyntaxError} if the text is not SNBT */
 function parseSnbt (text) {
   const tokens = tokensOf(text)
   const value = valueAt(tokens)

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Minecraft versions of servers elsewhere. This build's own version is the one that everybody speaks of; a server's
- * blocks are those of the same names and properties in its version.
+ * Minecraft versions of remote servers. The rest of the code uses this build's own version; a server's blocks are
+ * mapped to those of the same names and properties.
  */
 const minecraftData = require('minecraft-data')
 const { pc: data } = require('minecraft-data/data')
@@ -9,17 +9,18 @@ const { BadRequest } = require('../channel/errors')
 const { rememberBlocks } = require('../blocks')
 const { blockStates, encode } = require('../server/plugins/lib/states')
 
-// Names of the same block in older and newer versions, other than in ours.
+// Other names of our blocks in older and newer versions.
 const OTHER_NAMES = { short_grass: ['grass'], chain: ['iron_chain'], dirt_path: ['grass_path'] }
 const AIR = 'air'
 const STONE = 'stone'
 
-/** Versions that this build has what is needed for. */
+/** Return the versions whose data this build has. */
 const held = () => Object.keys(data).filter(version => /^\d+\.\d+(\.\d+)?$/.test(version))
 
 /**
- * @param {number | string} spoken a number of the protocol, or a version
- * @returns {string | null} the version held that speaks it; null if none is
+ * Return the held version for a version or protocol number.
+ * @param {number | string} spoken protocol number, or a version
+ * @returns {string | null} null if no held version speaks it
  */
 function heldFor (spoken) {
   if (held().includes(spoken)) return spoken
@@ -30,18 +31,18 @@ function heldFor (spoken) {
   return same.find(version => held().includes(version)) ?? null
 }
 
-/** @returns {object} what is known of a version that is held */
+/** Return the registry of a held version. @returns {object} */
 function registryOf (version) {
   const registry = require('prismarine-registry')(version)
   rememberBlocks(registry)
   return registry
 }
 
-/** Block states of our version and of a server's, one for the other. */
+/** Mapping of block states between our version and a server's. */
 class BlockMapping {
   /**
-   * @param {object} registry of our version
-   * @param {object} theirs of the server's
+   * @param {object} registry registry of our version
+   * @param {object} theirs registry of the server's version
    */
   constructor (registry, theirs) {
     this.isSame = registry.version.minecraftVersion === theirs.version.minecraftVersion
@@ -50,23 +51,27 @@ class BlockMapping {
     this.states = blockStates(registry)
     this.theirStates = blockStates(theirs)
     this.known = new Map()
-    // Names of blocks of the server that ours has not; they are taken for stone, or for air where one can walk through.
+    // Names of the server's blocks that our version lacks; they are mapped to stone, or to air if they are passable.
     this.strange = new Set()
   }
 
-  /** @returns {number} our state of a state of the server's */
+  /** Return our state for a state of the server. @returns {number} */
   fromServer (state) {
     if (this.isSame) return state
     if (!this.known.has(state)) this.known.set(state, this.mapped(state))
     return this.known.get(state)
   }
 
-  /** @returns {string} a state of ours as the server's commands name it. @throws {BadRequest} if the server has no such block */
+  /**
+   * Return the text of one of our states for the server's commands.
+   * @returns {string}
+   * @throws {BadRequest} if the server lacks the block
+   */
   textForServer (state) {
     if (this.isSame) return shortText(this.registry, this.states, state)
     const { name, properties } = this.states.describe(state)
     const found = sameBlock(this.theirs, name, properties, OTHER_NAMES[name] ?? [])
-    if (found === null) throw new BadRequest(`the server's Minecraft ${this.theirs.version.minecraftVersion} has no block ${name}; let the scenario have another one`)
+    if (found === null) throw new BadRequest(`the server's Minecraft ${this.theirs.version.minecraftVersion} has no block ${name}; use another block in the scenario`)
     return shortText(this.theirs, this.theirStates, found)
   }
 
@@ -80,13 +85,20 @@ class BlockMapping {
   }
 }
 
-/** A state as commands have it: a block alone is its default state, also on servers whose commands know no properties. */
+/**
+ * Return the text of a state for commands. A default state is only a name, also for servers whose commands know no
+ * properties.
+ */
 function shortText (registry, states, state) {
   const { name } = states.describe(state)
   return registry.blocksByName[name].defaultState === state ? name : states.text(state)
 }
 
-/** @returns {number | null} the state of a block of one of these names, with those of the properties that it has */
+/**
+ * Return the state of a block with one of these names and as many of the given properties as it has; null if there is
+ * none.
+ * @returns {number | null}
+ */
 function sameBlock (registry, name, properties, others) {
   const own = [name, ...others].find(each => registry.blocksByName[each] !== undefined)
   if (own === undefined) return null

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * What one agent does in windows, as its own clicks and the server's answers tell: which container it looks into, what
- * it moves in and out, what it crafts and takes out of furnaces, what it throws away.
+ * Acts of one agent in windows, inferred from its own clicks and the server's answers: which container it opens, which
+ * items it moves in and out, crafts, takes out of furnaces and throws away.
  */
 const { createLedger } = require('../server/plugins/lib/ledger')
 const { equal, withCount } = require('../server/plugins/lib/items')
@@ -13,15 +13,15 @@ const OUTSIDE = -999
 const OUTPUT = 2
 const RESULT = 0
 const DROP_MODE = 4
-// Ticks within which a server takes a click back.
+// Number of ticks in which a server may undo a click.
 const ANSWERED_WITHIN = 20
 
 class Windows {
   /**
-   * @param {object} witness of the agent: `emitEvent`, `countAct`, `threw(item)`, `lookedAt()` where it used something last,
-   *   `tick`
+   * @param {object} witness witness of the agent: `emitEvent`, `countAct`, `threw(item)`, `lookedAt()` for the block
+   *   it used last, `tick`
    * @param {object} scene `at(position)`, `halvesAt(position)`, `contents`
-   * @param {object} Item class of the version
+   * @param {object} Item Item class of the version
    */
   constructor (witness, scene, Item) {
     this.witness = witness
@@ -31,13 +31,13 @@ class Windows {
     this.reset()
   }
 
-  /** Nothing is open; what was moved until now stays to be told. */
+  /** Close everything; moves up to now are still reported. */
   reset () {
     this.opened = null
     this.cursor = null
   }
 
-  /** Whether what a container holds is shown. */
+  /** Return true if an open window shows the contents of the container. */
   shows (position) {
     return this.opened !== null && this.opened.positions.some(place => place.equals(position))
   }
@@ -55,7 +55,7 @@ class Windows {
     opened.ledger = createLedger(positions, position => this.part(opened, position))
   }
 
-  /** Slots of a part of an opened container. */
+  /** Return the slots of one container of an opened window. */
   part ({ positions, kind, slots }, position) {
     const index = positions.findIndex(other => keyOf(other) === keyOf(position))
     const size = slotsIn(kind)
@@ -73,7 +73,7 @@ class Windows {
       if (this.opened === null) this.cursor = this.Item.fromNotch(carriedItem)
       return
     }
-    // It may have been sent before the latest clicks were handled.
+    // The message may have been sent before the latest clicks were handled.
     if (this.opened.own.size === 0) this.cursor = this.Item.fromNotch(carriedItem)
     stacks.forEach((stack, slot) => { this.hear(slot, stack) })
     this.tellContents()
@@ -91,7 +91,7 @@ class Windows {
     for (const position of opened.positions) this.scene.contents.show(position, this.part(opened, position))
   }
 
-  /** The server says what a slot holds: somebody else moved it, or it takes a click of the agent's back. */
+  /** Handle the server's content of a slot: somebody else moved an item, or the server undid a click of the agent. */
   showSlot ({ windowId, slot, item }) {
     const stack = this.Item.fromNotch(item)
     if (windowId === OWN) this.own[slot] = stack
@@ -103,14 +103,14 @@ class Windows {
   }
 
   /**
-   * What the server says of a slot of the opened window. Where the agent has just clicked, it may be of before that or
-   * between two clicks; it is looked at again when that time is over.
+   * Handle the server's content of a slot in the opened window. In a slot that the agent has just clicked, the message
+   * may describe the state before or between two clicks; `forgetClicks` checks it again later.
    */
   hear (slot, stack) {
     const { own, slots, kind } = this.opened
     const clicks = own.get(slot)
     const isKnown = clicks !== undefined && [clicks.before, ...clicks.after].some(each => equal(each, stack))
-    // What is put into a fire is gone by itself, at any moment.
+    // Fires use up their items by themselves, at any moment.
     if (isKnown && !isFurnace(kind ?? '')) {
       clicks.told = stack
       return
@@ -119,7 +119,10 @@ class Windows {
     slots[slot] = stack
   }
 
-  /** What the server said last of a slot that the agent clicked on holds: other clicks it has taken back. */
+  /**
+   * When a click is old, accept the server's last content of its slot: a different content means that the server undid
+   * the click.
+   */
   forgetClicks () {
     const { opened, witness } = this
     for (const [slot, { tick, told }] of opened.own) {
@@ -162,7 +165,7 @@ class Windows {
     this.tellContents()
   }
 
-  /** What came out of a slot in which something was made. */
+  /** Report items that were taken out of the slot in which they were made. */
   tellMade (kind, before, slot) {
     const made = before.slots[slot]
     if (!made) return
@@ -177,7 +180,7 @@ class Windows {
     if (count > 0) this.witness.threw(withCount(before, count))
   }
 
-  /** What was moved on balance, once nothing is on its way between container and inventory. */
+  /** Report the net moves, once no item is on its way between container and inventory. */
   settle () {
     if (this.opened === null) return
     this.forgetClicks()

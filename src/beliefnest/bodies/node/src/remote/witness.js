@@ -1,7 +1,7 @@
 'use strict'
 /**
- * One agent on a server elsewhere, as its own connection tells: what it sends is what it tries, what comes back is what
- * came of it. It is to the plugins for acts and reports what a player is in this process.
+ * Observer of one agent's connection to a remote server: sent packets are the agent's attempts, received packets are
+ * their results. The plugins for acts and reports use it like a player of the embedded server.
  */
 const { EventEmitter } = require('node:events')
 const { Vec3 } = require('vec3')
@@ -12,7 +12,7 @@ const { Windows } = require('./windows')
 
 const WHISPER = /^(?:tell|msg|w) (\S+) (.+)$/s
 const DIG = { START: 0, CANCEL: 1, FINISH: 2, DROP_STACK: 3, DROP_ONE: 4 }
-// Ticks within which the server answers what an agent tried.
+// Number of ticks in which the server answers an agent's attempt.
 const ANSWERED_WITHIN = 60
 
 class Witness extends EventEmitter {
@@ -20,7 +20,7 @@ class Witness extends EventEmitter {
    * @param {string} agent
    * @param {import('../regions/place').Place} region
    * @param {import('./scene').Scene} scene
-   * @param {object} Item class of the version
+   * @param {object} Item Item class of the version
    */
   constructor (agent, region, scene, Item) {
     super()
@@ -29,9 +29,9 @@ class Witness extends EventEmitter {
     this.region = region
     this.scene = scene
     this.bot = null
-    // Whether a person is this agent, whom the operator alone sees.
+    // The person who plays this agent, visible only to the operator; null if a bot does.
     this.person = null
-    // What it tried last with a block: {position, tick, kind}, the latest first.
+    // Latest attempts on blocks: {position, tick, kind}, the latest first.
     this.tries = []
     this.used = null
     this.usedAt = -Infinity
@@ -45,7 +45,7 @@ class Witness extends EventEmitter {
     return this.region.tick
   }
 
-  /** Where it is; of a bot that is on its way back, where it stood. */
+  /** Return the agent's position; for a bot that is reconnecting, its last one. */
   get position () {
     return (this.person ?? this.bot).entity?.position ?? this.stoodAt
   }
@@ -55,7 +55,7 @@ class Witness extends EventEmitter {
     this.emit('event', { kind, detail })
   }
 
-  /** Follow a connection, from its first packet on. */
+  /** Listen to a connection from its first packet on. */
   attach (bot, client) {
     this.bot = bot
     this.windows.reset()
@@ -78,7 +78,9 @@ class Witness extends EventEmitter {
     this.tries = this.tries.filter(({ tick }) => this.region.tick - tick <= ANSWERED_WITHIN)
   }
 
-  /** Whether this agent tried that kind of thing there a moment ago; then the try is used up. */
+  /**
+   * Return true if this agent attempted this kind of act at the position a moment ago; the attempt is then used up.
+   */
   hasTried (kind, position) {
     const index = this.tries.findIndex(each => each.kind === kind && each.position.equals(position) && this.region.tick - each.tick <= ANSWERED_WITHIN)
     if (index < 0) return false
@@ -86,7 +88,10 @@ class Witness extends EventEmitter {
     return true
   }
 
-  /** Whether it has used the block there and the server may not have answered yet, or shows it what that holds. */
+  /**
+   * Return true if the agent has used the block and the server may not have answered yet, or its window shows the
+   * block's contents.
+   */
   usesNow (position) {
     return this.windows.shows(position) || (this.used !== null && this.used.equals(position) && this.region.tick - this.usedAt <= ANSWERED_WITHIN)
   }
@@ -113,14 +118,14 @@ class Witness extends EventEmitter {
     if (text !== undefined) this.scene.expect({ actor: this.agent, text, to })
   }
 
-  /** At the end of a tick: what was counted in it. */
+  /** At the end of a tick, report the acts counted in it. */
   endTick () {
     this.uttered = 0
     this.windows.settle()
     this.tellActs()
   }
 
-  /** What was still going on has ended with its program. */
+  /** Report that unfinished acts ended with the agent's program. */
   rest () {
     this.emit('rest')
   }

@@ -77,8 +77,8 @@ test('a structure file is read, and what it does not name is air', async () => {
 
 test('what is no such file is refused with a sentence', async () => {
   const cases = [
-    [Buffer.from('a text'), /no file of the game's data/],
-    [schem2().subarray(0, 40), /no file of the game's data/],
+    [Buffer.from('a text'), /not a file of the game's data format/],
+    [schem2().subarray(0, 40), /not a file of the game's data format/],
     [file(nbt.comp({ Materials: nbt.string('Alpha'), ...sides })), /before Minecraft 1\.13/],
     [file(nbt.comp({ Width: nbt.short(-1), Height: nbt.short(-1), Length: nbt.short(-1) })), /65535 x 65535 x 65535 blocks/],
     [file(nbt.comp({ ...sides })), /it has no blocks/],
@@ -96,5 +96,5 @@ test('a file that unpacks to more than the limit is refused with the limit', asy
 })
 
 test('a file that is packed twice is not unpacked twice', async () => {
-  await assert.rejects(readPlace(zlib.gzipSync(schem2())), { message: /no file of the game's data/, kind: 'bad_request' })
+  await assert.rejects(readPlace(zlib.gzipSync(schem2())), { message: /not a file of the game's data format/, kind: 'bad_request' })
 })
