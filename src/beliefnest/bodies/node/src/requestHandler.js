@@ -1,5 +1,5 @@
 'use strict'
-/** Answers the requests of the channel (design/channel.md), one at a time. */
+/** Handler of the channel's requests (design/channel.md), one at a time. */
 const { Random } = require('./time/random')
 const { rememberBlocks } = require('./blocks')
 const { createServer } = require('./server')
@@ -16,9 +16,9 @@ const PROTOCOL = 3
 class RequestHandler {
   /**
    * @param {import('./time/clock').Clock} clock
-   * @param {(message: object) => void} send
-   * @param {(message: object) => void} [beat] takes a sign of life, as often as there is one
-   * @param {(message: object) => Promise<object>} [ask] sends a question, and resolves with the other side's answer
+   * @param {(message: object) => void} send sends a message
+   * @param {(message: object) => void} [beat] called with each heartbeat
+   * @param {(message: object) => Promise<object>} [ask] sends a question and resolves with the other side's reply
    */
   constructor (clock, send, beat = () => {}, ask = undefined) {
     this.clock = clock
@@ -30,7 +30,7 @@ class RequestHandler {
     this.sandbox = null
   }
 
-  /** @returns {Promise<object>} the answer to a request, whatever happens */
+  /** Return the reply to a request; failures are replies, too. @returns {Promise<object>} */
   async answer (request) {
     try {
       return { id: request.id, ok: true, result: await this.perform(request) }
@@ -40,7 +40,7 @@ class RequestHandler {
     }
   }
 
-  /** Do what can be done for the next request while the other side works on the answer to the last. */
+  /** Prepare the next request while the other side works on the last reply. */
   async prepare () {
     await this.sandbox?.prepare()
   }
@@ -75,21 +75,21 @@ class RequestHandler {
     const alive = () => this.beat({ beat: this.tick })
     this.regions = await this.open(registry, request, alive)
     this.sandbox = createSandbox({}, alive)
-    // For its names, which are those of every bot.
+    // Warm the sandbox with the names in scope, which are the same for every bot.
     await this.sandbox.warm(scopeOf({ registry }, () => {}))
     const perceive = async tick => (await this.ask({ perceive: tick })).percepts
     this.runner = new Runner(this.regions, request => this.sandbox.run(request), scopeOf, perceive)
     return { protocol: PROTOCOL, node: process.version, ...versions }
   }
 
-  /** @returns {Promise<object>} the regions of the world that `hello` asks for */
+  /** Return the regions of the world that `hello` asks for. @returns {Promise<object>} */
   async open (registry, { seed }, alive) {
     this.clock.root.random = new Random(String(seed))
     const serv = createServer(registry)
     return new Regions(serv, this.clock, frame => this.send({ frame }), alive)
   }
 
-  /** The tick of the region that runs; null if none does. */
+  /** Return the tick of the running region; null if none runs. */
   get tick () {
     return this.regions?.serv.region?.tick ?? null
   }

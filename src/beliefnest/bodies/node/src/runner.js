@@ -1,5 +1,5 @@
 'use strict'
-/** Runs the programs of agents in one region, together, tick by tick. */
+/** Runner of agents' programs: it runs the programs of one region together, tick by tick. */
 const { stopBot } = require('./bots/bot')
 const { View } = require('./percepts/view')
 const { statesOf } = require('./regions/box')
@@ -8,7 +8,7 @@ const { ruleSpeech } = require('./bots/speech')
 const { Memory } = require('./memory')
 
 const MOST_AIMS = 100
-// Ticks after the end of its program in which an agent may come down to the ground; who swims never does.
+// Number of ticks after the end of its program in which an agent may still land; a swimming agent never lands.
 const LANDING_TICKS = 100
 const USUAL = { speechTicks: 0, remembers: false, past: {} }
 
@@ -16,14 +16,13 @@ class Runner {
   /**
    * @param {import('./regions/regions').Regions} regions
    * @param {(request: {code: string, bot: object, scope: object, signal: AbortSignal, aim: function(object): void}) =>
-   *   Promise<{ok: boolean, error: object | null, lines: number[], log: {text: string}[],
-   *   unfinished: {what: string, line: number | null}[]}>} runProgram never rejects for a fault of the
-   *   program; ends as soon as `signal` is aborted
-   * @param {(bot: object, emit: (event: object) => void, signal: AbortSignal) => object} scopeOf what a
-   *   program of this bot finds in scope; `emit` hears what its skills report until `signal` is aborted, and throws
-   *   what they may not
-   * @param {(tick: number) => Promise<object | null>} [perceive] asks what agents whose programs read percepts alone
-   *   perceive now that a tick is over: PERCEPTS by agent; null: programs are to be ended
+   *   Promise<{ok: boolean, error: object | null, lines: number[], log: {text: string}[], unfinished: {what: string,
+   *   line: number | null}[]}>} runProgram runs a program; it never rejects for a fault of the program, and ends as
+   *   soon as `signal` is aborted
+   * @param {(bot: object, emit: (event: object) => void, signal: AbortSignal) => object} scopeOf returns the scope of
+   *   a bot's program; its skills pass their events to `emit`, which throws if an event is not allowed
+   * @param {(tick: number) => Promise<object | null>} [perceive] asks Python for the percepts of a tick: PERCEPTS by
+   *   agent, for the agents whose programs read only percepts; null ends the programs
    */
   constructor (regions, runProgram, scopeOf, perceive) {
     this.regions = regions
@@ -33,12 +32,13 @@ class Runner {
   }
 
   /**
-   * @param {string} name of the region
+   * Run programs until all have ended.
+   * @param {string} name name of the region
    * @param {object} programs code by agent
-   * @param {number} timeoutTicks after which programs that still run are ended
-   * @param {object} [senses] PERCEPTS by agent, of those whose programs are to read nothing else
-   * @param {{speechTicks: number, remembers: boolean, past: object}} [rules] ticks that it takes to say something; whether
-   *   what programs call is remembered, and PAST by agent, of those that go on where they were cut
+   * @param {number} timeoutTicks number of ticks after which running programs are ended
+   * @param {object} [senses] PERCEPTS by agent, for the agents whose programs read only percepts
+   * @param {{speechTicks: number, remembers: boolean, past: object}} [rules] ticks per utterance; whether calls of
+   *   programs are remembered; and PAST by agent, for programs that are resumed
    * @returns {Promise<{tick: number, internal_state: Uint8Array, results: object}>} RESULT by agent
    */
   async run (name, programs, timeoutTicks, senses = {}, rules = USUAL) {
@@ -75,7 +75,7 @@ class Runner {
     const past = rules.past[agent] ?? null
     const memory = rules.remembers ? new Memory(past?.calls ?? [], () => region.tick, abort.signal) : null
     const request = { code, bot, scope: this.scopeOf(bot, emit, abort.signal, memory, this.regions.waitOf?.(region, bot, abort.signal)), signal: abort.signal, aim }
-    // Numbers that others draw, too, would tell of what they do.
+    // Random numbers that agents share would reveal the acts of others.
     if (view !== null) request.random = randomOf(region, agent, past?.tick ?? region.tick)
     const isRuled = rules.speechTicks > 0 || memory !== null
     const speech = isRuled ? ruleSpeech(bot, { ticks: rules.speechTicks, memory, signal: abort.signal }) : null
@@ -90,7 +90,8 @@ class Runner {
     return run
   }
 
-  // What programs leave undone is broken off before the last frame is made, which so tells of it.
+  // Run ticks until the end. The last tick ends unfinished acts before its frame is made, so that the frame contains
+  // their effects.
   async untilEnded (region, runs, timeoutTicks) {
     let lastTick = region.tick + timeoutTicks
     let over = false
@@ -110,8 +111,8 @@ class Runner {
   }
 
   /**
-   * Bring the body of an agent whose program has ended to rest: what it does from then on must not depend on how long
-   * others' programs go on.
+   * Bring an agent whose program has ended to rest, so that its further motion does not depend on how long others'
+   * programs run.
    */
   async bringToRest (region, run) {
     if (run.result === null || run.rests) return
@@ -119,7 +120,7 @@ class Runner {
     run.rests = await this.regions.bodies.stand(region, run.agent, region.tick < run.endTick + LANDING_TICKS)
   }
 
-  /** End, once, what a program that has ended left under way. */
+  /** End the unfinished acts of a program that has ended; a second call has no effect. */
   async breakOff (region, run) {
     if (run.isBrokenOff) return
     run.isBrokenOff = true
@@ -128,9 +129,9 @@ class Runner {
   }
 
   /**
-   * Let programs that read percepts alone have what came of the tick that is over.
-   * @param {boolean} changed whether anything did; if not, there is nothing new to perceive
-   * @returns {Promise<boolean>} true if programs go on
+   * Give programs that read only percepts the percepts of the tick that has ended.
+   * @param {boolean} changed whether anything changed; if not, there is nothing new to perceive
+   * @returns {Promise<boolean>} true if the programs continue
    */
   async look (region, runs, changed) {
     const limited = runs.filter(({ view, result, crash }) => view !== null && (result ?? crash) === null)
@@ -142,12 +143,12 @@ class Runner {
   }
 
   /**
-   * Let the program of the agent in whose bot something was thrown fail with it, or the only one there is.
+   * Fail the program of the agent whose bot threw an error, or the only program there is.
    * @returns {boolean} true if there is such a program
    */
   blame (region, runs, { error, agent, lost }) {
     const own = runs.find(each => each.agent === agent)
-    // Others go on without a bot that lost its connection.
+    // Other programs continue without a bot that lost its connection.
     if (lost !== undefined && own === undefined) return true
     const run = runs.length === 1 ? runs[0] : own
     if (run === undefined) return false
@@ -173,9 +174,10 @@ class Runner {
 }
 
 /**
- * @param {object} report of the sandbox
- * @param {string[]} stopped what the bot was still doing
- * @param {{kind: string, message: string} | null} end why the program was ended, if it did not end by itself
+ * Return the result of a program.
+ * @param {object} report report of the sandbox
+ * @param {string[]} stopped activities of the bot that were stopped
+ * @param {{kind: string, message: string} | null} end reason why the program was ended; null if it ended by itself
  * @returns {object} RESULT, without ticks
  */
 function resultOf ({ ok, error, lines, log, unfinished }, stopped, end) {

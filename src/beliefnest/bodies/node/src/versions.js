@@ -1,5 +1,5 @@
 'use strict'
-/** What this build was made of. */
+/** Versions of this build. */
 module.exports = {
   minecraft: '1.20.4',
   mineflayer: require('mineflayer/package.json').version,

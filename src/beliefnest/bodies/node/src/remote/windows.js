@@ -120,8 +120,8 @@ class Windows {
   }
 
   /**
-   * When a click is old, accept the server's last content of its slot: a different content means that the server undid
-   * the click.
+   * Accept the server's last content of slots whose last click is old. If it differs from the expected one, the server
+   * has undone the click.
    */
   forgetClicks () {
     const { opened, witness } = this

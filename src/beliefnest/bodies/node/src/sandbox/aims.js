@@ -1,13 +1,16 @@
 'use strict'
 /**
- * What a program asks its bot to make for, told from the arguments of its calls and from nothing else: a place, or an
- * agent, to walk to or to use. It counts whether or not it can be reached, and whatever is there.
+ * Aims of a program: the positions and agents that its calls ask the bot to walk to or to use. They are taken only
+ * from the arguments of calls, whether or not the target can be reached.
  */
 
 const using = place => ({ place, uses: true })
 const handing = { agent: 1, uses: true }
 
-/** By skill: which argument is the place or the agent, counted from 0 with `bot`; whether what is there is used. */
+/**
+ * By skill: which argument is the position or the agent, counted from 0 with `bot`, and whether the skill uses the
+ * target.
+ */
 const SKILLS = {
   goToPosition: { place: 1, uses: false },
   follow: { agent: 1, uses: false },
@@ -29,14 +32,17 @@ const USING = new Set(['openContainer', 'openChest', 'openDispenser', 'openFurna
 const WALKING = new Set(['goto', 'setGoal'])
 const LONGEST_NAME = 16
 
-/** @returns {?{call: string, place: ?number[], agent: ?string, uses: boolean}} null if the call makes for nothing */
+/**
+ * Return the aim of a call of a skill; null if the call has none.
+ * @returns {?{call: string, place: ?number[], agent: ?string, uses: boolean}}
+ */
 function aimOfSkill (name, args) {
   if (!Object.hasOwn(SKILLS, name)) return null
   const { place, agent, uses } = SKILLS[name]
   return aim(name, pointOf(args[place]), nameOf(args[agent]), uses)
 }
 
-/** The same of a call of the bot or of its pathfinder. */
+/** Return the aim of a call of the bot or of its pathfinder. */
 function aimOfCall (name, [target]) {
   if (!target || typeof target !== 'object') return null
   if (USING.has(name)) return aim(name, pointOf(target.position), nameOf(target.username), true)

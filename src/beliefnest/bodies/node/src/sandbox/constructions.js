@@ -1,5 +1,5 @@
 'use strict'
-/** Goals and movements of mineflayer-pathfinder, built in the host from a program's description. */
+/** Construction of mineflayer-pathfinder's goals and movements in the host, from a program's description. */
 
 const { goals, Movements } = require('mineflayer-pathfinder')
 
@@ -8,9 +8,9 @@ const { cut } = require('./text')
 const MAX_GOALS = 100
 const MAX_RANGE = 256
 const MAX_DEPTH = 10
-// A player reaches no further; rays are as long.
+// Largest reach; a player reaches no further, and rays are no longer.
 const MAX_REACH = 8
-// What a goal costs that looks along rays, at every place of a way that is near enough for them; and making movements.
+// Fuel per ray check of a goal, charged at every near enough position of a path; also the fuel for a Movements object.
 const RAYS_COST = 5000
 const MOVEMENTS_COST = 200_000
 const coordinate = (exchange, wire, where) => exchange.coordinate(wire, where)
@@ -69,14 +69,15 @@ function half (exchange, wire, where) {
   return text
 }
 
-/** Names of the goals a program can make. */
+/** Names of the goals that a program can make. */
 const GOAL_NAMES = Object.keys(FORMS)
 
 /**
+ * Build a goal from its description.
  * @param {import('./exchange').Exchange} exchange
  * @param {object} wire `{$: 'g', n: name, a: arguments}`
- * @param {string} where for messages
- * @returns {object} a goal of mineflayer-pathfinder
+ * @param {string} where name of the value for messages
+ * @returns {object} goal of mineflayer-pathfinder
  */
 function buildGoal (exchange, wire, where, { depth, made } = { depth: 0, made: { goals: 0 } }) {
   if (++made.goals > MAX_GOALS) throw new TypeError(`${where} is one of more than ${MAX_GOALS} goals in one`)
@@ -93,7 +94,10 @@ function buildGoal (exchange, wire, where, { depth, made } = { depth: 0, made: {
   return built
 }
 
-/** Let the program pay where a goal looks along rays; it is reached at once when there is no fuel left. */
+/**
+ * Charge fuel for the rays of a goal. When the fuel is used up, the goal counts as reached, so that the search ends at
+ * once.
+ */
 function payForRays (exchange, goal) {
   const { isEnd, pos } = goal
   goal.isEnd = (node) => {
@@ -110,9 +114,10 @@ function goalOptions (exchange, { options }, wire) {
 }
 
 /**
+ * Build movements from a description.
  * @param {import('./exchange').Exchange} exchange
- * @param {object} wire `{$: 'm', o: [[name, value]...]}`, switches and costs of Movements
- * @returns {object} movements of mineflayer-pathfinder: the bot's standard ones, changed as described
+ * @param {object} wire `{$: 'm', o: [[name, value]...]}`: switches and costs of Movements
+ * @returns {object} the bot's standard movements with the described changes
  */
 function buildMovements (exchange, wire, where) {
   if (wire === null || typeof wire !== 'object' || wire.$ !== 'm' || !Array.isArray(wire.o)) {

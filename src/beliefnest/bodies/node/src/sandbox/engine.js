@@ -1,8 +1,8 @@
 'use strict'
 /**
- * Guests: QuickJS, one WebAssembly instance per program on an empty memory, so that nothing of a
- * program, not even a damaged interpreter, outlives it. What runs is metered (meter.js), so that a program ends by
- * its own amount of computation and not by a clock.
+ * Guests: QuickJS interpreters, one WebAssembly instance with fresh memory per program, so that nothing of a program
+ * outlives it, not even a damaged interpreter. Execution is metered (meter.js), so that a program ends by its own
+ * amount of computation and not by a clock.
  */
 
 const { QuickJS, GuestException } = require('./quickjs')
@@ -15,18 +15,19 @@ const { parsed } = require('./text')
 
 const SHADOW_STACK_BYTES = 400_000
 const UNMETERED = 0x7fffffff
-// The part of the limit that only loops without a poll can reach: they trap, polls end politely.
+// Fuel reserved for loops that never poll for interrupts. A poll ends the guest politely when only this reserve is
+// left; without a poll the guest traps when the reserve is used up.
 const GRACE = 20_000_000
 const CROSSING_STACK_BYTES = 20_000
-// After its end a guest that called the host still has to take the answer; then it traps.
+// Fuel after the end: a guest that called the host must still take the answer; then it traps.
 const LAST_BREATH = 20_000
 const JOBS_AT_ONCE = 100
 const MOST_STRAYS = 1000
-// What the host does to wake a guest: about as much as to answer it.
+// Fuel for waking a guest: about as much as for answering it.
 const WAKE_COST = 1500
 const HOST_FUNCTIONS = { host: 1, now: 2, random: 3 }
 
-/** Why a guest can run no more: `fuel`, `memory`, `stack`, `internal`, or what `end` was told. */
+/** Reason why a guest can run no more: `fuel`, `memory`, `stack`, `internal`, or the kind given to `end`. */
 class GuestEnded extends Error {
   /**
    * @param {string} kind
@@ -42,13 +43,15 @@ class GuestEnded extends Error {
 }
 
 /**
- * @typedef {{parameters: string[], skills: string[], data: boolean}} Scope what programs find: the names in
- *   order, which of them are skills, whether `mcData` is there
+ * @typedef {{parameters: string[], skills: string[], data: boolean}} Scope names in scope of a program: all of them in
+ *   order, those that are skills, and whether `mcData` is among them
  */
 
-/** The compiled interpreter; makes guests. */
+/** Compiled interpreter, which makes guests. */
 class Engine {
-  /** @param {() => void} [alive] hears now and then that a guest computes within its limits */
+  /**
+   * @param {() => void} [alive] called now and then while a guest computes within its limits
+   */
   constructor (alive = () => {}) {
     this.alive = alive
     this.module = new WebAssembly.Module(interpreterBytes())
@@ -59,6 +62,7 @@ class Engine {
   }
 
   /**
+   * Return a guest for a program.
    * @param {{fuel: number, memory: number}} limits fuel in units of the meter, memory in bytes
    * @param {Scope} scope
    * @returns {Promise<Guest>} settled without any timer or input
@@ -73,7 +77,7 @@ class Engine {
     return this.make(limits, scope)
   }
 
-  /** Make a guest beforehand, for a program with the limits and the scope of the last one. */
+  /** Make a guest in advance, for a program with the same limits and scope as the last one. */
   async prepare () {
     if (this.last === null || this.ready !== null) return
     const { key, limits, scope } = this.last
@@ -90,13 +94,13 @@ class Engine {
     return guest
   }
 
-  /** Take a guest back that has ended and is not on the stack; it must not be used any more. */
+  /** Take back the memory of a guest that has ended and is not on the stack. The guest must not be used any more. */
   close (guest) {
     this.memories.give(guest.memory, guest.limits.memory)
   }
 
   /**
-   * What every program of a scope starts from, made once.
+   * Return the initial state of all programs of a scope; it is made on first use.
    * @param {Scope} scope
    */
   templateOf (scope) {
@@ -105,7 +109,7 @@ class Engine {
     return this.templates.get(text)
   }
 
-  // A fresh context with the guest's side of the border and everything in scope.
+  // Make a fresh context with the guest's side of the border and the scope, and save its state.
   async makeTemplate (scopeText) {
     let strays = 0
     const host = { call: () => 0, interrupt: () => false, rejected: () => { strays++ } }
@@ -119,12 +123,12 @@ class Engine {
     interpreter.call(interpreter.property(guest, 'bind'), [interpreter.string(scopeText)])
     const functions = Object.fromEntries(['start', 'dispatch', 'describe'].map((name) => [name, interpreter.property(guest, name)]))
     interpreter.evaluate('Promise.reject()', 'check.js')
-    if (strays !== 1) throw new Error('this build of QuickJS does not tell of rejected promises where rejections.js looks for it')
+    if (strays !== 1) throw new Error('this build of QuickJS has its rejection tracker at another place than rejections.js assumes; correct PLACE there')
     return { state: interpreter.save(), functions }
   }
 }
 
-/** One program's interpreter; after its end every call throws GuestEnded. */
+/** Interpreter of one program. After its end every call throws GuestEnded. */
 class Guest {
   constructor (limits, functions, alive) {
     this.limits = limits
@@ -139,12 +143,12 @@ class Guest {
     this.nesting = 0
   }
 
-  /** Units of fuel used so far. */
+  /** Return the fuel used so far. */
   get used () {
     return this.limits.fuel + GRACE - this.interpreter.fuel.value
   }
 
-  /** Whether nothing of the guest is on the stack. */
+  /** Return true if no code of the guest is on the stack. */
   get idle () {
     return this.nesting === 0
   }
@@ -172,8 +176,9 @@ class Guest {
   }
 
   /**
-   * Ask the interpreter, not the program, which could lie or break what it would say it with.
-   * @returns {?{ok: boolean, error: object}} how the program ended, null while it goes on
+   * Return how the program ended. The interpreter is asked, not the program, which could lie or break the functions it
+   * would answer with.
+   * @returns {?{ok: boolean, error: object}} null while the program runs
    */
   result () {
     const state = this.interpreter.promiseState(this.program)
@@ -181,7 +186,10 @@ class Guest {
     return state === 'fulfilled' ? { ok: true } : { ok: false, error: this.enter(() => this.reason(this.program)) }
   }
 
-  /** @returns {?object} the error of the first promise that was rejected while nothing waited for it */
+  /**
+   * Return the error of the first promise that was rejected without a handler; null if there is none.
+   * @returns {?object}
+   */
   strayError () {
     const [promise] = this.strays.values()
     return promise === undefined ? null : this.enter(() => this.reason(promise))
@@ -198,7 +206,7 @@ class Guest {
   }
 
   /**
-   * Hand a message to the guest and lets everything run that can run.
+   * Send a message to the guest, and run everything that can run.
    * @param {Array} message
    * @returns {{ok: boolean, value: *}}
    */
@@ -216,8 +224,8 @@ class Guest {
   }
 
   /**
-   * Take fuel for work that the host does on the program's behalf.
-   * @returns {boolean} true if there was enough; a guest without any ends when it next runs
+   * Charge fuel for work that the host does on the program's behalf.
+   * @returns {boolean} true if there was enough; a guest without fuel ends when it next runs
    */
   charge (units) {
     if (this.ended) return false
@@ -226,14 +234,14 @@ class Guest {
     return fuel.value > GRACE
   }
 
-  /** End the guest: what runs of it stops within `LAST_BREATH`. */
+  /** End the guest. Code that is running stops within `LAST_BREATH`. */
   end (kind, detail, stack) {
     if (this.ended) return
     this.fuelAtEnd = this.used
     this.ended = new GuestEnded(kind, detail, stack)
   }
 
-  /** Numbers of the statements that ran, read from the guest's memory. */
+  /** Return the numbers of the executed statements, read from the guest's memory. */
   get statements () {
     const { marked } = this
     const ran = []
@@ -241,7 +249,7 @@ class Guest {
     return ran
   }
 
-  /** Number of the statement that began last, 0 for none. */
+  /** Return the number of the statement that began last; 0 for none. */
   get lastStatement () {
     return this.marked[0] ?? 0
   }
@@ -250,7 +258,10 @@ class Guest {
     return new Uint32Array(this.interpreter.glue.HEAPU8.buffer, this.marks.place, this.marks.length)
   }
 
-  /** The interpreter calls a host function. The estimate of the stack counts no frames of the host. */
+  /**
+   * Call a host function for the interpreter. Charge the stack estimate for the host's frames, which the meter does
+   * not count.
+   */
   call (id, count, values) {
     if (this.ended) return 0
     const { fuel, depth } = this.interpreter
@@ -262,7 +273,7 @@ class Guest {
     return value
   }
 
-  // An error of this side must not pass through the interpreter's frames.
+  // Catch errors of this side: they must not pass through the interpreter's frames.
   answered (id, values) {
     try {
       return this.answers[id](values)
@@ -272,7 +283,10 @@ class Guest {
     }
   }
 
-  /** The interpreter tells of a promise, its JSValue, that was rejected with no handler, or got one since. */
+  /**
+   * Handle the interpreter's report of a promise (a JSValue) that was rejected without a handler, or that has got one
+   * since.
+   */
   rejected (promise, isHandled) {
     if (this.ended) return
     try {
@@ -286,7 +300,7 @@ class Guest {
     }
   }
 
-  /** The interpreter asks whether to stop. */
+  /** Return whether the interpreter should stop; it polls this. */
   interrupt () {
     this.alive()
     return this.interpreter.fuel.value <= GRACE
@@ -327,7 +341,8 @@ class Guest {
   }
 }
 
-// What nothing caught came from the guest's side of the border, which the program has broken.
+// Return kind, message and stack of an exception that the guest's side of the border did not catch, because the
+// program has broken it.
 function uncaught ({ name, message, stack }) {
   if (message === 'interrupted') return ['fuel', message, stack]
   if (message === 'out of memory') return ['memory', message, stack]

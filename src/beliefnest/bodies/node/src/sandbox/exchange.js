@@ -1,7 +1,7 @@
 'use strict'
 /**
- * The host's side of the border: what comes from the guest is checked and made into host
- * values, what goes to the guest is copied or named by a handle. Nothing here trusts the guest.
+ * Host's side of the border. Values from the guest are checked and converted to host values; values for the guest are
+ * copied or named by handles. This code trusts nothing of the guest.
  */
 
 const { Vec3 } = require('vec3')
@@ -14,11 +14,11 @@ const MAX_ELEMENTS = 10_000
 const MAX_DEPTH = 32
 const MAX_HANDLES = 20_000
 const SHOWN = 40
-// What looking a block up takes.
+// Fuel for looking up a block.
 const BLOCK_COST = 1000
 const FORBIDDEN_KEYS = new Set(['__proto__', 'constructor', 'prototype'])
 
-/** A value of the program that cannot be used; the message says which and why. */
+/** Error for a value of the program that cannot be used. The message says which value and why. */
 class RefusedError extends Error {
   constructor (message) {
     super(message)
@@ -28,8 +28,8 @@ class RefusedError extends Error {
 
 class Exchange {
   /**
-   * @param {{bot: object, functionFor: function(number): function, kindOf: function(object): ?string,
-   *   spend: function(number): boolean}} host `spend` takes fuel, and says whether the program goes on
+   * @param {{bot: object, functionFor: function(number): function, kindOf: function(object): ?string, spend:
+   *   function(number): boolean}} host `spend` charges fuel and returns whether the program continues
    */
   constructor ({ bot, functionFor, kindOf, spend }) {
     this.bot = bot
@@ -41,12 +41,12 @@ class Exchange {
     this.states = new Map()
   }
 
-  /** Take fuel for what a value of the program makes the host do. */
+  /** Charge fuel for host work that a value of the program causes. */
   pay (units) {
     if (!this.spend(units)) throw new RefusedError('the program has no fuel left for that')
   }
 
-  /** @returns {{$: 'h', id: number, k: string}} the name of a host object for the guest */
+  /** Return the handle by which the guest names a host object. @returns {{$: 'h', id: number, k: string}} */
   handle (object, kind) {
     if (!this.handles.has(object)) {
       if (this.objects.length >= MAX_HANDLES) throw new RefusedError(`the program holds ${MAX_HANDLES} game objects, which is the limit`)
@@ -57,14 +57,14 @@ class Exchange {
     return { $: 'h', id, k: this.objects[id].kind }
   }
 
-  /** @returns {{object: object, kind: string}} what a handle of the guest stands for */
+  /** Return the host object of a handle. @returns {{object: object, kind: string}} */
   resolve (wire) {
     const entry = isTagged(wire, 'h') && Number.isInteger(wire.id) ? this.objects[wire.id] : undefined
     if (entry === undefined) throw new RefusedError('the value is no object of the game')
     return entry
   }
 
-  /** @returns {object} the host object, if it is of one of the kinds */
+  /** Return the host object of a handle if it is of one of the kinds. @returns {object} */
   object (wire, kinds, where) {
     if (!isTagged(wire, 'h')) throw new RefusedError(`${where} must be ${kinds.join(' or ')}, found ${describeWire(wire)}`)
     const { object, kind } = this.resolve(wire)
@@ -96,7 +96,7 @@ class Exchange {
     return value
   }
 
-  /** A block stands for its position; its present state is looked up again. */
+  /** Return the block at the position that a block of the guest stands for, in its present state. */
   block (wire, where) {
     if (!isTagged(wire, 'b')) throw new RefusedError(`${where} must be a block, found ${describeWire(wire)}`)
     this.pay(BLOCK_COST)
@@ -106,7 +106,7 @@ class Exchange {
     return block
   }
 
-  /** An item stands for its slot; it must still be there. */
+  /** Return the item in the slot that an item of the guest stands for; it must still be there. */
   item (wire, where) {
     const { slot, type } = isTagged(wire, 'i') ? wire : {}
     if (!Number.isInteger(slot) || slot < 0) throw new RefusedError(`${where} must be an item, found ${describeWire(wire)}`)
@@ -117,7 +117,7 @@ class Exchange {
     throw new RefusedError(`${where}: the item is not in slot ${slot} any more`)
   }
 
-  /** What the blocks of a state have in common is handed over once. */
+  /** Return a block for the guest. Properties that all blocks of a state share are sent only once. */
   blockToGuest (block) {
     const { x, y, z } = block.position
     if (!this.states.has(block.stateId)) this.states.set(block.stateId, block)
@@ -126,7 +126,7 @@ class Exchange {
     return text === '' ? wire : { ...wire, t: text }
   }
 
-  /** @returns {object} a block of that state that was handed over */
+  /** Return a block of a state that was sent to the guest. @returns {object} */
   blockOfState (id) {
     if (!this.states.has(id)) throw new RefusedError('no block of that state was handed over')
     return this.states.get(id)
@@ -137,7 +137,7 @@ class Exchange {
     return this.functionFor(wire.id)
   }
 
-  /** Any value, as arguments of skills and results of callbacks are. */
+  /** Convert any value from the guest, such as arguments of skills and results of callbacks. */
   toHost (wire, where, depth = 0) {
     if (depth > MAX_DEPTH) throw new RefusedError(`${where} is nested more than ${MAX_DEPTH} deep`)
     if (wire === null || typeof wire === 'boolean') return wire
@@ -176,7 +176,7 @@ class Exchange {
     return record
   }
 
-  /** Any value of the host: data is copied, objects of the game are named or copied. */
+  /** Convert any value for the guest: data is copied; game objects are named by handles or copied. */
   toGuest (value, where, depth = 0) {
     if (depth > MAX_DEPTH) throw new RefusedError(`${where} is nested more than ${MAX_DEPTH} deep`)
     switch (typeof value) {
@@ -203,7 +203,10 @@ class Exchange {
   }
 }
 
-/** @returns {string} what is written on the front of a sign, without empty lines at the end; empty for any other block */
+/**
+ * Return the text on the front of a sign, without empty lines at the end; empty for any other block.
+ * @returns {string}
+ */
 function frontText (block) {
   if (!block.entity || !block.name.endsWith('_sign')) return ''
   return block.getSignText()[0].replace(/\n+$/, '')
@@ -213,7 +216,7 @@ function isTagged (wire, tag) {
   return wire !== null && typeof wire === 'object' && !Array.isArray(wire) && wire.$ === tag
 }
 
-// Programs also write plain {x, y, z}.
+// Accept plain {x, y, z} objects as well, because programs write them.
 function coordinates (wire) {
   if (!isTagged(wire, 'o') || !Array.isArray(wire.o)) return undefined
   const values = new Map(wire.o)
@@ -222,7 +225,7 @@ function coordinates (wire) {
 
 const TAG_NAMES = { u: 'undefined', v: 'a Vec3', h: 'an object of the game', b: 'a block', i: 'an item', f: 'a function', g: 'a goal', m: 'movements', o: 'an object', e: 'an error' }
 
-/** @returns {string} what a value of the guest is, for messages */
+/** Return the description of a value of the guest for messages. @returns {string} */
 function describeWire (wire) {
   if (wire === null) return 'null'
   if (Array.isArray(wire)) return 'an array'

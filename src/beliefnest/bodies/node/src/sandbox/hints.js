@@ -1,18 +1,18 @@
 'use strict'
-/** What is added to messages about slips that are made often, in both worlds: see build.js. */
+/** Hints that are appended to messages about frequent mistakes, in both worlds (see build.js). */
 
 const FARTHEST = 2
 const NOT_AWAITED = ' (nothing waited for this promise: write await, or catch its error)'
-// A promise has none of what it will give.
+// Typical error when a property of the result is read from a promise that was not awaited.
 const OF_NOTHING = /^TypeError: .*(?:not a function|of undefined)$/
 const UNDEFINED = /^ReferenceError: '?([\w$]{1,80})'? is not defined$/
 
 /**
- * The name that somebody may have meant.
- * @param {string} wanted a short name
- * @param {string[]} names
- * @returns {?string} the nearest of the names, if at most two letters have to be changed, added or left out, or it
- *   differs in upper and lower case alone
+ * Return the name that the author may have meant.
+ * @param {string} wanted misspelled name
+ * @param {string[]} names existing names
+ * @returns {?string} the nearest name, if at most two letters have to be changed, added or left out, or only upper and
+ *   lower case differ
  */
 function nearest (wanted, names) {
   const ranked = names.map(name => [distance(wanted.toLowerCase(), name.toLowerCase()), name])
@@ -20,7 +20,7 @@ function nearest (wanted, names) {
   return far <= Math.min(FARTHEST, wanted.length - 1) ? name : null
 }
 
-// Levenshtein's, row by row.
+// Return the Levenshtein distance, computed row by row.
 function distance (one, other) {
   let row = Array.from({ length: other.length + 1 }, (_, column) => column)
   for (let i = 1; i <= one.length; i++) {
@@ -33,7 +33,7 @@ function distance (one, other) {
   return row[other.length]
 }
 
-// What programs that were written for other systems call, and what stands in its place.
+// Names that programs for other systems use, each with its replacement here.
 const ELSEWHERE = {
   require: 'a program loads no modules: bot, Vec3, goals, mcData and the skills are there',
   mineflayer: 'the bot is there already: write bot',
@@ -41,10 +41,10 @@ const ELSEWHERE = {
 }
 
 /**
- * @param {string} message of an error
- * @param {string[]} names that a program finds in scope
- * @returns {string} what to add to a message that a name is not there, if one that is looks like it, or other systems
- *   have it; else empty
+ * Return a hint for a message about an undefined name.
+ * @param {string} message message of the error
+ * @param {string[]} names names in scope of the program
+ * @returns {string} a similar name in scope, or the replacement of a name from another system; otherwise empty
  */
 function nearName (message, names) {
   const found = UNDEFINED.exec(message)
@@ -55,9 +55,10 @@ function nearName (message, names) {
 }
 
 /**
- * @param {string} message of an error
- * @param {string[]} under names of calls that had not ended when it came
- * @returns {string} what to add: who uses what a call gives before it is there gets a promise, which has none of it
+ * Return a hint for a message that a missing `await` may have caused: a promise has none of its result's properties.
+ * @param {string} message message of the error
+ * @param {string[]} under names of calls that had not ended at that moment
+ * @returns {string} empty if there was no such call
  */
 function notAwaited (message, under) {
   if (under.length === 0 || !OF_NOTHING.test(message)) return ''

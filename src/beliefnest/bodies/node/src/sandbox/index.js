@@ -1,5 +1,5 @@
 'use strict'
-/** Runs untrusted programs: SECURITY.md says against what, and against what not. */
+/** Sandbox for untrusted programs. SECURITY.md says what it protects from and what not. */
 
 const { Engine, GuestEnded } = require('./engine')
 const { Session } = require('./session')
@@ -12,11 +12,12 @@ const GUEST_NAMES = ['Vec3', 'goals', 'Movements', 'located', 'absent', 'positio
 
 /**
  * Compile the interpreter, once for any number of runs.
- * @param {{fuel?: number, memory?: number}} [options] limits of a run: fuel in loop turns and calls
- *   of the interpreter (about one per bytecode instruction), memory in bytes
- * @param {() => void} [alive] hears now and then that a program computes within its limits
- * @returns {{run: function(object): Promise<object>, warm: function(object): Promise<void>, prepare: function(): Promise<void>}}
- *   see `run`; `warm` does what the first run of a scope would have to do, `prepare` what the next run would
+ * @param {{fuel?: number, memory?: number}} [options] limits of a run: fuel in loop turns and calls of the interpreter
+ *   (about one per bytecode instruction), memory in bytes
+ * @param {() => void} [alive] called now and then while a program computes within its limits
+ * @returns {{run: function(object): Promise<object>, warm: function(object): Promise<void>, prepare: function():
+ *   Promise<void>}} `run` as below; `warm` does the preparations of the first run of a scope, `prepare` those of the
+ *   next run
  */
 function createSandbox (options = {}, alive = () => {}) {
   const engine = new Engine(alive)
@@ -26,25 +27,23 @@ function createSandbox (options = {}, alive = () => {}) {
 }
 
 /**
- * Run one program.
+ * Run one program. Time, timers and random numbers are those of the process at the time of the call.
  * @param {Engine} engine
  * @param {object} request
- * @param {string} request.code the body of an async function, or one whole function of `bot`
- * @param {object} request.bot a Mineflayer bot; the program reaches of it what policy/ names
- * @param {Object<string, *>} request.scope skills by name (functions of the host), and `mcData`;
- *   other values are not handed over. Vec3, goals, Movements and what makes
- *   claims are the guest's own.
+ * @param {string} request.code body of an async function, or one whole function of `bot`
+ * @param {object} request.bot Mineflayer bot; the program can use the parts that policy/ names
+ * @param {Object<string, *>} request.scope skills by name (functions of the host), and `mcData`; other values are not
+ *   handed over. Vec3, goals, Movements and the functions for claims are the guest's own
  * @param {AbortSignal} [request.signal] ends the program when aborted
- * @param {function(object): void} [request.aim] hears what the program asks its bot to make for (see aims.js)
- * @param {function(): number} [request.random] its random numbers, as Math.random; those of the process if left out
- * @returns {Promise<{ok: boolean, error: ?{message: string, line: ?number, column: ?number, skill: ?string,
- *   kind: string, reason?: string}, lines: number[], log: {level: string, text: string}[],
- *   unfinished: {what: string, line: ?number}[], fuel: number}>}
- *   never rejects for a fault of the program. `kind` is syntax, error, skill (a skill or a call of the bot
- *   failed), refused (an argument that cannot be used), fuel, memory, stack, aborted or internal;
- *   `lines` ran; `unfinished` are the calls and timers that were under way at the end, with the line of the
- *   statement that began them; `fuel` was used.
- *   Time, timers and random numbers are those of the process at the time of the call.
+ * @param {function(object): void} [request.aim] called with the program's aims (see aims.js)
+ * @param {function(): number} [request.random] random numbers of the program, as Math.random; those of the process by
+ *   default
+ * @returns {Promise<{ok: boolean, error: ?{message: string, line: ?number, column: ?number, skill: ?string, kind:
+ *   string, reason?: string}, lines: number[], log: {level: string, text: string}[], unfinished: {what: string, line:
+ *   ?number}[], fuel: number}>} never rejects for a fault of the program. `kind` is syntax, error, skill (a skill or a
+ *   call of the bot failed), refused (an argument that cannot be used), fuel, memory, stack, aborted or internal.
+ *   `lines` are the executed lines, `unfinished` the calls and timers that had not ended, each with the line of the
+ *   statement that began it, and `fuel` the fuel used
  */
 async function run (engine, { code, bot, scope = {}, fuel, memory, signal, aim, random = () => Math.random() }) {
   if (!(fuel > 0 && fuel <= MAX_FUEL)) throw new RangeError(`the fuel must be between 1 and ${MAX_FUEL}, found ${fuel}`)
@@ -82,7 +81,7 @@ async function observe (session, guest, program, { fuel, memory, signal, names }
   }
 }
 
-/** @returns {import('./engine').Scope} */
+/** Return the scope's names. @returns {import('./engine').Scope} */
 function namesOf ({ skills, data }) {
   const names = Object.keys(skills)
   return { parameters: ['bot', ...GUEST_NAMES, ...(data ? ['mcData'] : []), ...names], skills: names, data: data !== null }

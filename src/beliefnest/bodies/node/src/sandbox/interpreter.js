@@ -1,17 +1,17 @@
 'use strict'
-/** The interpreter as it is run, with its meters; a bundle has it made beforehand. */
+/** Interpreter with its meters. A bundle contains it ready-made. */
 
 const { readFileSync } = require('node:fs')
 const { meter } = require('./meter')
 
-// What active calls may take, in estimated bytes; the JavaScript stack of Node overflows above
-// 900,000 (test/sandbox/engine.test.js).
+// Limit of the stack in estimated bytes. The JavaScript stack of Node overflows above 900,000
+// (test/sandbox/engine.test.js).
 const STACK_BYTES = 600_000
-// What the interpreter needs before a program runs; published with 256, which makes work for Node's
-// garbage collector at every program.
+// Number of memory pages that the interpreter needs before a program runs. It is published with 256, which costs work
+// of Node's garbage collector for every program.
 const INITIAL_PAGES = 96
 
-/** @returns {Uint8Array} a WebAssembly module */
+/** Return the interpreter as a WebAssembly module. @returns {Uint8Array} */
 function interpreterBytes () {
   return meter(readFileSync(require.resolve('@jitl/quickjs-wasmfile-release-sync/wasm')), { stackBytes: STACK_BYTES, initialPages: INITIAL_PAGES })
 }

@@ -1,10 +1,12 @@
 'use strict'
-/** Which kind of the policy a host object is. */
+/** Kinds of host objects, as the policy names them. */
 
 /**
+ * Return the kind of a host object.
  * @param {object} value
- * @param {object} bot the program's own bot; other bots are of no kind
- * @returns {?string} `block` and `item` cross as copies, the others as handles; null: plain data or foreign
+ * @param {object} bot the program's own bot; other bots have no kind
+ * @returns {?string} values of the kinds `block` and `item` are copied to the guest, others get handles; null for
+ *   plain data and foreign objects
  */
 function kindOf (value, bot) {
   if (value === bot) return 'bot'

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Memories for interpreters. One that a program has left is emptied and used again: making new
- * ones keeps Node's garbage collector busy with everything else that lives in the process.
+ * Pool of memories for interpreters. A memory is cleared and used again, because new ones keep Node's garbage
+ * collector busy with all other objects of the process.
  */
 
 const { INITIAL_PAGES } = require('./interpreter')
@@ -15,7 +15,7 @@ class Memories {
     this.free = []
   }
 
-  /** @returns {WebAssembly.Memory} all zero, that can grow by `bytes` */
+  /** Return a memory of zeros that can grow by `bytes`. @returns {WebAssembly.Memory} */
   take (bytes) {
     const maximum = INITIAL_PAGES + Math.ceil(bytes / PAGE)
     const index = this.free.findIndex(entry => entry.maximum === maximum)
@@ -25,14 +25,15 @@ class Memories {
     return memory
   }
 
-  /** Take back a memory that nothing uses any more; `bytes` as when it was taken. */
+  /** Take back an unused memory; `bytes` as in `take`. */
   give (memory, bytes) {
     if (memory.buffer.byteLength > INITIAL_PAGES * PAGE || this.free.length >= MOST_KEPT) return
     this.free.push({ memory, maximum: INITIAL_PAGES + Math.ceil(bytes / PAGE) })
   }
 }
 
-// Most of a memory was never written to; reading that is faster than writing it, and leaves it untouched.
+// Clear only parts that were written to. Most of a memory was not; reading is faster than writing, and leaves pages
+// untouched.
 function empty (bytes) {
   for (let place = 0; place < bytes.length; place += PAGE) {
     if (bytes.compare(EMPTY, 0, PAGE, place, place + PAGE) !== 0) bytes.fill(0, place, place + PAGE)

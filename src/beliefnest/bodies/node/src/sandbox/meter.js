@@ -1,14 +1,13 @@
 'use strict'
 /**
- * Rewrites a WebAssembly module so that what it computes is counted and its recursion bounded.
+ * Rewriter of a WebAssembly module that adds counters of its computation and a bound of its recursion.
  *
- * An interpreter polls for interrupts in its own loops only; library loops inside it (a search
- * in a sparse array of 2^53 elements, the multiplication of large integers) run for ever without
- * a poll. After the rewriting every loop turn and every call of the module costs one unit of
- * the exported global `fuel`, copied memory costs one unit per 64 bytes, and every active call
- * adds an estimate of its frame size to the exported global `depth`. The module traps
- * (`unreachable`) when `fuel` falls below zero or `depth` rises above `stackBytes`. Both counts
- * depend on the program alone, so a limit is reached at the same place on every machine.
+ * An interpreter polls for interrupts only in its own loops. Library loops inside it (a search in a sparse array of
+ * 2^53 elements, the multiplication of large integers) never poll and could run forever. In the rewritten module every
+ * loop turn and every call costs one unit of the exported global `fuel`, copied memory costs one unit per 64 bytes,
+ * and every active call adds an estimate of its frame size to the exported global `depth`. The module traps
+ * (`unreachable`) when `fuel` falls below zero or `depth` rises above `stackBytes`. Both counts depend only on the
+ * program, so that a program reaches a limit at the same point on every machine.
  */
 
 const { Reader, writeVector, unsigned, section } = require('./wasm-binary')
@@ -30,14 +29,13 @@ const BYTES_PER_FUEL_BITS = 6
 const MAX_I32 = 0x7fffffff
 
 /**
- * @param {Uint8Array} bytes a module of the WebAssembly MVP with bulk memory and at most one
- *   result per function
+ * Return the rewritten module.
+ * @param {Uint8Array} bytes module of the WebAssembly MVP with bulk memory and at most one result per function
  * @param {object} limits
- * @param {number} limits.stackBytes the largest value `depth` may take, in estimated bytes
- * @param {number} limits.initialPages what the imported memory has at least, in pages of 64 KiB
- * @returns {Uint8Array} the rewritten module, with three more exports: `fuel` and `depth`, mutable i32, and
- *   its `table`
- * @throws {Error} if the module has something this rewriting does not know
+ * @param {number} limits.stackBytes largest value of `depth`, in estimated bytes
+ * @param {number} limits.initialPages initial size of the imported memory, in pages of 64 KiB
+ * @returns {Uint8Array} the rewritten module, with three more exports: `fuel` and `depth` (mutable i32) and `table`
+ * @throws {Error} if the module contains something that this rewriter does not know
  */
 function meter (bytes, { stackBytes, initialPages }) {
   const sections = readSections(bytes)
@@ -123,6 +121,11 @@ function readBodies (content) {
   return new Reader(content).vector((r) => r.bytes(r.unsigned()))
 }
 
+/**
+ * Wrap a function's body in a block, so that all its exits pass through one point. Code for fuel and depth goes before
+ * the block, code that restores the depth after it. Functions without loops and calls stay as they are: their cost is
+ * bounded, and their caller pays for it.
+ */
 function rewriteBody (body, signature, plan) {
   const reader = new Reader(body)
   const locals = reader.vector((r) => { const count = r.unsigned(); r.byte(); return count })
@@ -131,6 +134,7 @@ function rewriteBody (body, signature, plan) {
   if (!loops && !calls) return body
   const header = body.subarray(0, start)
   const weight = FRAME_BYTES + LOCAL_BYTES * (signature.params + locals.reduce((sum, count) => sum + count, 0))
+  // The depth matters only for functions that call others.
   const frame = calls ? weight : 0
   const inner = rewriteCode(body, start, plan)
   return Buffer.concat([header, Uint8Array.from(charge(plan)), Uint8Array.from(enter(plan, frame)),
@@ -150,8 +154,8 @@ function scan (body, start) {
   return { loops, calls }
 }
 
-// Inside the wrapping block a jump to the function's own label leaves the block, so only
-// `return` has to be rewritten.
+// Replace `return` by a jump out of the wrapping block. Jumps to the function's own label need no change: inside the
+// block they leave the block.
 function rewriteCode (body, start, plan) {
   const reader = new Reader(body, start)
   const parts = []

@@ -1,25 +1,26 @@
 'use strict'
-/** What a run is reported as: for the program's writer, in places of the program's own text. */
+/** Outcome of a run, described for the program's author in lines and columns of the program's own text. */
 
 const { NOT_AWAITED, nearName, notAwaited } = require('./hints')
 const { cut } = require('./text')
 
 const MAX_MESSAGE = 4000
 const MAX_NAME = 100
-// A stack that the program has made itself may be of any length.
+// Largest length of a stack that is parsed; a program can make up a stack of any length.
 const MAX_STACK = 20_000
 const MAX_FRAMES = 100
 const SKILL = /^[\w. ]{1,80}$/
 const PLACE = /\(?program\.js:(\d+):(\d+)\)?/
 
 /**
- * @param {{ok: boolean, error?: object, stray?: boolean, ended?: import('./engine').GuestEnded}} outcome of the session;
- *   `stray`: the error is that of a promise that nothing waited for
+ * Describe the outcome of a run.
+ * @param {{ok: boolean, error?: object, stray?: boolean, ended?: import('./engine').GuestEnded}} outcome outcome of
+ *   the session; with `stray` the error is that of a promise without a handler
  * @param {{locate: function, callee: function, statement: function}} program
  * @param {{fuel: number, memory: number}} limits
- * @param {number} last number of the statement that ran last, 0 for none
- * @param {string[]} [names] what the program finds in scope
- * @param {string[]} [under] names of calls that were under way at the end
+ * @param {number} last number of the statement that was executed last; 0 for none
+ * @param {string[]} [names] names in scope of the program
+ * @param {string[]} [under] names of calls that had not ended
  * @returns {?{message: string, line: ?number, column: ?number, skill: ?string, kind: string}}
  */
 function describeOutcome ({ ok, error, stray, ended }, program, limits, last, names = [], under = []) {
@@ -30,7 +31,7 @@ function describeOutcome ({ ok, error, stray, ended }, program, limits, last, na
   return { message: cut(named(message, callee) + nearName(message, names) + notAwaited(message, under), MAX_MESSAGE) + (stray ? NOT_AWAITED : ''), line, column, skill, kind, ...(reason && { reason }) }
 }
 
-// The interpreter does not say what is not a function.
+// The interpreter's message does not say which expression is not a function; add it.
 function named (message, callee) {
   return message === 'TypeError: not a function' && callee !== null ? `TypeError: ${callee} is not a function` : message
 }
@@ -47,7 +48,7 @@ function ofError (error, limits) {
   return { message: prefix + message, skill, kind: kind ?? 'error', reason, stack }
 }
 
-// The record comes from the guest: any field may be anything.
+// The record comes from the guest: any field may have any value.
 function plainError (record) {
   const field = (key, otherwise, most = MAX_MESSAGE) => typeof record?.[key] === 'string' ? cut(record[key], most) : otherwise
   const skill = field('skill', null)

@@ -1,12 +1,12 @@
 'use strict'
-/** Places in a text: offsets, lines and columns (both from 1), each looked up in a table made once. */
+/** Positions in a text: offsets, lines and columns (both from 1), looked up in precomputed tables. */
 
 const ENDS = /\r\n|[\n\r\u2028\u2029]/g
 
 class Lines {
   /**
    * @param {string} text
-   * @param {RegExp} [ends] what ends a line, a global expression
+   * @param {RegExp} [ends] global expression that matches line ends
    */
   constructor (text, ends = ENDS) {
     this.starts = [0]
@@ -17,24 +17,24 @@ class Lines {
     return this.starts.length
   }
 
-  /** @returns {{line: number, column: number}} */
+  /** Return line and column of an offset. @returns {{line: number, column: number}} */
   place (offset) {
     const line = lastAtMost(this.starts, offset) + 1
     return { line, column: offset - this.starts[line - 1] + 1 }
   }
 
-  /** @returns {number} an offset, -1 if there is no such line */
+  /** Return the offset of a line and column; -1 if there is no such line. @returns {number} */
   offset (line, column) {
     const start = this.starts[line - 1]
     return start === undefined ? -1 : start + column - 1
   }
 }
 
-/** A text with others inserted into it. */
+/** Text with insertions. */
 class Insertions {
   /**
    * @param {string} text
-   * @param {{at: number, text: string}[]} edits in the order of their places, no two at the same
+   * @param {{at: number, text: string}[]} edits insertions in order of their offsets, no two at the same
    */
   constructor (text, edits) {
     const parts = []
@@ -53,7 +53,11 @@ class Insertions {
     this.text = parts.join('') + text.slice(from)
   }
 
-  /** @returns {number} the offset in the original for one in the edited text; what was inserted stands for its place */
+  /**
+   * Return the offset in the original for an offset in the edited text. Inserted text maps to the point of its
+   * insertion.
+   * @returns {number}
+   */
   original (offset) {
     const index = lastAtMost(this.places, offset)
     if (index < 0) return offset
@@ -62,7 +66,10 @@ class Insertions {
   }
 }
 
-/** @returns {number} the index of the last of some rising numbers that is not above a number, -1 if all are */
+/**
+ * Return the index of the last of some ascending numbers that is not above a number; -1 if all are.
+ * @returns {number}
+ */
 function lastAtMost (numbers, number) {
   let low = 0
   let high = numbers.length

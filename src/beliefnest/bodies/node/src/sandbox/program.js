@@ -1,14 +1,14 @@
 'use strict'
 /**
- * The text of a program: what form it has, what is inserted into it so that the lines that ran
- * are known, and which place in the text a place in the executed text stands for.
+ * Preparation of a program's text: its form, the insertions that record executed lines, and the mapping from the
+ * executed text back to the program's own.
  */
 
 const acorn = require('acorn')
 const { Insertions, Lines } = require('./places')
 const { cut } = require('./text')
 
-// Reading a program takes acorn time that grows with the square of some of its parts: about a second at worst.
+// The parsing time of acorn grows with the square of some constructs: about a second at worst for this length.
 const MAX_LENGTH = 40_000
 const MAX_LINES = 2000
 const MAX_NAME = 80
@@ -32,16 +32,15 @@ class ProgramSyntaxError extends Error {
 }
 
 /**
- * Read a program and prepares it for execution.
- * @param {string} given the body of an async function, or function declarations only, of which the
- *   last async one (or the only one) is called with `bot`
- * @param {string[]} parameters the names in scope, `bot` among them
- * @returns {{text: string, marks: number, locate: function(number, number): ?{line: number, column: number},
- *   callee: function(number, number): ?string,
- *   statement: function(number): ?{line: number, column: number}, linesOf: function(Iterable<number>): number[]}}
- *   `text` is an expression, a function of (marks, ...parameters); `marks` the length of the array that
- *   takes the numbers of executed statements; `locate` maps a place in `text` to one in
- *   the program, `callee` to the text of what is called there
+ * Read a program and prepare it for execution.
+ * @param {string} given body of an async function, or only function declarations, of which the last async one (or the
+ *   only one) is called with `bot`
+ * @param {string[]} parameters names in scope, `bot` among them
+ * @returns {{text: string, marks: number, locate: function(number, number): ?{line: number, column: number}, callee:
+ *   function(number, number): ?string, statement: function(number): ?{line: number, column: number}, linesOf:
+ *   function(Iterable<number>): number[]}} `text` is an expression of a function of (marks, ...parameters); `marks` is
+ *   the length of the array that receives the numbers of executed statements; `locate` maps a position in `text` to
+ *   the program, `callee` to the text of the called expression there
  * @throws {ProgramSyntaxError}
  */
 function prepareProgram (given, parameters) {
@@ -58,7 +57,7 @@ function prepareProgram (given, parameters) {
   const text = `${prefix}${edited.text}\n${entryCall(tree)}})() })`
   let executed = null
   const position = (offset) => lines.place(offset)
-  // Only errors are looked for in the text that runs.
+  // Map a position in the executed text; only errors need this.
   const original = (line, column) => {
     executed ??= new Lines(text, /\n/g)
     return edited.original(executed.offset(line, column) - prefix.length)
@@ -150,12 +149,13 @@ function childrenOf (node) {
   return children
 }
 
-// The interpreter names the parenthesis of a call and the dot of a member; a reader looks for the name.
+// The interpreter reports a call at its parenthesis and a member at its dot; map both to the name, where a reader
+// looks.
 function notePlace (node, code, places, callees) {
   if (node.type === 'MemberExpression') places.set(code.indexOf(node.computed ? '[' : '.', node.object.end), node.property.start)
   if (node.type !== 'NewExpression' && node.type !== 'CallExpression') return
   const { callee } = node
-  // `new Name` needs no parenthesis.
+  // `new Name` may have no parenthesis.
   if (callee.end === node.end) return
   const parenthesis = code.indexOf('(', callee.end)
   const named = callee.type === 'MemberExpression' ? callee.property.start : callee.start

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * One instance of the interpreter, through the functions it exports. Values of the guest are
- * pointers, plain numbers here, so that a copy of an instance's memory carries them all with it.
+ * Instance of the interpreter, used through its exported functions. Values of the guest are pointers, plain numbers
+ * here, so that a copy of an instance's memory contains them all.
  */
 
 const { QuickJSFFI } = require('@jitl/quickjs-wasmfile-release-sync/ffi')
@@ -11,14 +11,14 @@ const { addTracker, setTracker } = require('./rejections')
 
 const CHUNK = 4096
 const EMPTY = Buffer.alloc(CHUNK)
-// Above the longest message (session.js) in bytes, so that a longer one is still seen to be too long.
+// Longer, in bytes, than the longest message (session.js), so that a message of more is recognised as too long.
 const MAX_TEXT = 4_000_000
 const ALL_INTRINSICS = 0
 const AS_SCRIPT = 0
 const PENDING = 0
 const FULFILLED = 1
 
-/** An exception of the guest that nothing in it caught. */
+/** Exception that the guest did not catch. */
 class GuestException extends Error {
   constructor ({ name, message, stack }) {
     super(message)
@@ -28,7 +28,7 @@ class GuestException extends Error {
 }
 
 class QuickJS {
-  /** Use `QuickJS.open`. */
+  /** Do not call this; use `QuickJS.open`. */
   constructor (glue, { fuel, depth }, tracker) {
     this.glue = glue
     this.ffi = new QuickJSFFI(glue)
@@ -40,12 +40,13 @@ class QuickJS {
   }
 
   /**
-   * @param {WebAssembly.Module} module metered
-   * @param {WebAssembly.Memory} wasmMemory as new
-   * @param {{call: function(number, number, number): number, interrupt: function(): boolean,
-   *   rejected: function(bigint, boolean): void}} host `call` gets the number of a host function, the count and the place
-   *   of its arguments, and returns a value it gives away, or 0; `rejected` as in rejections.js
-   * @returns {Promise<QuickJS>} settled without any timer or input
+   * Open an instance.
+   * @param {WebAssembly.Module} module metered module
+   * @param {WebAssembly.Memory} wasmMemory memory of zeros
+   * @param {{call: function(number, number, number): number, interrupt: function(): boolean, rejected:
+   *   function(bigint, boolean): void}} host `call` gets the number of a host function and the count and address of
+   *   its arguments, and returns a value that it no longer owns, or 0; `rejected` as in rejections.js
+   * @returns {Promise<QuickJS>}
    */
   static async open (module, wasmMemory, host) {
     let instance
@@ -68,7 +69,7 @@ class QuickJS {
     return new QuickJS(glue, instance.exports, tracker)
   }
 
-  /** Make a runtime and a context in it. */
+  /** Create a runtime and a context. */
   create (stackBytes) {
     this.runtime = this.ffi.QTS_NewRuntime()
     this.ffi.QTS_RuntimeSetMaxStackSize(this.runtime, stackBytes)
@@ -77,7 +78,10 @@ class QuickJS {
     this.context = this.ffi.QTS_NewContext(this.runtime, ALL_INTRINSICS)
   }
 
-  /** @returns {{pages: {place: number, bytes: Uint8Array}[], runtime: number, context: number}} all of its state; nothing may run */
+  /**
+   * Return the whole state of the instance; no code may be running.
+   * @returns {{pages: {place: number, bytes: Uint8Array}[], runtime: number, context: number}}
+   */
   save () {
     const all = this.glue.HEAPU8
     const pages = []
@@ -88,7 +92,7 @@ class QuickJS {
     return { pages, runtime: this.runtime, context: this.context }
   }
 
-  /** Take the state another instance of the same module saved; this one must be as new. */
+  /** Load the state that another instance of the same module saved. This instance must be new. */
   restore ({ pages, runtime, context }) {
     for (const { place, bytes } of pages) this.glue.HEAPU8.set(bytes, place)
     this.runtime = runtime
@@ -99,7 +103,7 @@ class QuickJS {
     this.ffi.QTS_RuntimeSetMemoryLimit(this.runtime, bytes)
   }
 
-  /** @returns {number} a host function under a number of its own */
+  /** Return a host function with a number of its own. @returns {number} */
   hostFunction (name, id) {
     return this.ffi.QTS_NewFunction(this.context, name, 1, false, id)
   }
@@ -115,14 +119,14 @@ class QuickJS {
     return this.ffi.QTS_NewFloat64(this.context, value)
   }
 
-  /** An array buffer at a known place, so that it can be read whatever state the guest is in. */
+  /** Return an array buffer at a known address, which can be read whatever state the guest is in. */
   buffer (length) {
     const place = this.allocate(length)
     this.glue.HEAPU8.fill(0, place, place + length)
     return { place, value: this.ffi.QTS_NewArrayBuffer(this.context, place, length) }
   }
 
-  /** @returns {string} what a value is as a text, no more than `MAX_TEXT` bytes of it */
+  /** Return a value as a text of at most `MAX_TEXT` bytes. @returns {string} */
   text (value) {
     const pointer = this.ffi.QTS_GetString(this.context, value)
     const text = this.glue.UTF8ToString(pointer, MAX_TEXT).toWellFormed()
@@ -130,12 +134,12 @@ class QuickJS {
     return text
   }
 
-  /** @returns {string} the text of an argument of a host function */
+  /** Return the text of an argument of a host function. @returns {string} */
   argument (values, index) {
     return this.text(this.ffi.QTS_ArgvGetJSValueConstPointer(values, index))
   }
 
-  /** @returns {number} a value that stays, of the JSValue of one that the interpreter holds */
+  /** Return a value that keeps alive a JSValue of the interpreter. @returns {number} */
   keep (bits) {
     const place = this.allocate(8)
     new BigUint64Array(this.glue.HEAPU8.buffer, place, 1)[0] = BigInt.asUintN(64, bits)
@@ -155,7 +159,7 @@ class QuickJS {
     return property
   }
 
-  /** @throws {GuestException} */
+  /** Evaluate a text. @throws {GuestException} */
   evaluate (code, fileName) {
     const pointer = this.characters(code)
     const value = this.ffi.QTS_Eval(this.context, pointer, this.glue.lengthBytesUTF8(code), fileName, 0, AS_SCRIPT)
@@ -163,7 +167,7 @@ class QuickJS {
     return this.checked(value)
   }
 
-  /** @throws {GuestException} */
+  /** Call a function. @throws {GuestException} */
   call (callee, args) {
     const place = this.allocate(args.length * 4)
     new Uint32Array(this.glue.HEAPU8.buffer, place, args.length).set(args)
@@ -176,10 +180,7 @@ class QuickJS {
     return this.ffi.QTS_IsJobPending(this.runtime) !== 0
   }
 
-  /**
-   * Run promise jobs.
-   * @throws {GuestException}
-   */
+  /** Run promise jobs. @throws {GuestException} */
   runJobs (most) {
     const context = this.allocate(4)
     const value = this.ffi.QTS_ExecutePendingJob(this.runtime, most, context)
@@ -187,7 +188,7 @@ class QuickJS {
     this.free(this.checked(value))
   }
 
-  /** @returns {'pending'|'fulfilled'|'rejected'} of a promise */
+  /** Return the state of a promise. @returns {'pending'|'fulfilled'|'rejected'} */
   promiseState (promise) {
     const state = this.ffi.QTS_PromiseState(this.context, promise)
     return state === PENDING ? 'pending' : state === FULFILLED ? 'fulfilled' : 'rejected'

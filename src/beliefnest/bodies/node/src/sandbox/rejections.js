@@ -1,15 +1,15 @@
 'use strict'
 /**
- * Hearing of promises that are rejected and nothing waits for. QuickJS calls a function of the table
- * that its runtime names, and the build has no call to name one: this does it by hand. Whoever
- * uses it checks once that it is called (engine.js).
+ * Tracking of rejected promises without a handler. QuickJS calls a tracker function whose table index is stored in its
+ * runtime. This build exports no call to set the tracker, so that this module writes the index into the memory.
+ * engine.js checks once that the tracker is called.
  */
 
-// Where the runtime has the function's number, in bytes: two words behind the interrupt handler.
+// Address of the tracker's index in the runtime, in bytes: two words behind the interrupt handler.
 const PLACE = 160
 
-// (module (import "h" "t" (func (param i32 i64 i64 i32 i32))) (export "t" (func 0))): only a function
-// of WebAssembly can be in a table.
+// (module (import "h" "t" (func (param i32 i64 i64 i32 i32))) (export "t" (func 0))). A table can contain only
+// WebAssembly functions, so that the JavaScript function needs this wrapper.
 const TYPED = Uint8Array.from([
   0x00, 0x61, 0x73, 0x6d, 0x01, 0x00, 0x00, 0x00,
   0x01, 0x09, 0x01, 0x60, 0x05, 0x7f, 0x7e, 0x7e, 0x7f, 0x7f, 0x00,
@@ -19,17 +19,18 @@ const TYPED = Uint8Array.from([
 const typed = new WebAssembly.Module(TYPED)
 
 /**
- * @param {WebAssembly.Table} table of an instance of the interpreter
- * @param {function(bigint, boolean): void} told a promise was rejected without a handler, or
- *   (true) has got one after all; the promise is a JSValue
- * @returns {number} the function's number, the same for every instance
+ * Add a tracker function to the table.
+ * @param {WebAssembly.Table} table table of an instance of the interpreter
+ * @param {function(bigint, boolean): void} told called with the promise, a JSValue, when it is rejected without a
+ *   handler (false), or when it has got a handler after all (true)
+ * @returns {number} the function's index, the same for every instance
  */
 function addTracker (table, told) {
   const track = (context, promise, reason, handled) => told(promise, handled !== 0)
   return table.grow(1, new WebAssembly.Instance(typed, { h: { t: track } }).exports.t)
 }
 
-/** Let a runtime call the function of that number. */
+/** Set the tracker of a runtime. */
 function setTracker (memory, runtime, number) {
   new Uint32Array(memory, runtime + PLACE, 1)[0] = number
 }

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * One run of one program: answers what the guest asks, wakes it when something it waits for
- * has happened, and lets go of everything when the run ends.
+ * Session of one run of a program: it answers the guest's requests, wakes the guest when something it waits for has
+ * happened, and releases everything when the run ends.
  */
 
 const { describeWire, Exchange, RefusedError } = require('./exchange')
@@ -14,15 +14,15 @@ const { aimOfCall, aimOfSkill } = require('./aims')
 const { cut, parsed } = require('./text')
 
 const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logCharacters: 50_000, error: 4000, name: 100, level: 10 }
-// Who waits for what a listener or a timer of the program answers.
+// Ticket of callbacks of listeners and timers, for whose results nobody waits.
 const NOBODY = 0
 const REQUEST_COST = { each: 1500, character: 20, answered: 2 }
 
 class Session {
   /**
    * @param {import('./engine').Guest} guest
-   * @param {{bot: object, skills: Object<string, function>, data: ?object, random: function(): number,
-   *   aim: function(object): void}} world `data` the tables of minecraft-data; `aim` hears what the program makes for
+   * @param {{bot: object, skills: Object<string, function>, data: ?object, random: function(): number, aim:
+   *   function(object): void}} world `data` has the tables of minecraft-data; `aim` is called with the program's aims
    */
   constructor (guest, { bot, skills, data, random, aim = () => {} }) {
     this.guest = guest
@@ -65,7 +65,7 @@ class Session {
     }
   }
 
-  // Looks whether the program has ended, or waits for what cannot happen any more.
+  // Check whether the program has ended, or waits for something that can no longer happen.
   look () {
     const result = this.guest.result()
     const stray = result?.ok === false ? null : this.guest.strayError()
@@ -76,7 +76,7 @@ class Session {
     }
   }
 
-  /** End the run; what comes first counts. */
+  /** End the run with an outcome; only the first outcome counts. */
   finish (outcome) {
     if (this.outcome !== null) return
     this.outcome = outcome
@@ -90,8 +90,8 @@ class Session {
   }
 
   /**
-   * Take fuel for work of the host that no code of the program waits for, such as a search for a way.
-   * @returns {boolean} true if the program goes on
+   * Charge fuel for work of the host for which no code of the program waits, such as a path search.
+   * @returns {boolean} true if the program continues
    */
   spend (units) {
     if (this.outcome === null && this.guest.charge(units) === false) {
@@ -110,7 +110,7 @@ class Session {
     }
   }
 
-  // What the host starts in the guest by itself has nobody to throw to.
+  // Nobody could catch an error of a message that the host sends by itself, so that it ends the run here.
   wake (message) {
     if (this.outcome !== null) return
     try {
@@ -150,7 +150,7 @@ class Session {
     return { $: 'e', message, name, skill, kind: error instanceof RefusedError ? 'refused' : 'skill', ...(reason && { reason }), stack: place }
   }
 
-  /** A promise of the host, under a number that the guest waits for. */
+  /** Return the number under which the guest waits for a promise of the host. */
   promiseToGuest (promise, label, toGuest) {
     if (this.calls.size >= LIMITS.calls) throw new RefusedError(`${LIMITS.calls} calls are under way, which is the limit`)
     const id = this.nextId++
@@ -171,7 +171,7 @@ class Session {
     }
   }
 
-  /** A function of the program, for the host: its errors are the host's, its promises too. */
+  /** Return a function of the program for the host. Its errors and promises become the host's. */
   functionFor (id) {
     return (...args) => {
       if (this.outcome !== null) throw new GuestEnded('ended', 'the program has ended')
@@ -200,7 +200,7 @@ class Session {
     }
     const waiting = this.tickets.get(ticket)
     if (waiting === undefined) throw new RefusedError('nobody waits for that callback')
-    // What cannot be used leaves the ticket to the error that the guest reports next.
+    // A value that cannot be used throws here and leaves the ticket; the guest then reports the error for it.
     const value = ok ? this.exchange.toHost(wire, 'the result of the callback') : null
     this.tickets.delete(ticket)
     if (ok) waiting.resolve(value)
@@ -279,7 +279,7 @@ class Session {
     return null
   }
 
-  // A fault here must not reach whoever emitted the event.
+  // Catch errors here: they must not reach the emitter of the event.
   hear (event, id, values) {
     const [ok, wires] = this.converted(true, () => events[event].map((type, i) => this.eventValue(type, values[i], event)), `bot.on ${event}`)
     if (ok) this.wake(['invoke', id, wires, NOBODY])
@@ -360,12 +360,12 @@ const HANDLERS = {
   settled: (session, ticket, ok, wire) => session.settled(ticket, ok, wire)
 }
 
-// Nothing else is made into a text: that would take time, or tell what no policy allows.
+// Do not convert other values to text: that would take time, or reveal what the policy does not allow.
 function primitive (value) {
   return (typeof value === 'object' && value !== null) || typeof value === 'function' ? 'something that is no text' : String(value)
 }
 
-// mcData holds only data; what JSON cannot say is left out.
+// mcData contains only data; values that JSON cannot express are left out.
 function plainToGuest (value) {
   if (value === undefined) return { $: 'u' }
   if (value === null || typeof value !== 'object') return typeof value === 'function' ? { $: 'u' } : value
@@ -373,7 +373,7 @@ function plainToGuest (value) {
   return { $: 'o', o: Object.entries(value).filter(([, item]) => typeof item !== 'function').map(([key, item]) => [key, plainToGuest(item)]) }
 }
 
-// The pathfinder's own word for it; a skill that walked has it as its cause.
+// Return the pathfinder's own name of an error; a failed skill that walked has the pathfinder's error as its cause.
 function reasonOf (error) {
   return [error, error?.cause].some(each => each instanceof Error && each.name === 'NoPath') ? 'no_way' : null
 }
@@ -391,7 +391,7 @@ function isThenable (value) {
   return value !== null && typeof value === 'object' && typeof value.then === 'function'
 }
 
-/** An error of a call, with the name of the skill or method that was called. */
+/** Error of a call, with the name of the skill or method that was called. */
 class CallError extends Error {
   constructor (label, cause) {
     super(`${label} failed`, { cause })

@@ -1,12 +1,13 @@
 'use strict'
-/** Texts of programs: made well-formed, cut to a length. */
+/** Texts of programs: replacement of lone surrogates, and cutting to a length. */
 
-// JSON names half a character by this; a whole pair may be written so too.
+// Escape of a surrogate in JSON; it may also be part of a pair.
 const SURROGATE = /\\ud[89a-f]/i
 
 /**
- * @param {string} text JSON that a program has made
- * @returns {*} its value, in which no text has half a character (each becomes U+FFFD)
+ * Parse JSON that a program has made.
+ * @param {string} text JSON
+ * @returns {*} its value; lone surrogates in texts become U+FFFD
  * @throws {SyntaxError}
  */
 function parsed (text) {
@@ -15,7 +16,7 @@ function parsed (text) {
   return JSON.parse(whole, (key, value) => typeof value === 'string' ? value.toWellFormed() : value)
 }
 
-/** @returns {string} at most `most` characters of a text, none of them halved */
+/** Return at most `most` characters of a text, without splitting a surrogate pair. @returns {string} */
 function cut (text, most) {
   return text.slice(0, most).toWellFormed()
 }

@@ -1,10 +1,10 @@
 'use strict'
-/** Reading and writing of the WebAssembly binary format: LEB128 numbers, vectors, sections. */
+/** Reader and writers of the WebAssembly binary format: LEB128 numbers, vectors, sections. */
 
 class Reader {
   /**
    * @param {Uint8Array} data
-   * @param {number} position where to start
+   * @param {number} position offset at which reading starts
    */
   constructor (data, position = 0) {
     this.data = data
@@ -27,7 +27,7 @@ class Reader {
     return slice
   }
 
-  /** @returns {number} an unsigned LEB128 number of at most 32 bits */
+  /** Read an unsigned LEB128 number of at most 32 bits. @returns {number} */
   unsigned () {
     let value = 0
     for (let shift = 0; shift < 35; shift += 7) {
@@ -63,7 +63,7 @@ class Reader {
   }
 }
 
-/** @returns {number[]} LEB128 bytes of a non-negative number below 2^32 */
+/** Return the LEB128 bytes of a non-negative number below 2^32. @returns {number[]} */
 function unsigned (value) {
   const bytes = []
   do {
@@ -74,12 +74,12 @@ function unsigned (value) {
   return bytes
 }
 
-/** @returns {Buffer} the count and the entries (arrays of bytes) */
+/** Return a vector: the count, then the entries (arrays of bytes). @returns {Buffer} */
 function writeVector (entries) {
   return Buffer.concat([Uint8Array.from(unsigned(entries.length)), ...entries.map((entry) => Uint8Array.from(entry))])
 }
 
-/** @returns {Buffer} a section: id, length, content */
+/** Return a section: id, length, content. @returns {Buffer} */
 function section (id, content) {
   return Buffer.concat([Uint8Array.from([id, ...unsigned(content.length)]), content])
 }

@@ -1,5 +1,5 @@
 'use strict'
-/** The immediates of WebAssembly instructions: MVP, sign extension, saturating conversion, bulk memory. */
+/** Immediates of WebAssembly instructions: MVP, sign extension, saturating conversion, bulk memory. */
 
 const none = () => undefined
 const index = (reader) => reader.unsigned()
@@ -35,11 +35,11 @@ const TABLE = Array.from({ length: 256 }, (_, op) =>
   SINGLE.get(op) ?? RANGES.find(([low, high]) => op >= low && op <= high)?.[2])
 
 /**
- * Move the reader behind the immediates of an instruction.
- * @param {import('./wasm-binary').Reader} reader stands behind the opcode
+ * Move the reader past the immediates of an instruction.
+ * @param {import('./wasm-binary').Reader} reader reader behind the opcode
  * @param {number} op
  * @returns {number|undefined} the second opcode byte of a prefixed instruction
- * @throws {Error} for an instruction outside the named proposals
+ * @throws {Error} for an instruction outside these proposals
  */
 function skipImmediates (reader, op) {
   const skip = TABLE[op]

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * The base of the server: flying-squid's own plugins that can be used as they are, and ours in
- * place of those that read disks, print, or assume one place for everybody.
+ * Base plugins of the server: flying-squid's own plugins that can be used as they are, and replacements for those that
+ * read disks, print, or assume one place for everybody.
  */
 module.exports = [
   require('./communication'),

@@ -2,7 +2,7 @@
 /** Chat among the players of a region. */
 const nbt = require('prismarine-nbt')
 
-// Whatever stands in the words: what cannot be said is refused, not taken for another command.
+// The text may contain anything: a text that cannot be said is refused, and not taken for another command.
 const WHISPER = /^(?:tell|msg|w) (\S+) (.+)$/s
 
 module.exports.name = 'chat'
@@ -14,9 +14,9 @@ module.exports.server = serv => {
     return component
   }
   serv._createNetworkEncodedChatComponent = text => serv._createChatComponent(text).toNetworkFormat()
-  /** What a player types that begins with a slash and is no whisper. */
+  /** Handle a line of a player that begins with a slash and is no whisper. */
   serv.command = (player, command) => player.system(`Agents have no commands: /${command.split(' ')[0]} was not run.`)
-  /** Tell the players what one of them has said. */
+  /** Send the words of one player to all players. */
   serv.tellSaid = (speaker, text) => { for (const player of serv.players) player.system(text) }
 }
 
@@ -33,7 +33,7 @@ module.exports.player = (player, serv) => {
     serv.region.emit({ kind: 'chat', actor: player.agent, detail: { text: message } })
   })
 
-  // What every player may do, operator or not.
+  // Every player may whisper, operator or not.
   player._client.on('chat_command', ({ command }) => {
     const whispered = WHISPER.exec(command)
     if (whispered === null) serv.command(player, command)

@@ -1,5 +1,5 @@
 'use strict'
-/** Who is told what: everything reaches exactly the players of one's own region. */
+/** Delivery of packets: everything reaches exactly the players of one's own region. */
 
 module.exports.name = 'communication'
 
@@ -20,7 +20,7 @@ module.exports.entity = (entity, serv) => {
   entity.getOtherPlayers = others
   entity.nearbyPlayers = others
   entity.getNearbyPlayers = others
-  // Who has no tab list yet would not know whose body it is shown.
+  // A client without a tab list yet would not know whose entity it is shown.
   const hasList = other => other.type !== 'player' || other.listed
   entity.getNearby = () => Object.values(serv.entities).filter(other => other !== entity && hasList(other))
   entity._writeOthers = (name, packet) => serv._writeArray(name, packet, others())

@@ -1,11 +1,11 @@
 'use strict'
-/** What a player's body shows of itself: its arm swings, it sprints, it sneaks. */
+/** Visible gestures of a player's body: swinging arms, sprinting, sneaking. */
 
 const MAIN_ARM = 0
-// Of an entity's metadata: its flags, of which 2 is sneaking and 8 is sprinting.
+// Index of an entity's flags in its metadata; flag 2 is sneaking, flag 8 sprinting.
 const FLAGS = 0
 const STANDING = 0x00
-// Bots say it by number, games by name.
+// Bots send the action as a number, the game's own clients as a name.
 const SHOWN = new Map([
   [0, 0x02], ['start_sneaking', 0x02],
   [1, STANDING], ['stop_sneaking', STANDING],
@@ -21,7 +21,7 @@ module.exports.player = player => {
   })
   player._client.on('entity_action', ({ actionId }) => {
     const flags = SHOWN.get(actionId)
-    // The name of the type, as a number would be left out of what is sent over TCP.
+    // Give the type by name: a type by number would be dropped from packets over TCP.
     if (flags !== undefined) player.setAndUpdateMetadata([{ key: FLAGS, type: 'byte', value: flags }])
   })
 }

@@ -1,5 +1,5 @@
 'use strict'
-/** The embedded server: flying-squid's plugins on a server object that opens no port. */
+/** Embedded server: flying-squid's plugins on a server object that opens no port. */
 const { EventEmitter } = require('node:events')
 const Command = require('flying-squid/src/lib/command')
 const squidPlugins = require('flying-squid/src/lib/plugins')
@@ -10,8 +10,9 @@ const { makeRegional } = require('./regional')
 const OPTIONS = { 'max-entities': 10000, 'everybody-op': false, gameMode: 0, difficulty: 0 }
 
 /**
- * @param {import('prismarine-registry').Registry} registry of the Minecraft version
- * @returns {EventEmitter} the server; `serv.region` is set to whichever region runs
+ * Create the server.
+ * @param {import('prismarine-registry').Registry} registry registry of the Minecraft version
+ * @returns {EventEmitter} the server; `serv.region` is the running region
  */
 function createServer (registry) {
   const serv = new EventEmitter()
@@ -36,13 +37,13 @@ function createServer (registry) {
   return serv
 }
 
-/** All of `later`, in order, after those of `first` whose names are not among them. */
+/** Return `first` without the plugins whose names occur in `later`, followed by all of `later` in order. */
 function replaceByName (first, later) {
   const replaced = new Set(later.map(plugin => plugin.name))
   return [...first.filter(plugin => !replaced.has(plugin.name)), ...later]
 }
 
-// Descriptors 1 and 2 carry no protocol, but only what is wrong is worth a line.
+// Write only warnings and errors. Descriptors 1 and 2 do not carry the channel, but other lines are not worth reading.
 function addLog (serv) {
   const toStderr = message => process.stderr.write(`server: ${message}\n`)
   const quiet = () => {}

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * How a player enters and leaves a region: at an exact place, known to those who are there
- * and knowing them, without spawn search, announcements, disk or waiting.
+ * Joining and leaving of players: at an exact position, with mutual introduction to those present, and without spawn
+ * search, announcements, disk or waiting.
  */
 const NOON = 6000
 
@@ -9,7 +9,7 @@ module.exports.name = 'login'
 
 module.exports.server = serv => {
   /**
-   * Let a player into the active region.
+   * Let a player join the active region.
    * @param {import('events').EventEmitter} end the server's end of its connection
    * @param {object} start `{position: Vec3 (server), yaw, pitch, onGround, health, food}`
    * @returns {object} the player
@@ -40,7 +40,7 @@ module.exports.server = serv => {
 }
 
 module.exports.player = (player, serv) => {
-  /** Everything a client needs in order to be in the world. */
+  /** Send everything that a client needs in order to be in the world. */
   player.sendWorld = columns => {
     player._client.write('login', loginPacket(serv, player.id, player.gameMode))
     for (const [x, z] of columns) player.sendColumn(x, z)
@@ -53,14 +53,14 @@ module.exports.player = (player, serv) => {
   player.kick = reason => player._client.end(reason)
 }
 
-// The lowest: which body a player has must not depend on who left, or on what was dropped.
+// Return the lowest free entity number: it must not depend on who left before or what was dropped.
 function freeNumber ({ entities }) {
   let number = 1
   while (number in entities) number += 1
   return number
 }
 
-/** With what a client is let into the world: its packet `login`. */
+/** Export the packet `login`, with which a client is let into the world. */
 module.exports.loginPacket = loginPacket
 
 function loginPacket (serv, entityId, gameMode) {
@@ -79,7 +79,7 @@ function loginPacket (serv, entityId, gameMode) {
   }
 }
 
-// The tab list first: clients ignore the body of a player they have not been told of.
+// Send the tab list first: clients ignore the entity of a player that is not in it.
 function introduce (player, serv) {
   const entry = someone => ({
     uuid: someone.uuid,

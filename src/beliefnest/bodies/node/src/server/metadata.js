@@ -1,5 +1,5 @@
 'use strict'
-/** What entities show of themselves (an item's kind, sneaking) to the players of the region. */
+/** Entity metadata (an item's kind, sneaking), sent to the players of the region. */
 
 module.exports.name = 'entities'
 

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Where players are and look. flying-squid rounds angles to 256 steps and hands positions on
- * as rounded differences; here both are kept exactly as the player's client said.
+ * Positions and views of players. flying-squid rounds angles to 256 steps and sends positions as rounded differences;
+ * this module keeps both exactly as the player's client sent them.
  */
 const { Vec3 } = require('vec3')
 const { angleStep, fromDegrees, samePose, toDegrees } = require('./angles')
@@ -10,9 +10,9 @@ module.exports.name = 'updatePositions'
 
 module.exports.player = player => {
   player.pose = { yaw: 0, pitch: 0 }
-  // The block from which it has been walking.
+  // Block from which the current walk began.
   player.stoodAt = player.position.floored()
-  // In Minecraft's degrees, as plugins throw and place by it.
+  // In Minecraft's degrees, which plugins use for throwing and placing.
   Object.defineProperty(player, 'look', { get: () => toDegrees(player.pose) })
 
   player._client.on('position', ({ x, y, z, onGround }) => {
@@ -30,7 +30,7 @@ module.exports.player = player => {
   })
   player._client.on('flying', ({ onGround }) => { player.onGround = onGround })
 
-  /** Put the player somewhere, at once and exactly; a missing angle stays. */
+  /** Put the player at a position, at once and exactly; a missing angle stays unchanged. */
   player.place = (position, yaw = player.pose.yaw, pitch = player.pose.pitch) => {
     player.pose = { yaw, pitch }
     showTurn(player)
@@ -48,7 +48,7 @@ module.exports.player = player => {
 }
 
 module.exports.entity = entity => {
-  /** Move an entity and tells those who see it. */
+  /** Move an entity and show the move to all who see it. */
   entity.sendPosition = async (position, onGround) => {
     entity.onGround = onGround
     if (!entity.position.equals(position)) moveTo(entity, position.x, position.y, position.z)

@@ -1,17 +1,16 @@
 'use strict'
 /**
- * Server state that belongs to a region. flying-squid keeps players and entities in lists of
- * the whole server; here these lists are those of the region whose code is running, so that
- * no loop over "all players" can reach another region.
+ * Server state by region. flying-squid keeps players and entities in lists of the whole server; here these lists are
+ * those of the running region, so that no loop over "all players" can reach another region.
  */
 const REGIONAL = ['players', 'entities', 'uuidToPlayer', 'entityMaxId']
 
-/** @returns {object} the server's state of one new region */
+/** Return the server state of a new region. @returns {object} */
 function regionalState () {
   return { players: [], entities: {}, uuidToPlayer: {}, entityMaxId: 0 }
 }
 
-/** Make the regional properties of `serv` those of `serv.region`. */
+/** Redirect the regional properties of `serv` to those of `serv.region`. */
 function makeRegional (serv) {
   serv.region = null
   const startUp = regionalState()

@@ -1,5 +1,7 @@
 'use strict'
-/** The one world: nothing but the columns regions put into it, never unloaded, never saved. */
+/**
+ * The server's only world: it contains only the columns that regions put into it, never unloads and never saves them.
+ */
 const nbt = require('prismarine-nbt')
 
 const HEIGHTMAP_LONGS = 36
@@ -13,7 +15,7 @@ module.exports.server = serv => {
   serv.overworld.blockEntityData = {}
   serv.dimensionNames = { 0: 'minecraft:overworld' }
   serv.hashedSeed = [0, 0]
-  // flying-squid tells neighbours of changed blocks in order to run redstone, which is not ours.
+  // flying-squid updates the neighbours of changed blocks to run redstone, which we do not use.
   serv.updateBlock = () => {}
   serv.notifyNeighborsOfStateChange = () => {}
 }
@@ -27,7 +29,7 @@ module.exports.player = (player, serv) => {
   }
 }
 
-/** What clients are told of a column: its packet `map_chunk`. */
+/** Export the packet `map_chunk` of a column. */
 module.exports.columnPacket = columnPacket
 
 function columnPacket (column, x, z) {

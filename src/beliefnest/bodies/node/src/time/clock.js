@@ -1,47 +1,46 @@
 'use strict'
 /**
- * Virtual time. Every region has a `Context`: its own time, timers and random numbers.
- * The `Clock` knows which context is active; what code does to time and timers concerns
- * that one alone. Time moves only inside `advance`.
+ * Virtual time. Every region has a `Context`: its own time, timers and random numbers. The `Clock` knows which context
+ * is active; code that uses time and timers affects only that one. Time moves only inside `advance`.
  */
 const { Random } = require('./random')
 const { TimerQueue } = require('./timers')
 
-// Where every context's Date starts, so that no real date can enter a run.
+// Start of every context's Date, so that no real date can enter a run.
 const EPOCH_MS = Date.UTC(2024, 0, 1)
-// Immediates that may follow one another at one instant before time goes on all the same.
+// Largest number of consecutive immediates at one instant, after which time moves on.
 const MAX_IMMEDIATES = 100000
 
 const realSetImmediate = setImmediate
 
 class Context {
   /**
-   * @param {string} seed of this context's random numbers
-   * @param {(error: Error, owner: ?string) => void} [report] hears what a timer's callback throws, and whose
-   *   timer it was; without it `advance` throws that, and what was due after it waits
+   * @param {string} seed seed of this context's random numbers
+   * @param {(error: Error, owner: ?string) => void} [report] called with an error of a timer's callback, and the
+   *   timer's owner; without it `advance` throws the error, and the timers due after it wait
    */
   constructor (seed, report = rethrow) {
     this.report = report
     this.time = 0
     this.charged = 0
     this.shift = 0
-    // Whose code runs: what it begins, before it first waits for a promise, is its own as well.
+    // Owner of the running code. Timers that it starts before its first await belong to the same owner.
     this.owner = null
     this.random = new Random(seed)
     this.timers = new TimerQueue(() => this.time)
   }
 
-  /** Milliseconds since the context began, thinking time charged to this callback included. */
+  /** Return the milliseconds since the context began, including the thinking time charged to this callback. */
   now () {
     return this.time + this.charged
   }
 
-  /** Make the context's date, which need not rise, that of `ms` after its beginning; what waits goes on waiting. */
+  /** Set the context's date to `ms` after its beginning; it may go back. Waiting timers are not affected. */
   setDate (ms) {
     this.shift = ms - this.time
   }
 
-  /** Run `action` as code of an owner; what it throws is reported. */
+  /** Run `action` as code of an owner, and report its error. */
   run (owner, action) {
     this.owner = owner
     try {
@@ -55,29 +54,28 @@ class Context {
 }
 
 class Clock {
-  /** @param {string} seed of the root context, which is active whenever no region is */
+  /**
+   * @param {string} seed seed of the root context, which is active while no region is
+   */
   constructor (seed) {
     this.root = new Context(seed)
     this.active = this.root
   }
 
-  /** Milliseconds since 1970 in the active context. */
+  /** Return the milliseconds since 1970 in the active context. */
   epochNow () {
     return EPOCH_MS + this.active.now() + this.active.shift
   }
 
   /**
-   * Make running code pay for thinking: the active context's clock reads `ms` later until
-   * its current callback ends. Without it a search that is bounded by time never ends.
+   * Charge thinking time to the running code: the active context's clock reads `ms` later until its current callback
+   * ends. Without the charge a search that is bounded by time would never end.
    */
   charge (ms) {
     this.active.charged += ms
   }
 
-  /**
-   * Run `action` with `context` active, then everything it left to do at once.
-   * Calls must not overlap.
-   */
+  /** Run `action` with `context` active, and then its immediate consequences. Calls must not overlap. */
   async within (context, action) {
     if (this.active !== this.root) throw new Error('a region is already running')
     this.active = context
@@ -91,7 +89,7 @@ class Clock {
     }
   }
 
-  /** Let the active context's time pass, firing its timers in order. */
+  /** Advance the active context's time, firing its timers in order. */
   async advance (ms) {
     const context = this.active
     const end = context.time + ms

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Replaces every source of time and chance in this process by the clock's. Must run before
- * any other module is loaded: modules keep the functions they find when they load.
+ * Replacement of every source of time and chance in this process by the clock's. It must be installed before any other
+ * module is loaded, because modules keep the functions that they find when they load.
  */
 const crypto = require('node:crypto')
 const perfHooks = require('node:perf_hooks')
@@ -12,7 +12,10 @@ const util = require('node:util')
 const RealDate = Date
 const realNow = perfHooks.performance.now.bind(perfHooks.performance)
 
-/** @param {import('./clock').Clock} clock */
+/**
+ * Install the clock's time and random numbers.
+ * @param {import('./clock').Clock} clock
+ */
 function installTime (clock) {
   installDate(clock)
   installTimers(clock)
@@ -58,7 +61,7 @@ function installTimers (clock) {
   Object.assign(timersPromises, promised)
 }
 
-// As Node does it: at least one millisecond, and anything that is no number is one.
+// As in Node: at least one millisecond, also for anything that is not a number.
 function milliseconds (delay) {
   const number = Number(delay)
   return number >= 1 ? number : 1

@@ -4,19 +4,21 @@ const { createHash } = require('node:crypto')
 const sfc32 = require('./sfc32')
 
 class Random {
-  /** @param {string} seed any text; the same text gives the same numbers */
+  /**
+   * @param {string} seed any text; the same text gives the same numbers
+   */
   constructor (seed) {
     this.seed = seed
     this.drawn = null
   }
 
-  /** @returns {number} the next 32 random bits, 0 <= n < 2^32 */
+  /** Return the next 32 random bits, 0 <= n < 2^32. @returns {number} */
   nextUint32 () {
     this.drawn ??= sfc32(wordsOf(this.seed))
     return this.drawn.bits()
   }
 
-  /** @returns {number} 0 <= n < 1 with 53 random bits, as Math.random */
+  /** Return the next number 0 <= n < 1 with 53 random bits, as Math.random. @returns {number} */
   next () {
     this.drawn ??= sfc32(wordsOf(this.seed))
     return this.drawn.fraction()
@@ -29,7 +31,7 @@ class Random {
   }
 }
 
-// Most ticks draw no number, so that this waits for the first.
+// Seed on the first draw, because most ticks draw no number.
 function wordsOf (seed) {
   const digest = createHash('sha256').update(seed).digest()
   return [0, 4, 8, 12].map(offset => digest.readInt32LE(offset))

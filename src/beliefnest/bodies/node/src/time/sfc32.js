@@ -1,11 +1,10 @@
 'use strict'
 /**
- * Random numbers by sfc32. Programs of the scripted world have them, too: the function is handed over to
- * QuickJS as text and must not refer to anything outside it.
- *
- * @param {number[]} words four words of 32 bits, which say what comes; changed
- * @returns {{bits: function(): number, fraction: function(): number}} the next 32 bits, 0 <= n < 2^32; the
- *   next number 0 <= n < 1 with 53 random bits, as Math.random
+ * Return a generator of random numbers by sfc32. Programs of the scripted world use it, too: the function is handed
+ * over to QuickJS as text and must not refer to anything outside it.
+ * @param {number[]} words four words of 32 bits, the state of the generator; changed by each draw
+ * @returns {{bits: function(): number, fraction: function(): number}} functions for the next 32 bits, 0 <= n < 2^32,
+ *   and for the next number 0 <= n < 1 with 53 random bits, as Math.random
  */
 module.exports = function sfc32 (words) {
   function bits () {

@@ -25,21 +25,25 @@ class VirtualTimer {
 }
 
 class TimerQueue {
-  /** @param {() => number} now virtual milliseconds of the context */
+  /**
+   * @param {() => number} now returns the virtual milliseconds of the context
+   */
   constructor (now) {
     this.now = now
     this.heap = []
     this.created = 0
   }
 
-  /** @param {?string} [owner] whose timer it is */
+  /**
+   * @param {?string} [owner] owner of the timer
+   */
   add (callback, args, delay, repeat, owner = null) {
     const timer = new VirtualTimer(this, callback, args, delay, repeat, owner)
     this.schedule(timer)
     return timer
   }
 
-  /** (Re)starts a timer from now. A timer that still waits is put back under a new order. */
+  /** Start or restart a timer from now. A waiting timer is queued again under a new order. */
   schedule (timer) {
     const entry = { timer, due: this.now() + timer.delay, order: ++this.created }
     timer.due = entry.due
@@ -48,7 +52,7 @@ class TimerQueue {
     this.push(entry)
   }
 
-  /** The next live entry, or undefined; stale ones are dropped on the way. */
+  /** Return the next live entry, or undefined; stale entries are dropped. */
   peek () {
     while (this.heap.length > 0) {
       const { timer, order } = this.heap[0]

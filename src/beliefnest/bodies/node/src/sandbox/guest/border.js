@@ -1,8 +1,9 @@
 'use strict'
 /**
- * The guest's side of the border: values to and from JSON, calls to the host, promises, functions.
- * The host trusts nothing that is computed here.
- * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ * Guest's side of the border: conversion of values to and from JSON, calls to the host, promises, functions. The host
+ * trusts nothing that is computed here.
+ *
+ * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineBorder (env) {
   const { apply, each, is, isArray, isFinite, keys, own, parse, quote, toNumber } = env
@@ -16,7 +17,7 @@ module.exports = function defineBorder (env) {
   const { fromEntries } = Object
   let nextFunction = 1
 
-  // Every function called encode... gives JSON.
+  // Functions called encode... return JSON.
   function encodeNumber (value) {
     if (isFinite(value) && !is(value, -0)) return '' + value
     return '{"$":"n","v":"' + (is(value, -0) ? '-0' : value) + '"}'
@@ -123,7 +124,7 @@ module.exports = function defineBorder (env) {
     return Array.isArray(wire) ? each(wire, decode) : decoders[wire.$](wire)
   }
 
-  /** Ask the host; what follows the action is JSON. */
+  /** Send a request to the host; the parts after the action are JSON. */
   function ask (action, ...parts) {
     let text = '["' + action + '"'
     for (let i = 0; i < parts.length; i++) text += ',' + parts[i]
@@ -132,7 +133,7 @@ module.exports = function defineBorder (env) {
     return decode(answer.value)
   }
 
-  // The error of an awaited call is made when the answer arrives; its place is where the call was made.
+  // The error of an awaited call is created when the answer arrives; give it the stack of the call.
   function call (action, subject, first, second) {
     const result = second === undefined ? ask(action, subject, first) : ask(action, subject, first, second)
     if (!(result instanceof Promise)) return result
@@ -144,7 +145,7 @@ module.exports = function defineBorder (env) {
     })
   }
 
-  /** @returns {string} JSON of what the host is told of an error */
+  /** Return JSON of an error's description for the host. @returns {string} */
   function describe (error) {
     if (!(error instanceof Error)) return '{"thrown":true,"message":' + quote(env.show(error)) + ',"name":"' + typeof error + '"}'
     const note = errorNotes.get(error)
@@ -160,12 +161,13 @@ module.exports = function defineBorder (env) {
     else reject(decode(value))
   }
 
-  // A function of the program that answers with a promise answers the host later, by `settled`.
+  // Call a function of the program for the host. If it returns a promise, the host gets the result later, by
+  // `settled`.
   function invoke (id, args, ticket) {
     return answer(apply(functions.get(id), undefined, each(args, decode)), ticket)
   }
 
-  /** @returns {string} JSON */
+  /** Return the result of a call as JSON. @returns {string} */
   function answer (result, ticket) {
     if (!(result instanceof Promise)) return '{"now":' + encode(result) + '}'
     result.then((value) => ask('settled', encode(ticket), 'true', encode(value)))

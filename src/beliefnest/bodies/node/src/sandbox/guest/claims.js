@@ -1,7 +1,8 @@
 'use strict'
 /**
- * What programs make claims with. A claim is plain data; whoever takes it checks it.
- * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ * Functions with which programs make claims. A claim is plain data; its receiver checks it.
+ *
+ * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineClaims (env) {
   env.claims = {

@@ -1,7 +1,9 @@
 'use strict'
 /**
- * Date, with the time that the program is given, and UTC as its local time, which would depend on the machine.
- * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ * Date class with the program's own time. Its local time is UTC, because a real local time would depend on the
+ * machine.
+ *
+ * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineDate (env) {
   const RealDate = Date

@@ -1,8 +1,9 @@
 'use strict'
 /**
- * What a program finds besides the language: time, random numbers, timers, console, mcData,
- * the classes behind handles, the skills.
- * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ * Globals of a program besides the language: time, random numbers, timers, console, mcData, the classes behind
+ * handles, the skills.
+ *
+ * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineGlobals (env) {
   const { apply, ask, call, config, encode, encodeList, handle, own, quote, toNumber, toText } = env

@@ -1,7 +1,8 @@
 'use strict'
 /**
- * Start a program and takes what the host says to it afterwards.
- * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ * Start of a program, and dispatch of the host's messages to it.
+ *
+ * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineMain (env) {
   const { describe, decode } = env
@@ -9,7 +10,7 @@ module.exports = function defineMain (env) {
 
   let scope = []
 
-  // Makes what programs find in scope, once for all that start from here. The bot is the first object of the game
+  // Create the scope of programs, once for all programs that start from this context. The bot is the first game object
   // that the host names.
   function bind (scopeText) {
     const { parameters, skills, data } = parse(scopeText)

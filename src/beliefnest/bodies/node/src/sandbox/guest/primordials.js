@@ -1,8 +1,9 @@
 'use strict'
 /**
- * What the border needs of the language, taken before a program can replace it. What leaves the guest is put
- * together from texts by these alone: no setter, iterator or toJSON of the program has a part in it.
- * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ * Language functions that the border needs, saved before a program can replace them. Messages to the host are composed
+ * only with these functions, so that no setter, iterator or toJSON of the program takes part.
+ *
+ * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function definePrimordials (env) {
   const { stringify, parse } = JSON
@@ -14,18 +15,18 @@ module.exports = function definePrimordials (env) {
   const toText = String
   const toNumber = Number
 
-  /** A Map or WeakMap with methods of its own. */
+  /** Return a Map or WeakMap with its own copies of the methods. */
   function own (collection) {
     for (const name of ['get', 'set', 'has', 'delete']) defineProperty(collection, name, { value: collection[name] })
     return collection
   }
 
-  /** JSON of a text; of anything that is none, JSON of what it is as a text. */
+  /** Return a text as JSON; other values are converted to text first. */
   function quote (value) {
     return stringify(toText(value))
   }
 
-  /** @returns {Array} what a function makes of each element */
+  /** Return the results of a function for each element. @returns {Array} */
   function each (list, change) {
     return apply(map, list, [(item) => change(item)])
   }

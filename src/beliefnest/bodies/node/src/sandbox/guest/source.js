@@ -1,5 +1,5 @@
 'use strict'
-/** The text that prepares a fresh QuickJS context for a program. */
+/** Source text that prepares a fresh QuickJS context for a program. */
 
 const parts = [
   require('./primordials'), require('./vec3'), require('./values'), require('./border'), require('./globals'), require('./date'),
@@ -7,8 +7,8 @@ const parts = [
 ]
 
 /**
- * An expression: a function of (host, now, random, configText) that prepares the
- * global object and returns `{bind(scopeText), start(program, marks), dispatch(text), describe(error)}`.
+ * Expression of a function of (host, now, random, configText), which prepares the global object and returns
+ * `{bind(scopeText), start(program, marks), dispatch(text), describe(error)}`.
  */
 const guestSource = `(function (host, now, random, configText) {
   'use strict'

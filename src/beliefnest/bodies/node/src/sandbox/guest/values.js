@@ -1,7 +1,8 @@
 'use strict'
 /**
- * Values a program makes or gets as copies: goals, movements, blocks, items.
- * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ * Values that a program makes or gets as copies: goals, movements, blocks, items.
+ *
+ * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineValues (env) {
   const notes = env.own(new WeakMap())

@@ -1,7 +1,8 @@
 'use strict'
 /**
- * The guest's own Vec3: the interface of the vec3 package, computed without leaving the guest.
- * Runs inside QuickJS: the function is handed over as text and must not refer to anything outside it.
+ * Vec3 class of the guest: the interface of the vec3 package, computed inside the guest.
+ *
+ * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineVec3 (env) {
   const TEXT = /\((-?[.\d]+), (-?[.\d]+), (-?[.\d]+)\)/
@@ -107,7 +108,7 @@ module.exports = function defineVec3 (env) {
     return new Vector(parseFloat(match[1]), parseFloat(match[2]), parseFloat(match[3]))
   }
 
-  // Programs write both `new Vec3(x, y, z)` and `Vec3(x, y, z)`, as the package allows in its two forms.
+  // Programs write both `new Vec3(x, y, z)` and `Vec3(x, y, z)`; the package allows both.
   function Vec3 (x, y, z) {
     return new.target ? Reflect.construct(Vector, [x, y, z], new.target) : make(x, y, z)
   }

@@ -1,5 +1,5 @@
 'use strict'
-/** The events of `bot` a program can listen to, with the types of what a listener gets. */
+/** Events of `bot` that a program can listen to, with the types of the listener's arguments. */
 
 const t = require('./types')
 

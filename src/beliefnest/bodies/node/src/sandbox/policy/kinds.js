@@ -1,15 +1,14 @@
 'use strict'
 /**
- * What a program can see and do: the allow-list. What is not named here does not exist for
- * it. `get` and `set` are properties, `call` methods with the types of arguments and result,
- * and with what the host's work costs in fuel, if it is more than `COST.call`: a number, or a
- * function of the arguments.
+ * Allow-list of everything that a program can see and do. Anything else does not exist for it. `get` and `set` are
+ * properties. `call` lists methods with the types of arguments and result; a third element is the fuel for the host's
+ * work if it exceeds `COST.call`: a number, or a function of the arguments.
  */
 
 const t = require('./types')
 
 const COST = { call: 10_000, message: 200_000, section: 5000, ray: 20_000, recipes: 50_000 }
-// What is perceived and recorded for ever costs as much as a message, whichever way it is said.
+// Skills whose effect is perceived and recorded for ever cost as much as a chat message.
 const skillCosts = { think: COST.message, say: COST.message, whisper: COST.message, emote: COST.message, writeSign: COST.message }
 const SECTION = 16
 const ofSearch = ([{ maxDistance }]) => COST.section * (2 * Math.ceil(maxDistance / SECTION) + 1) ** 3
@@ -145,11 +144,11 @@ const kinds = {
   }
 }
 
-/** Names only, for the guest, which makes its classes from them. */
+/** Names of members by kind, from which the guest makes its classes. */
 const kindNames = Object.fromEntries(Object.entries(kinds).map(([name, { get, set, call }]) =>
   [name, { gets: Object.keys(get), sets: Object.keys(set ?? {}), calls: Object.keys(call) }]))
 
-/** Tables of minecraft-data a program can read: `table` entry by entry, `value` whole. */
+/** Tables of minecraft-data that a program can read: `table` entry by entry, `value` as a whole. */
 const tables = {
   blocks: 'table', blocksByName: 'table', blocksArray: 'value', blocksByStateId: 'table', items: 'table', itemsByName: 'table',
   itemsArray: 'value', foods: 'table', foodsByName: 'table', foodsArray: 'value', biomes: 'table', biomesByName: 'table',

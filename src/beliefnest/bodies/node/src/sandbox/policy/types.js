@@ -1,8 +1,8 @@
 'use strict'
 /**
- * The types of the policy. A type takes a value across the border in one or both directions:
- * `toHost(exchange, wire, where)` checks what a program hands over, `toGuest(exchange, value, where)`
- * copies or names what a program gets. `async` types wait for a promise of the host.
+ * Types of the policy. A type converts values at the border in one or both directions: `toHost(exchange, wire, where)`
+ * checks a value of the program, `toGuest(exchange, value, where)` copies a value for the program or names it by a
+ * handle. `async` types wait for a promise of the host.
  */
 
 const { RefusedError, describeWire, isTagged, itemToGuest, vectorToGuest } = require('../exchange')
@@ -29,7 +29,7 @@ const number = {
   toGuest: (x, value, where) => x.toGuest(value, where)
 }
 const text = { toHost: (x, wire, where) => x.text(wire, where), toGuest: (x, value) => String(value) }
-/** A text that a server sent as one of its messages, as a client shows it. */
+/** Text of a server's message, as a client shows it. */
 const words = { toGuest: (x, value) => messageText(x.bot.registry, value) }
 const vector = { toHost: (x, wire, where) => x.vector(wire, where), toGuest: (x, value) => vectorToGuest(value) }
 const block = { toHost: (x, wire, where) => x.block(wire, where), toGuest: (x, value) => x.blockToGuest(value) }
@@ -37,7 +37,7 @@ const item = { toHost: (x, wire, where) => x.item(wire, where), toGuest: (x, val
 const goal = { toHost: buildGoal }
 const movements = { toHost: buildMovements }
 
-/** A number between two bounds, inclusive. */
+/** Return the type of numbers between two bounds, inclusive. */
 const within = (low, high) => ({
   toHost: (x, wire, where) => {
     const value = x.number(wire, where)
@@ -47,7 +47,7 @@ const within = (low, high) => ({
   toGuest: number.toGuest
 })
 
-/** A whole number between two bounds, inclusive. */
+/** Return the type of whole numbers between two bounds, inclusive. */
 const whole = (low, high) => ({
   toHost: (x, wire, where) => {
     const value = within(low, high).toHost(x, wire, where)
@@ -60,7 +60,7 @@ const count = whole(0, 1_000_000)
 const ticks = within(0, MAX_TICKS)
 const slot = within(-1, 1000)
 
-/** One of some texts. */
+/** Return the type of one of several texts. */
 const choice = (...values) => ({
   toHost: (x, wire, where) => {
     if (!values.includes(wire)) throw new RefusedError(`${where} must be one of ${values.join(', ')}, found ${describeWire(wire)}`)
@@ -69,7 +69,7 @@ const choice = (...values) => ({
   toGuest: text.toGuest
 })
 
-/** A live object of the game, of one of some kinds. */
+/** Return the type of live game objects of one of some kinds. */
 const live = (...kinds) => ({
   toHost: (x, wire, where) => x.object(wire, kinds, where),
   toGuest: (x, value) => x.handle(value, kinds[0])
@@ -77,7 +77,7 @@ const live = (...kinds) => ({
 
 const isAbsent = (wire) => wire === undefined || wire === null || isTagged(wire, 'u')
 
-/** The type or nothing: null and undefined stay what they are. */
+/** Return the type that also accepts nothing; null and undefined stay what they are. */
 const maybe = (type) => ({
   toHost: (x, wire, where) => isAbsent(wire) ? (wire === null ? null : undefined) : type.toHost(x, wire, where),
   toGuest: (x, value, where) => value === undefined ? { $: 'u' } : value === null ? null : type.toGuest(x, value, where)
@@ -91,12 +91,12 @@ const list = (type) => ({
   toGuest: (x, values, where) => Array.from(values, (value, i) => type.toGuest(x, value, `${where}[${i}]`))
 })
 
-/** An object with any keys, every value of one type. */
+/** Return the type of objects with any keys and values of one type. */
 const dictionary = (type) => ({
   toGuest: (x, values, where) => ({ $: 'o', o: Object.entries(values).map(([key, value]) => [key, type.toGuest(x, value, `${where}.${key}`)]) })
 })
 
-/** A copy of the named properties. */
+/** Return the type of a copy of the named properties. */
 const record = (fields) => ({
   toGuest: (x, value, where) => ({
     $: 'o',
@@ -105,7 +105,7 @@ const record = (fields) => ({
   })
 })
 
-/** The first of some types that accepts the value. */
+/** Return the first of some types that accepts the value. */
 const either = (...types) => ({
   toHost: (x, wire, where) => {
     const reasons = []
@@ -150,8 +150,8 @@ const playerName = {
   }
 }
 
-// A matcher of the program sees a block as it is at a place only if `useExtraInfo` is set, so
-// that its answers can be kept per block state.
+// A program's matcher gets a block without a position unless `useExtraInfo` is set, so that its answers can be cached
+// per block state.
 const matcher = {
   toHost: (x, wire, where) => {
     const matches = x.functionOf(wire, where)
@@ -170,7 +170,7 @@ const STATE_FIELDS = {
   shapes: plain, isWaterlogged: boolean
 }
 
-/** @returns {object} what is the same for every block of a state, as plain data */
+/** Return the properties that all blocks of a state share, as plain data. @returns {object} */
 function stateOf (candidate) {
   const fields = Object.keys(STATE_FIELDS).filter((key) => candidate[key] !== undefined && candidate[key] !== null)
   const state = Object.fromEntries(fields.map((key) => [key, candidate[key]]))
@@ -184,7 +184,7 @@ const entityFilter = {
   }
 }
 
-// Mineflayer would look through a list for every block.
+// Convert a list of ids to a set lookup; Mineflayer would search the list for every block.
 const oneOf = {
   toHost: (x, wire, where) => {
     const wanted = new Set(list(count).toHost(x, wire, where))

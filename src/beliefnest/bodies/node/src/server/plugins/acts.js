@@ -1,11 +1,11 @@
 'use strict'
 
 /**
- * What is done with items by one click or step and often many times a tick: crafting, taking what was
- * smelted, giving, receiving. Counted where it happens (`player.countAct`), told once a tick.
+ * Counter of acts on items that happen many times a tick: crafting, taking smelted items, giving, receiving. Plugins
+ * count them where they happen (`player.countAct`); the counts are reported once a tick.
  */
 module.exports.server = (serv) => {
-  // What is counted later in the order of plugins is told at the next tick, or when the player rests.
+  // Acts that a later plugin counts in the same tick are reported at the next tick, or when the player rests.
   serv.onTick(() => serv.players.forEach((player) => player.tellActs()))
 }
 
@@ -13,9 +13,10 @@ module.exports.player = (player) => {
   let counted = new Map()
 
   /**
-   * @param {string} kind of the event
-   * @param {object} item and how many of it
-   * @param {string} [other] the agent it was done with
+   * Count an act.
+   * @param {string} kind kind of the event
+   * @param {object} item item, with its count
+   * @param {string} [other] agent with whom it was done
    */
   player.countAct = (kind, { name, count }, other) => {
     const key = other === undefined ? kind : `${kind} ${other}`

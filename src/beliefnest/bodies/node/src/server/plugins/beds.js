@@ -11,7 +11,7 @@ const SLEEPING = 2
 const STOP_SLEEPING = 2
 const LEAVE_BED = 2
 
-/** Lying down in beds and getting up again. It is always noon here, so sleep is not tied to night. */
+/** Add beds: lying down and getting up. Sleep is not tied to night, because it is always noon here. */
 module.exports.server = (serv) => {
   function partner (position, { properties }) {
     const toHead = properties.part === 'foot' ? properties.facing : opposite(properties.facing)

@@ -4,12 +4,12 @@ const { EventEmitter } = require('events')
 const { blockStates, encode } = require('./lib/states')
 
 /**
- * Blocks, read and written at once. flying-squid's own accessors are asynchronous, so that
- * two acts of one tick could interleave; here an act is done when the call returns.
+ * Add `serv.blocks`: synchronous access to blocks. flying-squid's own accessors are asynchronous, so that two acts of
+ * one tick could interleave; here an act is complete when the call returns.
  *
- * `serv.blocks.on('change', ({position, before, after, player}) => ...)` reports every
- * change of a block state (ids), whoever made it; `player` is set where one did. `update` follows
- * where what is beside the block is to take notice: a door's other half, sand without a hold.
+ * `serv.blocks.on('change', ({position, before, after, player}) => ...)` reports every change of a block state (ids)
+ * from any source; `player` is set if a player caused it. The event `update` follows if adjacent blocks are to react:
+ * a door's other half, unsupported sand.
  */
 module.exports.server = (serv) => {
   const { registry } = serv
@@ -17,22 +17,22 @@ module.exports.server = (serv) => {
   const blocks = new EventEmitter()
   blocks.setMaxListeners(0)
 
-  /** `{stateId, type, name, shapes, solid, transparent, properties}` of the block there. */
+  /** Return `{stateId, type, name, shapes, solid, transparent, properties}` of the block at a position. */
   blocks.at = (position) => describe(serv.overworld.sync.getBlockStateId(position))
   blocks.describe = describe
   blocks.text = text
-  /** State id by name and properties. */
+  /** Return the state id of a name and properties. */
   blocks.state = (name, properties = {}) => encode(registry, name, properties)
-  /** The state a block has after some of its properties changed. */
+  /** Return the state id of a block after a change of some properties. */
   blocks.stateWith = (block, properties) => encode(
     registry, block.name, { ...block.properties, ...properties })
 
-  /** Tell a player what is there, whether or not it changed. */
+  /** Send a player the block at a position, changed or not. */
   blocks.send = (player, position) => player._client.write('block_change', {
     location: position, type: serv.overworld.sync.getBlockStateId(position),
   })
 
-  /** Set a block as it is, and nothing else: what is beside it does not take notice. */
+  /** Set a block without any reaction of adjacent blocks. */
   blocks.put = (position, stateId, player = null) => {
     const before = serv.overworld.sync.getBlockStateId(position)
     if (before === stateId) return null

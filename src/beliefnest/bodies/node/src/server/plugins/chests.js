@@ -5,7 +5,7 @@ const { halvesAt, partnerOf } = require('./lib/doubleChest')
 const { HALF, TITLES, windowOf } = require('./lib/chestWindows')
 
 const LID_ACTION = 1
-/** Who watches only lifts no lid. */
+/** Game mode of players whose looking does not open a lid. */
 const SPECTATOR = 3
 
 const isFullCube = ({ shapes }) => shapes.length === 1 &&
@@ -16,7 +16,7 @@ function isBlocked (serv, position) {
   return serv.blocks.at(position).name !== 'barrel' && isFullCube(above) && !above.transparent
 }
 
-/** Show whether somebody looks in. */
+/** Show whether anybody looks into the container. */
 function showLid (serv, position) {
   const block = serv.blocks.at(position)
   const count = serv.containers.viewers(position).filter(({ gameMode }) => gameMode !== SPECTATOR).length
@@ -29,7 +29,7 @@ function showLid (serv, position) {
   })
 }
 
-/** Chests, double chests, trapped chests and barrels: opening, moving items, lids. */
+/** Add chests, double chests, trapped chests and barrels: opening, moving items, lids. */
 module.exports.server = (serv) => {
   Object.keys(TITLES).forEach((name) => serv.containers.define(name, HALF))
 
@@ -51,7 +51,7 @@ module.exports.server = (serv) => {
   }
   Object.keys(TITLES).forEach((name) => serv.onInteraction(name, open))
 
-  /** What is left of a double chest is a single one. */
+  /** Turn the remaining half of a double chest into a single chest. */
   serv.blocks.on('update', ({ position, before, after }) => {
     const old = serv.blocks.describe(before)
     const other = TITLES[old.name] && partnerOf(position, old)

@@ -2,7 +2,7 @@
 
 const { ContainerStore } = require('./lib/containerStore')
 
-/** `serv.containers`: what containers hold (see lib/containerStore.js). */
+/** Add `serv.containers`: contents of containers (see lib/containerStore.js). */
 module.exports.server = (serv) => {
   serv.containers = new ContainerStore(serv)
   serv.onForget((within) => serv.containers.forget(within))
@@ -11,7 +11,9 @@ module.exports.server = (serv) => {
     restore: (rows, region) => serv.containers.restore(rows, region),
   })
 
-  /** A container that is broken by somebody spills; one that is replaced otherwise is gone. */
+  /**
+   * Spill the contents of a container that a player breaks; drop the contents of one that is replaced in another way.
+   */
   serv.blocks.on('change', ({ position, before, after, player }) => {
     const names = [before, after].map((stateId) => serv.blocks.describe(stateId).name)
     const items = serv.containers.blockChanged(position, ...names)

@@ -6,9 +6,9 @@ const { cell, containerMenu } = require('./lib/menus')
 const TABLE_WINDOW = 12
 const TABLE_WIDTH = 3
 
-/** Crafting in the 2x2 grid of the inventory and at a table; recipes are minecraft-data's. */
+/** Add crafting in the inventory's 2x2 grid and at a table, with minecraft-data's recipes. */
 module.exports.server = (serv) => {
-  // Indexed when something first lies in a grid: a world without crafting starts sooner.
+  // Index recipes on first use, so that a world without crafting starts sooner.
   let index = null
   const recipes = () => {
     index ??= indexRecipes(serv.registry)
@@ -16,7 +16,10 @@ module.exports.server = (serv) => {
   }
   const makeItem = (name) => new serv.Item(serv.registry.itemsByName[name].id, 1)
 
-  /** Slot 0 of `slots` shows what slots 1.. make; returns `{refresh, takeResult}`; what is taken `player` has crafted. */
+  /**
+   * Connect a crafting grid: slot 0 of `slots` shows the product of slots 1 and up. Return `{refresh, takeResult}`; a
+   * taken product counts as crafted by `player`.
+   */
   serv.craftingGrid = (slots, width, player) => {
     function refresh () {
       const ingredients = slots.slice(1, width * width + 1)

@@ -5,21 +5,21 @@ const { listOf, vecOf } = require('./lib/positions')
 const { withCount } = require('./lib/items')
 
 const TICK_MS = 50
-/** How much of the time a block takes must have passed, as in the game: clocks differ a little. */
+/** Fraction of a block's digging time that must have passed, as in the game, because clocks differ a little. */
 const PATIENCE = 0.7
 const STATUS = { START: 0, CANCEL: 1, FINISH: 2, DROP_STACK: 3, DROP_ONE: 4, RELEASE: 5, SWAP: 6 }
 const OFF_HAND_SLOT = 45
 
-/** Mining at the speed of the tool in hand, and the other acts of the same packet. */
+/** Add mining at the speed of the tool in hand, and the other acts of the same packet. */
 module.exports.server = (serv) => {
   const Block = require('prismarine-block')(serv.registry)
 
-  /** Milliseconds a player needs for a block. */
+  /** Return the milliseconds that a player needs to mine a block. */
   serv.digTime = (player, stateId) => Block.fromStateId(stateId, 0).digTime(
     player.itemInHand()?.type ?? null, false, serv.blocks.at(player.eyes()).name === 'water',
     !player.onGround, player.itemInHand()?.enchants ?? [], {})
 
-  /** Break a block for a player, with what it drops. */
+  /** Break a block for a player, with its drops. */
   serv.mine = (player, position) => {
     const block = serv.blocks.at(position)
     const drops = dropsOf(serv.registry, block, player.itemInHand(), Math.random)
@@ -37,7 +37,8 @@ module.exports.server = (serv) => {
 }
 
 module.exports.player = (player, serv) => {
-  // Overdue is what was said to be finished before its time was over, of the server's ticks: it goes on until then.
+  // `overdue` is a block whose digging the client finished too early by the server's ticks; digging continues until
+  // its time has passed.
   let [digging, overdue] = [null, null]
 
   player.on('rest', () => { digging = overdue = null })
@@ -68,8 +69,9 @@ module.exports.player = (player, serv) => {
   }
 
   /**
-   * The client has waited as long as it takes. What it sent at two times may come at one, from afar or on a busy
-   * machine: then the server goes on by its own ticks, as in the game, and the client is told that the block is still there.
+   * Finish digging a block. The client has waited for the full time; but from afar, or on a busy machine, packets that
+   * it sent at different times may arrive together. If too few server ticks have passed, the server continues by its
+   * own ticks, as in the game, and tells the client that the block is still there.
    */
   function finish (position) {
     const begun = digging

@@ -6,7 +6,10 @@ const { toDegrees } = require('../angles')
 
 const BY_HAND = /^(?!iron_).*(_door|_trapdoor|_fence_gate)$/
 
-/** Doors, trapdoors and fence gates open and shut by hand; iron ones do not. Where a door is, is its lower half. */
+/**
+ * Add doors, trapdoors and fence gates, which open and shut by hand unless they are of iron. The position of a door is
+ * that of its lower half.
+ */
 module.exports.server = (serv) => {
   function otherHalf (position, block) {
     return position.offset(0, block.properties.half === 'lower' ? 1 : -1, 0)
@@ -32,7 +35,7 @@ module.exports.server = (serv) => {
     return used(player, position, open)
   }
 
-  /** A gate opens away from who opens it. */
+  /** Open a gate away from the player, or shut it. */
   function toggleGate ({ player, position, block }) {
     const open = !block.properties.open
     const { facing } = block.properties
@@ -49,7 +52,7 @@ module.exports.server = (serv) => {
     else serv.onInteraction(name, toggleDoor)
   }
 
-  /** A door is two blocks; without one the other does not stand. */
+  /** Remove the other half of a door when one half is gone. */
   serv.blocks.on('update', ({ position, before, after, player }) => {
     const old = serv.blocks.describe(before)
     if (!old.name.endsWith('_door') || serv.blocks.describe(after).name === old.name) return

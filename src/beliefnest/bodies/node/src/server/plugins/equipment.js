@@ -3,11 +3,11 @@
 const { equal } = require('./lib/items')
 const { HOTBAR_START, OFF_HAND } = require('./lib/menus')
 
-/** Slot of the protocol to slot of the inventory; null: the slot that is held. */
+/** Equipment slots of the protocol, each with its inventory slot; null for the held slot. */
 const PARTS = [[0, null], [1, OFF_HAND], [2, 8], [3, 7], [4, 6], [5, 5]]
 const HOTBAR_SIZE = 9
 
-/** What a player wears and holds is shown to those who are near, whenever it changes. */
+/** Show a player's equipment to nearby players whenever it changes. */
 module.exports.player = (player, serv) => {
   const { Item } = serv
   const shown = new Array(PARTS.length).fill(null)
@@ -23,7 +23,7 @@ module.exports.player = (player, serv) => {
     }
   }
 
-  /** Tell those near what changed since the last time. */
+  /** Send changes since the last call to nearby players. */
   player.refreshEquipment = () => {
     const now = worn()
     const changes = now.flatMap((item, part) => (equal(item, shown[part]) ? [] : [entry(item, part)]))
@@ -31,7 +31,10 @@ module.exports.player = (player, serv) => {
     send(serv.players.filter((other) => other !== player), changes)
   }
 
-  /** Tell one player all of it, empty hands too: bots tell what never was there from what is there no more. */
+  /**
+   * Send one player all equipment, including empty hands: bots distinguish a slot that was never filled from one that
+   * was emptied.
+   */
   player.showEquipment = (other) => send([other], worn().map(entry))
 
   player._client.on('held_item_slot', ({ slotId }) => {

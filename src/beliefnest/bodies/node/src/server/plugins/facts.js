@@ -3,9 +3,9 @@
 const { EventEmitter } = require('events')
 
 /**
- * Facts only the server can know: who opened, took, stored, mined, placed or switched
- * what. Each is emitted on `serv.facts` as `event` with
- * `{kind, actor, player, detail}`; positions in `detail` are `[x, y, z]` of the server's world.
+ * Add `serv.facts`: facts that only the server knows, such as who opened, took, stored, mined, placed or switched
+ * something. Each is emitted as `event` with `{kind, actor, player, detail}`; positions in `detail` are `[x, y, z]` of
+ * the server's world.
  */
 module.exports.server = (serv) => {
   serv.facts = new EventEmitter()

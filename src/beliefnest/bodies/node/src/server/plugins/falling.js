@@ -2,10 +2,10 @@
 
 const FALLS = /^(sand|red_sand|gravel|suspicious_sand|suspicious_gravel|anvil|chipped_anvil|damaged_anvil|dragon_egg|.*_concrete_powder)$/
 const GIVES_WAY = /^(air|cave_air|void_air|water|lava|fire)$/
-/** Ticks a block takes to fall by one. */
+/** Number of ticks in which a block falls by one. */
 const PACE = 2
 
-/** Sand and gravel fall where nothing holds them, one block at a time. */
+/** Let unsupported sand and gravel fall, one block at a time. */
 module.exports.server = (serv) => {
   function fall (position) {
     const block = serv.blocks.at(position)

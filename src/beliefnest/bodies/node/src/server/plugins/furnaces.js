@@ -9,7 +9,10 @@ const { byPlace, keyOf, vecOf } = require('./lib/positions')
 const WINDOWS = { blast_furnace: 10, furnace: 14, smoker: 22 }
 const TITLES = { blast_furnace: 'Blast Furnace', furnace: 'Furnace', smoker: 'Smoker' }
 
-/** What goes where: anything into the input, what burns (and buckets) into the fuel, nothing into the output. */
+/**
+ * Return the rules of a furnace's slots: any item into the input, fuels (and buckets) into the fuel slot, nothing into
+ * the output.
+ */
 function rules (kind) {
   const smelts = (item) => resultOf(kind, item.name) !== undefined
   const burns = (item) => burnTicks(item.name) > 0
@@ -23,7 +26,7 @@ function rules (kind) {
   }
 }
 
-/** The slot of what was smelted, which is only ever taken from: that is told as smelting. */
+/** Return the output slot, which only gives items; taking an item counts as smelting it. */
 function outputCell (slots, player) {
   const { get, set } = cell(slots, OUTPUT)
   return {
@@ -37,7 +40,7 @@ function outputCell (slots, player) {
   }
 }
 
-/** Furnaces, blast furnaces and smokers: windows, fuel, and smelting tick by tick. */
+/** Add furnaces, blast furnaces and smokers: windows, fuel, and smelting tick by tick. */
 module.exports.server = (serv) => {
   const fires = new Map()
   const makeItem = (name, count) => new serv.Item(serv.registry.itemsByName[name].id, count)

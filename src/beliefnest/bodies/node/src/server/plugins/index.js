@@ -1,9 +1,9 @@
 'use strict'
 /**
- * What flying-squid lacks, one concern per file, in the order in which they are set up. One
- * whose name is that of a plugin of flying-squid takes its place.
+ * Plugins for features that flying-squid lacks, one per file, in the order of their set-up. A plugin with the name of
+ * one of flying-squid's replaces it.
  *
- * Whoever owns time calls `serv.tickRegion(within)` once per tick (see ticking.js).
+ * The owner of time calls `serv.tickRegion(within)` once per tick (see ticking.js).
  */
 module.exports = [
   named('internalState', require('./internalState')),

@@ -7,9 +7,9 @@ const { HOTBAR_START, OFF_HAND } = require('./lib/menus')
 const { eyeAbove, inReach, sees } = require('../../../../../programs/skills/lib/sight')
 
 /**
- * Use on a block: first what the block does (`serv.onInteraction(name, handler)`, the handler
- * is given `{player, position, block, face, cursor}` and returns whether it did something), then what
- * the item in hand does (`serv.useItemOn`). Blocks are used where a free line leads to them from the eye.
+ * Add the use of blocks: first the block's own handler runs (`serv.onInteraction(name, handler)`; it gets `{player,
+ * position, block, face, cursor}` and returns whether it did something), then that of the item in hand
+ * (`serv.useItemOn`). A block can be used only if a free line leads to it from the eye.
  */
 module.exports.server = (serv) => {
   const handlers = new Map()
@@ -34,7 +34,7 @@ module.exports.player = (player, serv) => {
   player.slotOfHand = (hand) => (hand === 1 ? OFF_HAND : HOTBAR_START + player.heldItemSlot)
   player.itemInHand = (hand = 0) => player.inventory.slots[player.slotOfHand(hand)] ?? null
 
-  /** A client predicts what its act does, and drops the prediction at this. */
+  /** Acknowledge an act. The client predicted its effect and drops the prediction now. */
   player.acknowledge = (sequence, positions) => {
     client.write('acknowledge_player_digging', { sequenceId: sequence ?? 0 })
     positions.forEach((position) => serv.blocks.send(player, position))

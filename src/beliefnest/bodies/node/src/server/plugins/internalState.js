@@ -1,24 +1,24 @@
 'use strict'
 /**
- * What goes on in a region and no SNAPSHOT has: speed, countdowns, fires, which slot holds what.
- * Each plugin keeps its own part of it as plain rows, places in scenario coordinates, so that a
- * region made anew goes on as the one the rows were taken of.
+ * Internal state of a region: processes that its SNAPSHOT does not contain, such as speeds, countdowns, fires, and
+ * which slot holds which item. Each plugin keeps its own part as plain rows with scenario coordinates, so that a
+ * region that is created anew continues like the one whose rows were saved.
  */
 module.exports.server = (serv) => {
   const parts = []
 
   /**
    * Register a part.
-   * @param {string} name of the part
-   * @param {object} part `save(region)` gives rows, none for what is as in a region just made from a
-   *   SNAPSHOT; `restore(rows, region)` makes a region so, whatever it was like before
+   * @param {string} name name of the part
+   * @param {object} part `save(region)` returns rows, none for anything as in a region just created from a SNAPSHOT;
+   *   `restore(rows, region)` restores them, whatever the region's state was before
    */
   serv.keeps = (name, part) => { parts.push([name, part]) }
 
-  /** @returns {object} rows by part, only parts that have any */
+  /** Return rows by part, for parts that have any. @returns {object} */
   serv.internalState = (region) => Object.fromEntries(
     parts.map(([name, { save }]) => [name, save(region)]).filter(([, rows]) => rows.length > 0))
 
-  /** Make what goes on in a region be as `serv.internalState` said. */
+  /** Restore the internal state that `serv.internalState` returned. */
   serv.restoreState = (region, parted) => parts.forEach(([name, { restore }]) => restore(parted[name] ?? [], region))
 }

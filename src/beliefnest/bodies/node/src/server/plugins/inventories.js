@@ -6,7 +6,7 @@ const { equal, rowsOf, slotsOf } = require('./lib/items')
 const { layOut, possessionsOf, storage, STORE_ORDER } = require('./lib/slots')
 const { store } = require('./lib/clicks')
 
-/** What a player has, as slots and as name -> count; kept over a quit and a rejoin. */
+/** Add inventories, as slots and as counts by name. They are kept while a player is away. */
 module.exports.server = (serv) => {
   const byRegion = new WeakMap()
   const left = () => {
@@ -26,7 +26,7 @@ module.exports.server = (serv) => {
     })
   }
   serv.recallPlayer = (uuid) => left().get(uuid)
-  /** Make a player who has left unknown, so that a later one of that name starts empty. */
+  /** Forget a player who has left, so that a later one of that name starts empty. */
   serv.forgetPlayer = (uuid) => left().delete(uuid)
 
   serv.keeps('slots', {
@@ -46,30 +46,34 @@ module.exports.player = (player, serv) => {
   player.inventory = serv.makeInventory()
   const recalled = () => serv.recallPlayer(player._client.uuid)
 
-  /** Store an item; returns what did not fit, or null. */
+  /** Store an item. Return what did not fit, or null. */
   player.storeItem = (item) => {
     const rest = store(storage(player.inventory.slots), item, STORE_ORDER)
     player.inventoryChanged()
     return rest
   }
 
-  // Asked for at every tick; stacks are values, so that the same ones in the same places are the same possessions.
+  // Cache the result, which is asked for at every tick. Stacks are immutable, so that identical stacks in the same
+  // slots mean the same possessions.
   let known = { stacks: [], heldItemSlot: 0, possessions: null }
 
-  /** `{inventory: {name: count}, equipment: {slot: name}}`, what is worn, held or on the cursor included; not to be changed. */
+  /**
+   * Return `{inventory: {name: count}, equipment: {slot: name}}`, with everything worn, held or on the cursor. The
+   * result must not be changed.
+   */
   player.possessions = () => {
     const { inventory: { slots }, heldItemSlot, windows: { cursor } } = player
     const same = known.heldItemSlot === heldItemSlot && known.stacks.length === slots.length &&
       known.stacks[0] === cursor && slots.every((item, i) => i === 0 || item === known.stacks[i])
     if (!same) {
-      // What lies in slot 0 is the result of crafting, which nobody has yet.
+      // Slot 0 shows the result of crafting, which nobody owns yet.
       const stacks = [cursor, ...slots.slice(1)]
       known = { stacks, heldItemSlot, possessions: possessionsOf(stacks, stacks[HOTBAR_START + heldItemSlot]) }
     }
     return known.possessions
   }
 
-  /** Make the player have exactly this. @throws RangeError where it cannot. */
+  /** Set the possessions of the player. @throws RangeError if they do not fit */
   player.setPossessions = ({ inventory = {}, equipment = {} }) => {
     carry(0, layOut(serv, player.inventory.slots.length, { inventory, equipment }, player.username))
     player.windows.cursor = null
@@ -85,14 +89,14 @@ module.exports.player = (player, serv) => {
 
   const usual = () => layOut(serv, player.inventory.slots.length, player.possessions(), player.username)
 
-  /** `[held, ...[slot, name, count]]`; null where `setPossessions` would fill the slots so. */
+  /** Return `[held, ...[slot, name, count]]`; null if `setPossessions` would fill the slots in the same way. */
   player.saveSlots = () => {
     const { slots } = player.inventory
     const asUsual = player.heldItemSlot === 0 && usual().every((item, i) => equal(item, slots[i]))
     return asUsual ? null : [player.heldItemSlot, ...rowsOf(slots)]
   }
 
-  /** Put what the player has into the slots that `saveSlots` told. */
+  /** Fill the slots as `saveSlots` returned them. */
   player.restoreSlots = ([held, ...rows] = [0]) => {
     const before = player.possessions()
     const plain = usual()

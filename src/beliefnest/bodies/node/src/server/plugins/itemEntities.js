@@ -13,22 +13,22 @@ const TOSS_LIFT = 0.1
 const POP_SPEED = 0.1
 const BELOW_EYES = 0.3
 
-/** Every tick has numbers of its own, so that no number is used twice; the first ones are the players'. */
+/** Each tick has its own numbers, so that no number is used twice; the first ones are the players'. */
 const NUMBERS_PER_TICK = 100
 
 /**
- * Making dropped items: `serv.dropItem(position, item, {velocity, delay, id, thrown})` makes one, which
- * nobody can pick up for `delay` ticks; `serv.itemEntities(within)` lists them (`{id, item, position}`),
- * `serv.removeItem(id)` takes one away. What becomes of them is in itemMotion.js.
+ * Add dropped items. `serv.dropItem(position, item, {velocity, delay, id, thrown})` makes one that nobody can pick up
+ * for `delay` ticks; `serv.itemEntities(within)` lists them (`{id, item, position}`); `serv.removeItem(id)` removes
+ * one. itemMotion.js moves them.
  *
- * The number of an item is that of its entity. A new one's depends on the tick and on what lies
- * there, never on what lay there once: a region made anew goes on with the same numbers.
+ * The number of an item is that of its entity. A new number depends on the tick and on the present entities, never on
+ * earlier ones: a region that is created anew continues with the same numbers.
  */
 module.exports.server = (serv) => {
   const stepped = ({ x, y, z }) => new Vec3(toStep(x), toStep(y), toStep(z))
   const type = serv.registry.entitiesByName.item.id
 
-  /** To be called at the start of a call: numbers go on from those that are taken. */
+  /** Continue numbers from the present entities; called at the start of a call. */
   serv.numberItems = () => { serv.entityMaxId = Math.max(0, ...Object.keys(serv.entities).map(Number)) }
 
   const nextNumber = () => Math.max(serv.entityMaxId + 1, (serv.region.tick + 1) * NUMBERS_PER_TICK)
@@ -43,11 +43,11 @@ module.exports.server = (serv) => {
   serv.spawnObject = (_, world, position, { itemId, itemCount = 1, velocity }) =>
     serv.dropItem(position, new serv.Item(itemId, itemCount), { velocity })
 
-  /** Out of a block that was broken or opened. */
+  /** Drop an item out of a block that was broken or opened. */
   serv.popItem = (position, item) => serv.dropItem(
     centreOf(position), item, { velocity: new Vec3(0, POP_SPEED, 0) })
 
-  /** Thrown by a player where it looks. */
+  /** Throw an item in the player's direction of view. */
   serv.tossItem = (player, item) => serv.dropItem(player.eyes().offset(0, -BELOW_EYES, 0), item, {
     velocity: direction(toDegrees(player.pose)).scaled(TOSS_SPEED).offset(0, TOSS_LIFT, 0),
     delay: TOSSED_DELAY,
@@ -59,7 +59,7 @@ module.exports.server = (serv) => {
 
   serv.removeItem = (id) => serv.entities[id].destroy()
 
-  /** Put an item somewhere, at once. */
+  /** Put an item at a position, at once. */
   serv.placeItem = (entity, position) => {
     if (position.equals(entity.position)) return
     entity.position = position

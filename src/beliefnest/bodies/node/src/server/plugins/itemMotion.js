@@ -10,7 +10,7 @@ const LIFETIME = 6000
 const MERGE_DISTANCE = 0.5
 const VOID_DEPTH = 64
 
-/** Dropped items fall, lie, come together, are picked up as far as they fit, and vanish in the end. */
+/** Move dropped items: they fall, lie, merge, are picked up as far as they fit, and finally vanish. */
 module.exports.server = (serv) => {
   const shapesAt = (position) => serv.blocks.at(position).shapes
   const exists = (entity) => serv.entities[entity.id] === entity
@@ -34,7 +34,7 @@ module.exports.server = (serv) => {
     }
   }
 
-  /** Alike items that lie together become one stack, as far as a stack goes. */
+  /** Merge equal items that lie together, up to a full stack. */
   function merge (entity) {
     for (const other of serv.itemEntities(() => true)) {
       if (other === entity || !alike(other.item, entity.item)) continue

@@ -3,7 +3,7 @@
 const { listOf } = require('./lib/positions')
 const { pressedTicks } = require('./lib/buttons')
 
-/** Levers stay as they are switched; buttons come out again after their ticks. */
+/** Add levers, which stay as they are switched, and buttons, which come out again after some ticks. */
 module.exports.server = (serv) => {
   function switchLever ({ player, position, block }) {
     const powered = !block.properties.powered

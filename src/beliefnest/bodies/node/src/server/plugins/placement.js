@@ -5,11 +5,11 @@ const { planPlacement, hitsSomebody } = require('./lib/plan')
 const { withCount } = require('./lib/items')
 const { listOf } = require('./lib/positions')
 
-/** Putting blocks: in the state the game gives them, not into anybody, one item each. */
+/** Add the placing of blocks: in the state that the game gives them, not inside anybody, one item each. */
 module.exports.server = (serv) => {
   const fits = ([position, state]) => !hitsSomebody(serv.players, serv.blocks.describe(state).shapes, position)
 
-  /** The neighbour a new half of a double chest joins becomes the other half. */
+  /** Turn the single chest that a new chest joins into the other half. */
   function joinChests (position, player) {
     const { name, properties } = serv.blocks.at(position)
     if (!/^(trapped_)?chest$/.test(name) || properties.type === 'single') return
@@ -19,12 +19,12 @@ module.exports.server = (serv) => {
     serv.blocks.set(other, serv.blocks.stateWith(serv.blocks.at(other), { type }), player)
   }
 
-  /** What the item in hand does to the block it is used on; returns whether it did something. */
+  /** Use the item in hand on a block. Return whether that had an effect. */
   serv.useItemOn = (use) => {
     const { player, hand } = use
     const item = player.itemInHand(hand)
     const plan = item && planPlacement(serv.registry, serv.blocks, use, item)
-    // Seen from where the hand is: not through a wall to its far side.
+    // The position must be visible from the eye: nobody places a block through a wall onto its far side.
     if (!plan || !plan.states.every(fits) || !player.canSee(plan.position)) return false
     plan.states.forEach(([position, state]) => serv.blocks.set(position, state, player))
     joinChests(plan.position, player)

@@ -8,8 +8,8 @@ const OPENS = /_door$|_trapdoor$|_fence_gate$/
 const LAMP = 'redstone_lamp'
 
 /**
- * Levers and buttons power what is beside them and beside the block they are fixed to: doors,
- * trapdoors and gates (iron ones too) open, lamps light. There is no redstone beyond that.
+ * Add power: levers and buttons power the blocks beside them and beside the block they are attached to. Doors,
+ * trapdoors and gates (iron ones too) open, lamps light. There is no other redstone.
  */
 module.exports.server = (serv) => {
   const around = (position) => FACES.map((face) => position.plus(face))
@@ -19,7 +19,7 @@ module.exports.server = (serv) => {
     return SOURCE.test(name) && properties.powered
   }
 
-  /** Whether a lever that is on is fixed to the block at a position. */
+  /** Return true if a lever or button that is on is attached to the block at a position. */
   const holdsPower = (position) => serv.blocks.at(position).solid && around(position).some((place) =>
     isOn(place) && place.plus(holderOf(serv.blocks.at(place))).equals(position))
 

@@ -2,17 +2,17 @@
 
 const { flawOf } = require('../../../../../programs/skills/lib/text')
 
-/** How far from where somebody stands a place may be at which it says to have arrived: an arm's length. */
+/** Largest distance between a player and the position at which it reports to have arrived: an arm's length. */
 const NEAR = 3
-/** How much one agent can utter in a tick. */
+/** Largest number of utterances of one agent in a tick. */
 const MOST_UTTERANCES = 20
 
 const isPoint = (value) => Array.isArray(value) && value.length === 3 && value.every(Number.isFinite)
 
 /**
- * What agents say of themselves through skills (`player.report`): thoughts, gestures, what their words claim, and
- * arrivals. All but the last are their own; where somebody has walked to is what the server finds. Nothing else can
- * be told: what is done to the world the server sees for itself.
+ * Add reports of agents about themselves through skills (`player.report`): thoughts, gestures, claims of their words,
+ * and arrivals. The server checks arrivals against the agent's real position. Other events cannot be reported, because
+ * the server sees acts on the world itself.
  */
 module.exports.server = (serv) => {
   serv.onTick(() => serv.players.forEach((player) => { player.uttered = 0 }))
@@ -22,7 +22,7 @@ module.exports.player = (player, serv) => {
   player.uttered = 0
   const emit = (kind, detail) => serv.region.emit({ kind, actor: player.agent, detail })
 
-  /** To be called before anything is uttered. @throws {RangeError} if it cannot be */
+  /** Check and count an utterance; called before anything is uttered. @throws {RangeError} if it cannot be uttered */
   player.utter = (text) => {
     const flaw = typeof text === 'string' ? flawOf(text) : 'must be a text'
     if (flaw !== null) throw new RangeError(`what ${player.agent} utters ${flaw}.`)
@@ -42,11 +42,14 @@ module.exports.player = (player, serv) => {
       if (other !== undefined && !serv.players.some(({ agent }) => agent === other)) throw new RangeError(`there is no agent ${other} here.`)
       emit('emote', other === undefined ? { name } : { name, other })
     },
-    /** What its next utterance of that text claims (../../regions/claims.js). */
+    /** Announce the claims of the agent's next utterance of that text (../../regions/claims.js). */
     claims (detail) {
       emit('claims', detail)
     },
-    /** Told if it has walked since it last told, and where it stands if that is not near the place it names. */
+    /**
+     * Report an arrival if the agent has walked since its last one; if it is not near the named position, report its
+     * real position.
+     */
     move_to ({ destination }) {
       const here = player.position.floored()
       if (!isPoint(destination)) throw new RangeError('a destination is three finite numbers.')
@@ -57,7 +60,7 @@ module.exports.player = (player, serv) => {
     },
   }
 
-  /** @throws {RangeError} for what cannot be told, or not so */
+  /** Report an event of a skill. @throws {RangeError} if it is not allowed or not valid */
   player.report = ({ kind, detail }) => {
     if (!Object.hasOwn(REPORTS, kind)) throw new RangeError(`an event of kind ${kind} is for the server to tell.`)
     REPORTS[kind](detail)

@@ -6,11 +6,10 @@ const { byPlace, keyOf, listOf, vecOf } = require('./lib/positions')
 const { signPacket } = require('./lib/signPacket')
 
 /**
- * What is written on the fronts of signs; backs stay empty. Lines are joined by line breaks, empty ones at the
- * end are left out.
+ * Add texts on the fronts of signs; backs stay empty. Lines are joined by line breaks, without empty ones at the end.
  *
- * `serv.signs.on('change', ({position, text, player}) => ...)` reports every change of a text while its
- * sign stays; who looks at a block that changed asks `serv.signs.get(position)`.
+ * `serv.signs.on('change', ({position, text, player}) => ...)` reports every change of a text whose sign stays. For a
+ * changed block ask `serv.signs.get(position)`.
  */
 module.exports.server = (serv) => {
   const texts = new Map()
@@ -30,10 +29,10 @@ module.exports.server = (serv) => {
     }
   }
 
-  /** The text of a sign; empty where nothing is written, or no sign stands. */
+  /** Return the text of a sign; empty if nothing is written or no sign stands there. */
   signs.get = (position) => texts.get(keyOf(position))?.text ?? ''
 
-  /** Write on a sign. @throws RangeError where there is none, or the text does not fit */
+  /** Write on a sign. @throws RangeError if there is none, or the text does not fit */
   signs.set = (position, text, player = null) => {
     const { name } = serv.blocks.at(position)
     if (!isSign(name)) throw new RangeError(`there is no sign, but ${name}`)
@@ -44,7 +43,7 @@ module.exports.server = (serv) => {
     signs.emit('change', { position: vecOf(position), text, player })
   }
 
-  /** Positions of a part of the world where something is written, in order. */
+  /** Return the positions of signs with a text in a part of the world, in order. */
   signs.positions = (within) => [...texts.values()].map(({ position }) => position).filter(within)
     .sort((a, b) => byPlace(listOf(a), listOf(b)))
 
@@ -53,7 +52,7 @@ module.exports.server = (serv) => {
   })
   serv.onForget((within) => signs.positions(within).forEach((position) => texts.delete(keyOf(position))))
 
-  /** Whoever uses a sign gets its text to edit; what is sent then is written, once. */
+  /** Let a player who uses a sign edit its text; the next update of that sign is written, once. */
   function edit ({ player, position }) {
     player.edits = keyOf(position)
     player._client.write('open_sign_entity', { location: position, isFrontText: true })
@@ -77,7 +76,7 @@ module.exports.player = (player, serv) => {
     player._client.write('tile_entity_data', signPacket(position, serv.blocks.at(position).name, serv.signs.get(position)))
   }
 
-  /** Tell what is written in the columns that the player was sent. */
+  /** Send a player the texts of its region's signs. */
   player.sendSigns = () => serv.signs.positions((position) => serv.region.contains(position)).forEach(player.sendSign)
 
   player._client.on('update_sign', ({ location, isFrontText, text1, text2, text3, text4 }) => {

@@ -1,6 +1,6 @@
 'use strict'
 
-/** How entities appear to a player: players with what they wear, items with what they are. */
+/** Show entities to a player: players with their equipment, items with their kind. */
 module.exports.player = (player) => {
   const client = player._client
 

@@ -3,7 +3,7 @@
 const { FACES } = require('./lib/directions')
 const { holderOf } = require('./lib/holders')
 
-/** What is fixed to a block comes off when that block is gone. */
+/** Break blocks whose supporting block is gone. */
 module.exports.server = (serv) => {
   function comeOff (position, player) {
     const block = serv.blocks.at(position)

@@ -1,9 +1,8 @@
 'use strict'
 /**
- * Time for the plugins. Nothing here owns a clock: whoever owns time calls
- * `serv.tickRegion(within)` once per tick of 50 ms, where `within(position)` says which
- * part of the world that tick belongs to. Every countdown therefore belongs to a place,
- * and stands still while its place does.
+ * Add time for the plugins. No plugin owns a clock: the owner of time calls `serv.tickRegion(within)` once per tick of
+ * 50 ms, where `within(position)` says to which part of the world the tick belongs. Each countdown therefore belongs
+ * to a position, and stops while its part of the world does.
  */
 module.exports.server = (serv) => {
   const tickers = []
@@ -11,13 +10,13 @@ module.exports.server = (serv) => {
   const actions = new Map()
   let countdowns = []
 
-  /** Register work done every tick: `ticker(within)`. */
+  /** Register work for every tick: `ticker(within)`. */
   serv.onTick = (ticker) => { tickers.push(ticker) }
 
-  /** Register what happens when a countdown of a kind ends: `action(position)`. */
+  /** Register an action for the end of a kind of countdown: `action(position)`. */
   serv.onDue = (kind, action) => actions.set(kind, action)
 
-  /** Begin a countdown of `ticks` ticks of the place `position`. */
+  /** Begin a countdown of `ticks` ticks at `position`. */
   serv.after = (ticks, position, kind) => countdowns.push({ left: ticks, position: position.clone(), kind })
 
   function runCountdowns (within) {
@@ -45,12 +44,12 @@ module.exports.server = (serv) => {
     },
   })
 
-  /** Drop what plugins keep about a part of the world that is given up. */
+  /** Drop all data of plugins about a part of the world that is given up. */
   serv.forgetRegion = (within) => {
     countdowns = elsewhere(within)
     forgetters.forEach((forget) => forget(within))
   }
 
-  /** Register what `serv.forgetRegion` calls. */
+  /** Register a function that `serv.forgetRegion` calls. */
   serv.onForget = (forget) => { forgetters.push(forget) }
 }

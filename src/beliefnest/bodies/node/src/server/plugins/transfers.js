@@ -4,8 +4,8 @@ const { createLedger } = require('./lib/ledger')
 const { listOf } = require('./lib/positions')
 
 /**
- * Looking into containers, and what is moved in and out of them: reported on balance, at the
- * end of a tick in which nothing is on its way between container and inventory any more.
+ * Add windows of containers. Net moves of items are reported at the end of a tick in which no item is on its way
+ * between container and inventory.
  */
 module.exports.server = (serv) => {
   serv.onTick(() => serv.players.forEach((player) => player.reportTransfers()))
@@ -16,8 +16,8 @@ module.exports.player = (player, serv) => {
   let ledgers = []
 
   /**
-   * Open a window on the containers at `window.positions` (see PlayerWindows.open), of which
-   * the one at `clicked` was used.
+   * Open a window on the containers at `window.positions` (see PlayerWindows.open), of which the player used the one
+   * at `clicked`.
    */
   player.lookInto = (window, clicked) => {
     const { positions } = window

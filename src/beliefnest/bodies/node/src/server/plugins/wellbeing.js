@@ -3,13 +3,13 @@
 const { withCount } = require('./lib/items')
 
 const SAFE_FALL = 3
-/** Agents do not die: nobody would act for them any more. */
+/** Lowest health: agents do not die, because a dead agent could not act any more. */
 const LEAST_HEALTH = 1
 const FULL = 20
 const EATING_TICKS = 32
 const EATEN = 9
 
-/** Falling hurts; eating fills. Hunger does not come by itself. */
+/** Add health and food: falls hurt, eating fills. Hunger does not increase by itself. */
 module.exports.server = (serv) => {
   serv.onTick(() => serv.players.forEach((player) => player.eatTick()))
   serv.keeps('falls', {

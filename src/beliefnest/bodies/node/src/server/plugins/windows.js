@@ -2,7 +2,7 @@
 
 const { PlayerWindows } = require('./lib/playerWindows')
 
-/** Windows: the server alone decides what a click does (see lib/clicks.js, lib/playerWindows.js). */
+/** Add windows: only the server decides the effect of a click (see lib/clicks.js, lib/playerWindows.js). */
 module.exports.server = (serv) => {
   serv.Item = require('prismarine-item')(serv.registry)
 }
@@ -11,7 +11,7 @@ module.exports.player = (player, serv) => {
   const windows = new PlayerWindows(player, serv)
   player.windows = windows
 
-  /** To be called after the slots of the inventory were changed. */
+  /** Update windows and equipment; must be called after a change of the inventory's slots. */
   player.inventoryChanged = () => {
     windows.sync()
     player.refreshEquipment()

@@ -3,12 +3,12 @@
 const { alike, withCount } = require('./items')
 
 /**
- * What a click in a window does, by the rules of the game.
+ * Effects of clicks in a window, by the rules of the game.
  *
- * A menu is `{get(i), set(i, item), mayPlace(i, item), limit(i, item), targets(i), hotbar(button),
- * isResult(i), takeResult()}`: `targets(i)` are the slots a shift-click from `i` fills, in
- * order; `takeResult()` hands out a crafted result once and uses up what it is made of.
- * Nothing is ever made or lost: items go between slots, cursor and `dropped`.
+ * A menu is `{get(i), set(i, item), mayPlace(i, item), limit(i, item), targets(i), hotbar(button), isResult(i),
+ * takeResult()}`: `targets(i)` are the slots that a shift-click from `i` fills, in order; `takeResult()` returns a
+ * crafted result once and consumes its ingredients. No click creates or destroys items: they move between slots,
+ * cursor and `dropped`.
  */
 
 const OUTSIDE = -999
@@ -17,7 +17,7 @@ function capacity (menu, slot, item) {
   return menu.mayPlace(slot, item) ? Math.min(item.stackSize, menu.limit(slot, item)) : 0
 }
 
-/** Put up to `count` of `item` into a slot that is empty or alike; returns what is left. */
+/** Put up to `count` of `item` into a slot that is empty or holds equal items. Return the rest. */
 function put (menu, slot, item, count) {
   const there = menu.get(slot)
   if (there && !alike(there, item)) return item
@@ -64,7 +64,7 @@ function swap (menu, cursor, slot, there) {
   return there
 }
 
-/** Out of a slot nothing can be put into, onto what the cursor carries. */
+/** Take items out of a slot into which nothing can be put, onto the cursor's stack. */
 function takeOnto (menu, cursor, slot, there) {
   if (cursor.count + there.count > cursor.stackSize) return cursor
   menu.set(slot, null)
@@ -78,7 +78,7 @@ function takeResultToCursor (menu, cursor, result) {
   return withCount(cursor, cursor.count + menu.takeResult().count)
 }
 
-/** Store an item in the first fitting of `slots`: alike stacks first; returns what is left. */
+/** Store an item in the first suitable slots of `slots`, on equal stacks first. Return the rest. */
 function store (menu, item, slots) {
   let left = item
   for (const slot of slots) {
@@ -143,8 +143,8 @@ function clickOutside (cursor, mouseButton) {
 }
 
 /**
- * Apply a click; returns `{cursor, dropped}`, or null for a click that is not known
- * (dragging, double clicks, a slot that does not exist), which changes nothing.
+ * Apply a click. Return `{cursor, dropped}`, or null for an unknown click (dragging, double clicks, a slot that does
+ * not exist), which changes nothing.
  */
 function click (menu, cursor, { slot, mouseButton, mode }) {
   if (slot === OUTSIDE) return mode === 0 || mode === 4 ? clickOutside(cursor, mouseButton) : null

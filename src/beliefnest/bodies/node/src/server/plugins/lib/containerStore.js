@@ -5,11 +5,13 @@ const { countByName, equal, rowsOf, slotsOf, stacksOf } = require('./items')
 const { byPlace, keyOf, listOf, vecOf } = require('./positions')
 
 /**
- * What containers hold, by block position; each half of a double chest holds its own 27 slots.
- * A container is whatever block has a kind declared with `define`.
+ * Contents of containers by block position; each half of a double chest holds its own 27 slots. A container is a block
+ * whose kind was declared with `define`.
  */
 class ContainerStore {
-  /** @param {object} serv */
+  /**
+   * @param {object} serv
+   */
   constructor (serv) {
     this.serv = serv
     this.kinds = new Map()
@@ -19,10 +21,10 @@ class ContainerStore {
 
   /**
    * Declare a kind of block that holds items.
-   * @param {string} name of the block
-   * @param {number} size in slots
-   * @param {(stacks: object[]) => object[] | null} arrange gives the slots a content is set into,
-   *   null where it does not fit; by default one after the other
+   * @param {string} name name of the block
+   * @param {number} size number of slots
+   * @param {(stacks: object[]) => object[] | null} arrange returns the slots for given stacks, or null if they do not
+   *   fit; one after the other by default
    */
   define (name, size, arrange = (stacks) => (stacks.length > size ? null : stacks)) {
     this.kinds.set(name, { name, size, arrange })
@@ -32,7 +34,7 @@ class ContainerStore {
     return this.kinds.get(this.serv.blocks.at(position).name)
   }
 
-  /** The slots of the container at a position; only for those who call `touch` afterwards. */
+  /** Return the slots of the container at a position. The caller must call `touch` after changing them. */
   slots (position) {
     const key = keyOf(position)
     if (!this.stored.has(key)) {
@@ -42,29 +44,29 @@ class ContainerStore {
     return this.stored.get(key).slots
   }
 
-  /** Take note of a container that was built with its region, if there is one. */
+  /** Register a container that was built with its region, if there is one. */
   stand (position) {
     if (this.kindAt(position) !== undefined) this.slots(position)
   }
 
-  /** To be called after slots were changed: notes it and shows it to those who look in. */
+  /** Record a change of slots, and send it to those who look in. */
   touch (position) {
     this.changed.set(keyOf(position), vecOf(position))
     this.viewers(position).forEach((player) => player.windows.sync())
   }
 
-  /** Players who look into the container at a position. */
+  /** Return the players who look into the container at a position. */
   viewers (position) {
     return this.serv.players.filter((player) => player.windows.looksInto(position))
   }
 
-  /** @returns {Object<string, number> | null} item name to count; null where no container stands */
+  /** Return counts by item name; null if there is no container. @returns {Object<string, number> | null} */
   get (position) {
     if (this.kindAt(position) === undefined) return null
     return countByName(this.stored.get(keyOf(position))?.slots ?? [])
   }
 
-  /** Make a container hold exactly this. @throws RangeError where it cannot */
+  /** Set the contents of a container. @throws RangeError if there is none, or the items do not fit */
   set (position, counts) {
     const kind = this.kindAt(position)
     if (kind === undefined) {
@@ -78,7 +80,7 @@ class ContainerStore {
     this.touch(position)
   }
 
-  /** The slots that a content is set into, or null where it does not fit. */
+  /** Return the slots for given contents; null if they do not fit. */
   arranged (kind, counts) {
     const slots = kind.arrange(stacksOf(this.serv.Item, this.serv.registry, counts))
     return slots && Array.from({ length: kind.size }, (_, i) => slots[i] ?? null)
@@ -89,7 +91,11 @@ class ContainerStore {
     slots.forEach((_, i) => { slots[i] = stacks[i] })
   }
 
-  /** @returns {Array} rows `[x, y, z, ...[slot, name, count]]` of containers whose slots are not as `set` fills them */
+  /**
+   * Return rows `[x, y, z, ...[slot, name, count]]` of the containers whose slots differ from those that `set` would
+   * fill.
+   * @returns {Array}
+   */
   save (region) {
     return this.positions((place) => region.contains(place)).flatMap((position) => {
       const slots = this.slots(position)
@@ -98,7 +104,7 @@ class ContainerStore {
     })
   }
 
-  /** Put what containers hold into the slots that `save` told. */
+  /** Fill containers as `save` returned them. */
   restore (rows, region) {
     const told = new Map(rows.map(([x, y, z, ...slots]) => [keyOf(region.toServer([x, y, z])), slots]))
     for (const position of this.positions((place) => region.contains(place))) {
@@ -110,7 +116,7 @@ class ContainerStore {
     }
   }
 
-  /** Take note that another block came; returns the items that were inside the old one. */
+  /** Handle a changed block. Return the items that were inside the old one. */
   blockChanged (position, before, after) {
     if (before === after || !(this.kinds.has(before) || this.kinds.has(after))) return []
     const items = this.stored.get(keyOf(position))?.slots.filter(Boolean) ?? []
@@ -124,20 +130,25 @@ class ContainerStore {
     this.stored.delete(keyOf(position))
   }
 
-  /** Positions of a part of the world whose content changed, or whose container came or went, since the last call. */
+  /**
+   * Return the positions in a part of the world whose contents changed, or whose container came or went, since the
+   * last call.
+   */
   drainChanges (within) {
     const result = [...this.changed.values()].filter(within)
     result.forEach((position) => this.changed.delete(keyOf(position)))
     return result
   }
 
-  /** Positions of the containers of a part of the world that anyone opened or put there, in order. */
+  /**
+   * Return the positions of the containers in a part of the world that were built with it, placed or opened, in order.
+   */
   positions (within) {
     const places = [...this.stored.values()].map(({ position }) => position).filter(within)
     return places.sort((a, b) => byPlace(listOf(a), listOf(b)))
   }
 
-  /** Drop all that is known of a part of the world. */
+  /** Forget everything about a part of the world. */
   forget (within) {
     this.positions(within).forEach((position) => this.drop(position))
     this.drainChanges(within)

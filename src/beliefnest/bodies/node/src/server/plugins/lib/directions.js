@@ -2,7 +2,7 @@
 
 const { Vec3 } = require('vec3')
 
-/** Face numbers of the protocol: 0 down, 1 up, 2 north, 3 south, 4 west, 5 east. */
+/** Directions of the protocol's face numbers: 0 down, 1 up, 2 north, 3 south, 4 west, 5 east. */
 const FACES = [
   new Vec3(0, -1, 0), new Vec3(0, 1, 0), new Vec3(0, 0, -1),
   new Vec3(0, 0, 1), new Vec3(-1, 0, 0), new Vec3(1, 0, 0),
@@ -18,7 +18,7 @@ const clockwise = (name) => CLOCKWISE[name]
 const opposite = (name) => OPPOSITE[name]
 const counterclockwise = (name) => OPPOSITE[CLOCKWISE[name]]
 
-/** Horizontal direction somebody looks to; yaw in Minecraft's degrees (0 south, 90 west). */
+/** Return the horizontal direction of a yaw in Minecraft's degrees (0 south, 90 west). */
 function facingOfYaw (yaw) {
   return ['south', 'west', 'north', 'east'][((Math.floor(yaw / 90 + 0.5) % 4) + 4) % 4]
 }

@@ -3,7 +3,7 @@
 const { vecOf } = require('./positions')
 const { vectorOf, clockwise, counterclockwise } = require('./directions')
 
-/** Where the other half of a double chest stands, by the state of one half; null for a single. */
+/** Return the position of the other half of a double chest, from the state of one half; null for a single chest. */
 function partnerOf (position, { properties }) {
   if (!properties.type || properties.type === 'single') return null
   const turn = properties.type === 'left' ? clockwise : counterclockwise
@@ -11,8 +11,8 @@ function partnerOf (position, { properties }) {
 }
 
 /**
- * The halves of what opens at a position, the upper one of the window first.
- * @param {(position: object) => {name: string, properties: object}} at the block at a position
+ * Return the halves of the container at a position, the one in the window's upper part first.
+ * @param {(position: object) => {name: string, properties: object}} at returns the block at a position
  */
 function halvesAt (at, position) {
   const block = at(position)

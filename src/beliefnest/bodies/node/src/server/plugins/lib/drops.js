@@ -1,13 +1,12 @@
 'use strict'
 /**
- * What a mined block drops, after minecraft-data: `drops` of the block (what it always drops),
- * with the counts of its loot table; nothing where the tool in hand cannot harvest it. What
- * minecraft-data reads wrongly of the loot tables (a bonus as a count, limits, no count at all) is
- * as the game's own tables have it.
+ * Drops of mined blocks, from minecraft-data: `drops` of the block, which it always drops, with the counts of its loot
+ * table; nothing if the tool in hand cannot harvest it. Where minecraft-data misreads the loot tables (a bonus as a
+ * count, limits, no count at all), this module follows the game's own tables.
  */
 
 const DOUBLE_SLAB = 2
-/** Least and most, without fortune; after data/minecraft/loot_tables/blocks of Java Edition 1.20.4. */
+/** Minimum and maximum counts without fortune, from data/minecraft/loot_tables/blocks of Java Edition 1.20.4. */
 const COUNTS = [
   [/^(deepslate_)?(coal|diamond|emerald|iron|gold)_ore$|^nether_quartz_ore$/, [1, 1]],
   [/^(deepslate_)?copper_ore$/, [2, 5]],
@@ -30,7 +29,7 @@ function slabCount (properties, count) {
   return count === DOUBLE_SLAB && properties.type !== undefined && properties.type !== 'double' ? 1 : count
 }
 
-/** Entries of a loot table that apply: by touch, and by the age of a plant. */
+/** Return the entries of a loot table that apply, by silk touch and by a plant's age. */
 function applicable (loot, properties, silkTouch) {
   return loot.filter(({ silkTouch: silk, noSilkTouch: noSilk, blockAge }) =>
     !(silk && !silkTouch) && !(noSilk && silkTouch) &&
@@ -47,6 +46,7 @@ function sureNames (registry, data, entries, silkTouch) {
 }
 
 /**
+ * Return the drops of a block.
  * @param {object} registry
  * @param {{name, properties}} block
  * @param {object | null} tool prismarine-item in hand

@@ -8,13 +8,16 @@ const INPUT = 0
 const FUEL = 1
 const OUTPUT = 2
 const SIZE = 3
-/** How much a smelting goes back per tick without fire. */
+/** Progress that a smelting loses per tick without fire. */
 const COOLING = 2
 
-/** A furnace that has not been lit: ticks `left` of the `whole` of its fuel, ticks `done` of the smelting. */
+/**
+ * Return a furnace that has not been lit: `left` of the fuel's `whole` ticks remain, `done` ticks of the smelting are
+ * done.
+ */
 const coldFire = () => ({ left: 0, whole: 0, done: 0 })
 
-/** The slots a content is set into, or null where it does not fit. */
+/** Return the slots for given stacks; null if they do not fit. */
 function arrange (kind, stacks) {
   const slots = new Array(SIZE).fill(null)
   for (const stack of stacks) {
@@ -28,7 +31,7 @@ function arrange (kind, stacks) {
   return slots
 }
 
-/** What would come out next, or null if nothing can. */
+/** Return the next product; null if nothing can be smelted. */
 function product (kind, slots, makeItem) {
   const name = slots[INPUT] && resultOf(kind, slots[INPUT].name)
   if (!name) return null
@@ -48,7 +51,7 @@ function light (fire, slots, makeItem) {
 }
 
 /**
- * One tick of a furnace; changes `fire` and `slots`.
+ * Advance a furnace by one tick; this changes `fire` and `slots`.
  * @param {(name: string, count: number) => object} makeItem
  * @returns {boolean} true if a slot changed
  */

@@ -2,15 +2,15 @@
 
 const { withCount } = require('./items')
 
-/** How long what was thrown is a gift to whoever picks it up; later it is found. */
+/** Number of ticks in which a thrown item counts as a gift to the agent who picks it up; later it counts as found. */
 const GIFT_TICKS = 240
 
 /**
- * What somebody threw and somebody else picks up was given, unless it lay there for long.
- * @param {object[]} players by `agent`, who count acts (acts.js)
- * @param {number} now the tick
- * @param {object} receiver one of them
- * @param {Array} throws rows `[agent, count, tick]` of what is picked up (throws.js)
+ * Count the picked-up items that another agent threw a short time before as given and received.
+ * @param {object[]} players players with `agent` and `countAct` (acts.js)
+ * @param {number} now current tick
+ * @param {object} receiver the player who picks up the item
+ * @param {Array} throws rows `[agent, count, tick]` of the picked-up items (throws.js)
  * @param {object} item
  */
 function handOver (players, now, receiver, throws, item) {

@@ -2,13 +2,13 @@
 
 const { withCount } = require('./items')
 
-/** What is left in the grid of an ingredient that is used up. */
+/** Items that remain in the grid when an ingredient is consumed. */
 const REMAINDERS = {
   water_bucket: 'bucket', lava_bucket: 'bucket', milk_bucket: 'bucket',
   honey_bottle: 'glass_bottle', dragon_breath: 'glass_bottle',
 }
 
-/** Rows of ids without empty rows and columns around them; null for an empty grid. */
+/** Return rows of ids without empty rows and columns around them; null for an empty grid. */
 function trim (ids, width) {
   const rows = []
   for (let y = 0; y < ids.length; y += width) rows.push(ids.slice(y, y + width))
@@ -29,7 +29,7 @@ const idOf = (entry) => {
   return id === -1 || id === undefined ? null : id
 }
 
-/** All recipes of minecraft-data, by what lies in the grid. */
+/** Return all recipes of minecraft-data, indexed by the grid's contents. */
 function indexRecipes (registry) {
   const shaped = new Map()
   const shapeless = new Map()
@@ -48,7 +48,7 @@ function indexRecipes (registry) {
   return { shaped, shapeless }
 }
 
-/** What a grid of stacks makes: `{id, count}` or undefined. */
+/** Return the product of a grid of stacks, `{id, count}`, or undefined. */
 function match (recipes, stacks, width) {
   const ids = stacks.map((item) => item?.type ?? null)
   const rows = trim(ids, width)
@@ -56,7 +56,7 @@ function match (recipes, stacks, width) {
   return recipes.shaped.get(shapeKey(rows)) ?? recipes.shapeless.get(bagKey(ids))
 }
 
-/** Use up one of each ingredient of slots[1..width*width]. */
+/** Consume one of each ingredient in slots[1..width*width]. */
 function consume (slots, width, makeItem) {
   for (let i = 1; i <= width * width; i++) {
     const item = slots[i]

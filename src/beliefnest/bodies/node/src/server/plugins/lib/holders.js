@@ -8,7 +8,7 @@ const ON_WALL = /^(ladder|wall_torch|soul_wall_torch|redstone_wall_torch|.*_wall
 const ON_ANY = /^(lever|.*_button)$/
 const DOWN = new Vec3(0, -1, 0)
 
-/** Where the block that holds this one is, or null where it needs none. */
+/** Return the position of the block to which a block is attached; null if it needs none. */
 function holderOf ({ name, properties }) {
   if (ON_FLOOR.test(name)) return DOWN
   if (ON_WALL.test(name)) return vectorOf(opposite(properties.facing))

@@ -1,26 +1,26 @@
 'use strict'
-/** Item stacks (prismarine-item) as values: nothing here changes a stack in place. */
+/** Item stacks (prismarine-item) as immutable values: no function changes a stack in place. */
 
-/** Whether two stacks may be put together. */
+/** Return true if two stacks can be merged. */
 function alike (a, b) {
   return Boolean(a && b) && a.type === b.type &&
     JSON.stringify(a.nbt ?? null) === JSON.stringify(b.nbt ?? null)
 }
 
-/** Whether two slots hold the same (both may be empty). */
+/** Return true if two slots hold the same (both may be empty). */
 function equal (a, b) {
   if (!a || !b) return !a && !b
   return a.count === b.count && alike(a, b)
 }
 
-/** The same kind of item with another count; null for none. */
+/** Return the same kind of item with another count; null for a count of zero. */
 function withCount (item, count) {
   if (count <= 0) return null
   const copy = new item.constructor(item.type, count, item.metadata, item.nbt)
   return copy
 }
 
-/** Slots to name -> count, in order of first appearance. */
+/** Return counts by name of slots, in order of first appearance. */
 function countByName (slots) {
   const counts = {}
   for (const item of slots) {
@@ -29,7 +29,7 @@ function countByName (slots) {
   return counts
 }
 
-/** after - before, without zeros. */
+/** Return after - before, without zeros. */
 function difference (before, after) {
   const result = {}
   for (const name of new Set([...Object.keys(before), ...Object.keys(after)])) {
@@ -39,19 +39,19 @@ function difference (before, after) {
   return result
 }
 
-/** Slots as rows `[slot, name, count]`, without the empty ones. */
+/** Return slots as rows `[slot, name, count]`, without empty ones. */
 function rowsOf (slots) {
   return [...slots].flatMap((item, slot) => (item ? [[slot, item.name, item.count]] : []))
 }
 
-/** Slots from their rows. */
+/** Return slots from their rows. */
 function slotsOf (Item, registry, rows, size) {
   const slots = new Array(size).fill(null)
   for (const [slot, name, count] of rows) slots[slot] = new Item(registry.itemsByName[name].id, count)
   return slots
 }
 
-/** Stacks of at most a stack's size that make up name -> count, in order of names. */
+/** Return stacks of at most the stack size for counts by name, in order of names. */
 function stacksOf (Item, registry, counts) {
   const stacks = []
   for (const [name, count] of Object.entries(counts).sort(([a], [b]) => (a < b ? -1 : 1))) {

@@ -4,8 +4,8 @@ const { countByName, difference } = require('./items')
 const { keyOf, listOf } = require('./positions')
 
 /**
- * What one player moved in and out of the parts of a container, until the account is
- * settled. `read(position)` returns the slots of a part.
+ * Create the account of one player's moves into and out of the parts of a container. `read(position)` returns the
+ * slots of a part.
  */
 function createLedger (positions, read) {
   const pending = new Map()
@@ -19,7 +19,7 @@ function createLedger (positions, read) {
     pending.set(key, entry)
   }
 
-  /** Run a move; returns the parts it changed. */
+  /** Run a move and record it. Return the parts that it changed. */
   function record (run) {
     const before = positions.map((position) => read(position).map((item) => item))
     run()
@@ -35,7 +35,7 @@ function createLedger (positions, read) {
     return entries.length ? Object.fromEntries(entries.map(([n, c]) => [n, c * sign])) : null
   }
 
-  /** Facts of what was moved on balance since the last time, first out, then in. */
+  /** Return the net moves since the last call as facts, items taken out first, and reset the account. */
   function settle () {
     const entries = [...pending.values()]
     pending.clear()

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Menus: what the slots of a window are and which moves they allow (see lib/clicks.js).
- * The last 36 slots of every window but the player's own are slots 9..44 of its inventory.
+ * Menus: the slots of a window and the moves they allow (see lib/clicks.js). The last 36 slots of every window except
+ * the player's own are slots 9..44 of its inventory.
  */
 
 const INVENTORY_START = 9
@@ -19,7 +19,7 @@ const ARMOUR = [
 
 const range = (start, end) => Array.from({ length: end - start }, (_, i) => start + i)
 
-/** One slot of an array of stacks. */
+/** Return one slot of an array of stacks. */
 function cell (slots, index) {
   return { get: () => slots[index] ?? null, set: (item) => { slots[index] = item; } }
 }
@@ -28,11 +28,12 @@ const anyItem = () => true
 const wholeStack = (item) => item.stackSize
 
 /**
- * `craftSlots` is the last slot of a crafting grid, whose result a client waits for; -1 for none.
+ * Return the menu of a window over `cells`, its first slots, and the player's 36. `rules` has `mayPlace(i, item)` for
+ * the cells, `result`, the index of a crafting result or -1, `takeResult()`, and `into(item)`, the cells that a
+ * shift-click from the inventory may fill.
  *
- * A window over `cells`, the first of its slots, and the player's 36.
- * `rules`: `mayPlace(i, item)` for the cells, `result` the index of a crafting result or -1,
- * `takeResult()`, `into(item)` the cells a shift-click from the inventory may fill.
+ * `craftSlots` of the menu is the last slot of a crafting grid, for whose result a client waits; -1 if there is no
+ * grid.
  */
 function containerMenu (cells, player, rules = {}) {
   const own = range(INVENTORY_START, INVENTORY_END).map((i) => cell(player.inventory.slots, i))
@@ -67,7 +68,7 @@ function ownHotbar (button) {
   return button >= 0 && button < 9 ? HOTBAR_START + button : null
 }
 
-/** The player's own window; `grid` is the 2x2 crafting grid's `{takeResult}`. */
+/** Return the menu of the player's own window; `grid` is the 2x2 crafting grid's `{takeResult}`. */
 function inventoryMenu (player, grid) {
   const { slots } = player.inventory
   const armourOf = (slot) => ARMOUR.find((part) => part.slot === slot)

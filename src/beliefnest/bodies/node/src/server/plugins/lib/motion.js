@@ -19,11 +19,11 @@ function boxAt ({ x, y, z }) {
 const overlaps = (a, b) => a[0] < b[3] && a[3] > b[0] && a[1] < b[4] && a[4] > b[1] &&
   a[2] < b[5] && a[5] > b[2]
 
-/** Collision boxes around `box`, in the world; `shapesAt(position)` are those of one block. */
+/** Return the collision boxes around `box`, in world coordinates; `shapesAt(position)` returns those of one block. */
 function obstacles (box, shapesAt) {
   const found = []
   for (let x = Math.floor(box[0]); x <= Math.floor(box[3]); x++) {
-    // Fences and walls are higher than their block.
+    // Begin one block lower: fences and walls are higher than their block.
     for (let y = Math.floor(box[1]) - 1; y <= Math.floor(box[4]); y++) {
       for (let z = Math.floor(box[2]); z <= Math.floor(box[5]); z++) {
         for (const s of shapesAt(new Vec3(x, y, z))) {
@@ -35,7 +35,7 @@ function obstacles (box, shapesAt) {
   return found
 }
 
-/** How far a box can go along one axis (0 x, 1 y, 2 z). */
+/** Return how far a box can move along one axis (0 x, 1 y, 2 z). */
 function free (box, axis, distance, blocks) {
   const swept = [...box]
   if (distance < 0) swept[axis] += distance
@@ -49,7 +49,10 @@ function free (box, axis, distance, blocks) {
   return reach
 }
 
-/** One tick of `{position, velocity}`: the next of both, and whether it stands on something. */
+/**
+ * Advance `{position, velocity}` by one tick. Return the next position and velocity, and whether the box stands on
+ * something.
+ */
 function step ({ position, velocity }, shapesAt) {
   const { x: east, y: up, z: south } = velocity
   const speed = new Vec3(toStep(east), toStep(up - GRAVITY), toStep(south))

@@ -3,11 +3,10 @@
 const { clockwise, counterclockwise, opposite, vectorOf } = require('./directions')
 
 /**
- * In which state a block comes to stand, by where it is put and by whom.
+ * States of placed blocks, by position and player.
  *
- * `spot` is `{face, cursor, facing, look, at(offset)}`: the face that was clicked (a name),
- * the point on it, where the player looks to (level, and in six directions), and the block
- * next to the place.
+ * `spot` is `{face, cursor, facing, look, at(offset)}`: the clicked face (a name), the point on it, the player's view
+ * direction (horizontal, and in six directions), and the block at an offset from the position.
  */
 
 const BLOCK_OF_ITEM = { redstone: 'redstone_wire', string: 'tripwire' }
@@ -33,7 +32,7 @@ function attached ({ face, facing }) {
   return { face: 'wall', facing: face }
 }
 
-/** A chest joins a single one beside it that looks the same way. */
+/** Return the type of a chest: it joins an adjacent single chest with the same facing. */
 function chestType (name, facing, spot) {
   const joins = (side) => {
     const { name: other, properties } = spot.at(vectorOf(side))
@@ -52,7 +51,7 @@ function facingFor (name, spot) {
   return opposite(spot.facing)
 }
 
-/** Name of the block an item becomes there, or undefined if it becomes none. */
+/** Return the name of the block that an item becomes there; undefined if it becomes none. */
 function blockFor (registry, item, spot) {
   const name = BLOCK_OF_ITEM[item.name] ?? item.name
   if (isSide(spot.face) && ON_WALLS[name]) return ON_WALLS[name]
@@ -69,7 +68,7 @@ const RULES = {
   waterlogged: (name, spot) => ({ waterlogged: spot.at(vectorOf('up').scaled(0)).name === 'water' }),
 }
 
-/** @returns {object} properties of the block to be placed that differ from its default ones */
+/** Return the properties of the placed block that differ from its default ones. @returns {object} */
 function propertiesFor (registry, name, spot) {
   const own = registry.blocksByName[name].states.map((state) => state.name)
   const properties = Object.assign({}, ...own

@@ -13,7 +13,7 @@ const STEEP = 45
 const HALF_WIDTH = 0.3
 const HEIGHT = 1.8
 
-/** Where and by whom something is put (see placing.js). */
+/** Return the spot of a placement (see placing.js). */
 function spotOf (blocks, { player, face, cursor }, position) {
   const { yaw, pitch } = toDegrees(player.pose)
   const facing = facingOfYaw(yaw)
@@ -29,14 +29,14 @@ function spotOf (blocks, { player, face, cursor }, position) {
   }
 }
 
-/** The second block of doors and beds: `[offset, properties]`, or null. */
+/** Return the second block of doors and beds as `[offset, properties]`; null for other blocks. */
 function secondPart (name, properties) {
   if (name.endsWith('_door')) return [new Vec3(0, 1, 0), { ...properties, half: 'upper' }]
   if (name.endsWith('_bed')) return [vectorOf(properties.facing), { ...properties, part: 'head' }]
   return null
 }
 
-/** Whether the item is the other half of the slab that was clicked. */
+/** Return true if the item is the other half of the clicked slab. */
 function completesSlab ({ block, face }, item) {
   if (block.name !== item.name || !item.name.endsWith('_slab')) return false
   const { type } = block.properties
@@ -44,10 +44,10 @@ function completesSlab ({ block, face }, item) {
 }
 
 /**
- * What putting an item would do.
+ * Return the blocks that placing an item would set.
  * @param {object} blocks `serv.blocks`
- * @param {object} use of a block, as handlers of `serv.onInteraction` get it
- * @returns {{position: Vec3, states: [Vec3, number][]} | null} the blocks to set, null for nothing
+ * @param {object} use use of a block, as handlers of `serv.onInteraction` get it
+ * @returns {{position: Vec3, states: [Vec3, number][]} | null} null if nothing can be placed
  */
 function planPlacement (registry, blocks, use, item) {
   if (completesSlab(use, item)) {
@@ -65,7 +65,7 @@ function planPlacement (registry, blocks, use, item) {
   return states.every(([place]) => isFree(place)) ? { position, states } : null
 }
 
-/** Whether a block's shapes would lie in the body of one of `players`. */
+/** Return true if a block's shapes would overlap the body of one of `players`. */
 function hitsSomebody (players, shapes, position) {
   return shapes.some((s) => players.some(({ position: at }) =>
     at.x - HALF_WIDTH < position.x + s[3] && at.x + HALF_WIDTH > position.x + s[0] &&

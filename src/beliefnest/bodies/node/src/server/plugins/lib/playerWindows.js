@@ -7,17 +7,17 @@ const { INVENTORY_START, INVENTORY_END, inventoryMenu, range } = require('./menu
 const LAST_WINDOW_ID = 100
 const OWN_GRID_WIDTH = 2
 
-/** Slots of the own window that an opened one does not show. */
+/** Return true for slots of the player's own window that an opened window does not show. */
 const isApart = (slot) => slot < INVENTORY_START || slot >= INVENTORY_END
 const shows = (window, slot) => slot >= 0 && slot < window.menu.size
 
 /**
- * The windows of one player: its own, and the one it has opened. `shown` of a window is what
- * the player's client shows in it; every slot in which that is not so is told to the client.
+ * Windows of one player: its own, and the one it has opened. `shown` of a window is the content that the player's
+ * client shows; every slot that differs from it is sent to the client.
  */
 class PlayerWindows {
   /**
-   * @param {object} player with `inventory`, `storeItem`, `inventoryChanged`, `canUse`
+   * @param {object} player player with `inventory`, `storeItem`, `inventoryChanged`, `canUse`
    * @param {object} serv
    */
   constructor (player, serv) {
@@ -35,7 +35,7 @@ class PlayerWindows {
 
   get current () { return this.opened ?? this.own }
 
-  /** Whether the opened window is one on a block position. */
+  /** Return true if the opened window shows the block at a position. */
   looksInto (position) {
     return Boolean(this.opened?.positions?.some((other) => other.equals(position)))
   }
@@ -49,7 +49,7 @@ class PlayerWindows {
     })
   }
 
-  /** Tell the client all of the current window. */
+  /** Send the client the whole current window. */
   sendAll () {
     const { current: window, serv: { Item } } = this
     this.stateId += 1
@@ -62,7 +62,7 @@ class PlayerWindows {
     })
   }
 
-  /** Tell the client every slot in which it shows something else. */
+  /** Send the client every slot whose shown content differs. */
   sync () {
     const { own, opened } = this
     if (opened) this.syncWindow(opened, () => true)
@@ -77,10 +77,9 @@ class PlayerWindows {
 
   /**
    * Open a window.
-   * @param {object} window `{type, title, menu, positions, around(run), leave(giveBack), closed()}`:
-   *   `type` and `title` as the client shows it, `positions` of the blocks it shows the content
-   *   of, if any; `around` runs each click; when it closes, `leave` gives back what lies in the
-   *   window itself, and `closed` is called
+   * @param {object} window `{type, title, menu, positions, around(run), leave(giveBack), closed()}`: `type` and
+   *   `title` as the client shows them; `positions` of the blocks whose contents it shows, if any; `around` runs each
+   *   click; when the window closes, `leave` returns the items in the window itself, and then `closed` is called
    */
   open (window) {
     this.close()
@@ -94,7 +93,7 @@ class PlayerWindows {
     this.sendAll()
   }
 
-  /** End the opened window, or the look into the own one; what the cursor carries goes back. */
+  /** Close the opened window or the player's own one. Items on the cursor return to the inventory. */
   close () {
     const { opened, cursor } = this
     const giveBack = (item) => this.giveBack(item)
@@ -108,7 +107,7 @@ class PlayerWindows {
     this.player.inventoryChanged()
   }
 
-  /** End all that is under way in windows, as in the next call nobody remembers it. */
+  /** Close everything, because the next call remembers nothing of it. */
   rest () {
     const { menu } = this.own
     const inGrid = () => range(0, menu.craftSlots + 1).some((slot) => menu.get(slot))
@@ -121,16 +120,16 @@ class PlayerWindows {
     this.lastId = 0
   }
 
-  /** End the opened window although the client did not ask for it. */
+  /** Close the opened window although the client did not ask for it. */
   forceClose () {
     if (!this.opened) return
     this.client.write('close_window', { windowId: this.opened.id })
     this.close()
-    // A client that is told to close does not copy what the window showed.
+    // A client that is told to close does not take over the window's content.
     this.sendAll()
   }
 
-  /** The own window goes on showing what the opened one showed of the inventory. */
+  /** Copy the shown inventory slots of the opened window to the player's own one. */
   takeOver ({ shown, menu }) {
     for (let i = INVENTORY_START; i < INVENTORY_END; i++) {
       this.own.shown[i] = shown[menu.first + i - INVENTORY_START]
@@ -152,7 +151,7 @@ class PlayerWindows {
     if (rest) this.serv.tossItem(this.player, rest)
   }
 
-  /** A `window_click` of the client. */
+  /** Handle a `window_click` of the client. */
   click (packet) {
     const window = this.current
     if (packet.windowId !== window.id) return
@@ -175,14 +174,17 @@ class PlayerWindows {
     this.answer(window, packet, stale)
   }
 
-  /** Notes what the client says it shows now. */
+  /** Record the slots that the client now shows according to its packet. */
   predict (window, { changedSlots = [] }) {
     for (const { location, item } of changedSlots) {
       if (shows(window, location)) window.shown[location] = this.serv.Item.fromNotch(item)
     }
   }
 
-  /** A client that has not seen the last changes is told all, as in the game: what it was told before may have undone what it touched. */
+  /**
+   * Answer a click. A client that has not received the last changes gets the whole window, as in the game: the changes
+   * may have been undone by its prediction.
+   */
   answer (window, { slot, cursorItem }, stale) {
     if (stale || !equal(this.serv.Item.fromNotch(cursorItem), this.cursor)) {
       this.sendAll()

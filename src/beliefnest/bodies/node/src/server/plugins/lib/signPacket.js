@@ -7,12 +7,12 @@ const LINES = 4
 const SIGN = 7
 const HANGING_SIGN = 8
 
-/** What clients are told of the sign `name` at a position: its packet `tile_entity_data`. */
+/** Return the packet `tile_entity_data` for the sign `name` at a position. */
 function signPacket (position, name, text) {
   return { location: position, action: name.endsWith('hanging_sign') ? HANGING_SIGN : SIGN, nbtData: entityOf(text) }
 }
 
-/** A sign's data as clients get them. */
+/** Return the data of a sign in the form for clients. */
 function entityOf (text) {
   const lines = text.split('\n')
   const side = (messages) => nbt.comp({

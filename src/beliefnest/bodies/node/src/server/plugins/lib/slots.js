@@ -1,12 +1,12 @@
 'use strict'
-/** What somebody has, as the slots of its inventory. */
+/** Possessions of a player as the slots of an inventory. */
 
 const { INVENTORY_START, HOTBAR_START, OFF_HAND } = require('./menus')
 const { countByName, stacksOf } = require('./items')
 const { store } = require('./clicks')
 
 const WORN = { head: 5, chest: 6, legs: 7, feet: 8, off_hand: OFF_HAND }
-/** Where new items go: hotbar first, as in the game. */
+/** Order in which new items fill slots: hotbar first, as in the game. */
 const STORE_ORDER = [
   ...Array.from({ length: 9 }, (_, i) => HOTBAR_START + i),
   ...Array.from({ length: HOTBAR_START - INVENTORY_START }, (_, i) => INVENTORY_START + i),
@@ -21,7 +21,7 @@ function storage (slots) {
   }
 }
 
-/** The slots of one who was given this and holds the first slot of the hotbar. */
+/** Return the slots of a player with given possessions who holds the first slot of the hotbar. */
 function layOut ({ Item, registry }, size, { inventory, equipment }, who) {
   const slots = new Array(size).fill(null)
   const rest = { ...inventory }
@@ -45,7 +45,7 @@ function layOut ({ Item, registry }, size, { inventory, equipment }, who) {
   return slots
 }
 
-/** What stacks are, that of slot 0 being on the cursor. */
+/** Return the possessions in stacks; the stack of slot 0 is that on the cursor. */
 function possessionsOf (stacks, held) {
   const equipment = {}
   for (const [part, slot] of Object.entries(WORN)) {

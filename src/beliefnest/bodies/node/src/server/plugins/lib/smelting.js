@@ -1,10 +1,10 @@
 'use strict'
 /**
- * What furnaces make of what, and what burns for how long, in ticks.
+ * Products of furnaces and burning times of fuels, in ticks.
  *
- * Source: Minecraft: Java Edition 1.20.4. Smelting: the recipes of type smelting, blasting and
- * smoking of its data pack (data/minecraft/recipes). Fuel: the table of the game's furnace, as
- * listed in the Minecraft Wiki, "Smelting", section "Fuel". minecraft-data has neither.
+ * Source: Minecraft: Java Edition 1.20.4. Smelting: the recipes of type smelting, blasting and smoking of its data
+ * pack (data/minecraft/recipes). Fuel: the table of the game's furnace, as listed in the Minecraft Wiki, "Smelting",
+ * section "Fuel". minecraft-data has neither.
  */
 
 const COLOURS = [
@@ -60,13 +60,13 @@ const KINDS = {
   smoker: { table: FOOD, ticks: 100 },
 }
 
-/** Name of what a kind of furnace makes of an item, or undefined. */
+/** Return the name of a kind of furnace's product for an item, or undefined. */
 function resultOf (kind, name) {
   if (kind === 'furnace' && CHARCOAL.test(name)) return 'charcoal'
   return Object.hasOwn(KINDS[kind].table, name) ? KINDS[kind].table[name] : undefined
 }
 
-/** Ticks a kind of furnace takes for one item. */
+/** Return the number of ticks that a kind of furnace takes for one item. */
 const ticksOf = (kind) => KINDS[kind].ticks
 
 const FUELS = [
@@ -88,7 +88,7 @@ const FUELS = [
   [/^(cartography_table|fletching_table|smithing_table|loom|composter|bow|crossbow|fishing_rod|ladder)$|_banner$/, 300],
 ]
 
-/** Ticks an item burns; 0 for what does not. */
+/** Return the number of ticks that an item burns; 0 for an item that does not burn. */
 function burnTicks (name) {
   return FUELS.find(([pattern]) => pattern.test(name))?.[1] ?? 0
 }

@@ -1,5 +1,5 @@
 'use strict'
-/** Block states as names and properties, after minecraft-data's `states` lists. */
+/** Block states as names and properties, from minecraft-data's `states` lists. */
 
 function valueAt (state, index) {
   if (state.type === 'bool') return index === 0
@@ -16,7 +16,7 @@ function indexOf (state, value) {
   return index
 }
 
-/** Properties of a block state: name to boolean, number or text. */
+/** Return the properties of a block state: name to boolean, number or text. */
 function decode (registry, stateId) {
   const block = registry.blocksByStateId[stateId]
   const properties = {}
@@ -28,7 +28,7 @@ function decode (registry, stateId) {
   return properties
 }
 
-/** State id of a block with these properties; those not named keep the default state's value. */
+/** Return the state id of a block with these properties; others keep the default state's value. */
 function encode (registry, name, properties) {
   const block = registry.blocksByName[name]
   const all = { ...decode(registry, block.defaultState), ...properties }
@@ -39,12 +39,12 @@ function encode (registry, name, properties) {
   return block.minStateId + index
 }
 
-/** What is asked of the block states of a version, each worked out once. */
+/** Return cached queries about the block states of a version. */
 function blockStates (registry) {
   const Block = require('prismarine-block')(registry)
   const known = new Map()
 
-  /** `{stateId, type, name, shapes, solid, transparent, properties}` */
+  /** Return `{stateId, type, name, shapes, solid, transparent, properties}`. */
   function describe (stateId) {
     if (!known.has(stateId)) {
       const block = Block.fromStateId(stateId, 0)
@@ -61,7 +61,7 @@ function blockStates (registry) {
     return known.get(stateId)
   }
 
-  /** A state as text, e.g. `lever[face=floor,facing=north,powered=true]`. */
+  /** Return a state as text, e.g. `lever[face=floor,facing=north,powered=true]`. */
   function text (stateId) {
     const { name, properties } = describe(stateId)
     const entries = Object.entries(properties).sort(([a], [b]) => (a < b ? -1 : 1))

@@ -1,18 +1,19 @@
 'use strict'
 /**
- * Who threw what lies in a stack: rows `[agent, count, tick]`, in the order in which it is picked up;
- * what nobody threw (a block dropped it) is not among them and goes last.
+ * Throws of the items in a stack: rows `[agent, count, tick]`, in the order in which they are picked up. Items that
+ * nobody threw, such as a block's drops, have no row and come last.
  */
 
-/** @returns {Array} the throws of two stacks that became one */
+/** Return the throws of two merged stacks. @returns {Array} */
 function together (some, others) {
   return [...some, ...others].sort((a, b) => a[2] - b[2])
 }
 
 /**
- * @param {Array} throws of a stack
- * @param {number} taken how many are taken out of it
- * @returns {{by: Array, left: Array}} throws of what is taken, and of what stays
+ * Split the throws of a stack.
+ * @param {Array} throws throws of the stack
+ * @param {number} taken number of items that are taken out of it
+ * @returns {{by: Array, left: Array}} throws of the taken items, and of the rest
  */
 function without (throws, taken) {
   const [by, left] = [[], []]
