@@ -6,7 +6,7 @@ const os = require('node:os')
 const path = require('node:path')
 const { afterEach, beforeEach, test } = require('node:test')
 
-// What is asked of Microsoft and Mojang is answered here: no request leaves this process.
+// Answers to requests to Microsoft and Mojang: no request leaves this process.
 let answers = {}
 const asked = []
 async function answer (url, { body = '' } = {}) {
@@ -65,7 +65,7 @@ test('a player logs in with a code that the user is shown, once', async () => {
     client.end('seen')
     await once(client, 'end')
   }
-  // The second time its token is in the folder.
+  // At the second login the token is in the folder.
   assert.deepEqual(told, ['log in as sally: open https://example.org/link and enter the code ABCD-EFGH'])
   assert.ok(fs.readdirSync(folder).length > 0)
 })

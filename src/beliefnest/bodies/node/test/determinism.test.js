@@ -12,7 +12,7 @@ const ROAM = `
     bot.chat('at ' + bot.entity.position + ' ' + Date.now())
   }`
 
-/** All frames of three roaming bots, as bytes; `others` regions are made and used before. */
+/** Return all frames of three roaming bots as bytes; `others` regions are made and used before. */
 async function frames (others = []) {
   const node = new Node()
   try {

@@ -1,5 +1,5 @@
 'use strict'
-/** What is thrown inside a bot's own timers and listeners is the fault of the program that runs it, and of no other. */
+/** An error inside a bot's own timers and listeners is a fault of the program that runs the bot, and of no other. */
 const test = require('node:test')
 const assert = require('node:assert/strict')
 const { agent, inWorld, FLOOR } = require('./plugins/harness')
@@ -10,7 +10,7 @@ const { scopeOf } = require('../src/scope')
 const both = { sally: agent([0.5, FLOOR, 0.5]), anne: agent([-4.5, FLOOR, 3.5]) }
 const sandbox = createSandbox()
 
-/** Run programs in the region the harness is in, and runs `meanwhile` once they have begun. */
+/** Run programs in the harness's region, and run `meanwhile` once they have begun. */
 async function run (world, programs, meanwhile) {
   const { regions, region } = world
   const here = Object.assign(Object.create(regions), { get: () => region, resumed: (_, action) => action() })

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Programs that tell of what they did not do, act through walls, look for what another branch left, and utter
- * what no line of text is: what beliefs are made of comes from the server, counted once.
+ * Programs that report acts they did not do, act through walls, look for traces of other branches, and utter texts
+ * that are not one line. Beliefs are made only of the server's own events, each counted once.
  */
 const { Clock } = require('../src/time/clock')
 const { installTime } = require('../src/time/install')
@@ -43,7 +43,7 @@ describe('forged', () => {
   const snapshot = () => perform({ op: 'snapshot', region })
   const events = (...kinds) => frames.flatMap(frame => frame.events).filter(({ kind }) => kinds.includes(kind))
 
-  /** How many of each item events of a kind tell of, by actor and whom with. */
+  /** Return how many of each item the events of a kind report, by actor and other agent. */
   function told (kind) {
     const total = {}
     for (const { actor, detail } of events(kind)) {

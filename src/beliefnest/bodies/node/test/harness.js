@@ -1,5 +1,5 @@
 'use strict'
-/** Drives main.js over its real channel, as Python does. */
+/** Driver of main.js over its real channel, as Python does it. */
 const { spawn } = require('node:child_process')
 const path = require('node:path')
 const { Channel } = require('../src/channel/channel')
@@ -29,7 +29,7 @@ class Node {
     else this.waiting.reject(Object.assign(new Error(message.error.message), message.error))
   }
 
-  /** @returns {Promise<any>} the result; rejects with the error of the answer */
+  /** Return the result of a request; reject with the error of its reply. @returns {Promise<any>} */
   request (op, args = {}) {
     return new Promise((resolve, reject) => {
       this.waiting = { resolve, reject }
@@ -41,7 +41,7 @@ class Node {
     return this.request('hello', { protocol: 3, seed, minecraft: '1.20.4' })
   }
 
-  /** End the process as Python's end would. */
+  /** End the process as the end of Python would. */
   async close () {
     this.child.stdio[4].destroy()
     this.child.stdio[3].destroy()
@@ -52,7 +52,7 @@ class Node {
 const STONE = 1
 const BOX = [[-11, -52, -11], [11, -49, 11]]
 
-/** @returns {Buffer} a stone floor and whatever `extra` puts above it, as [x, y, z, state] */
+/** Return the states of a stone floor and the blocks in `extra` above it, as [x, y, z, state]. @returns {Buffer} */
 function floor (extra = [], box = BOX) {
   const shape = [0, 1, 2].map(axis => box[1][axis] - box[0][axis] + 1)
   const states = new Int32Array(shape[0] * shape[1] * shape[2])
@@ -76,7 +76,7 @@ const THREE = () => ({
   sally: agent([0.5, -51, 0.5]), anne: agent([-4.5, -51, 3.5]), observer: agent([0.5, -51, 8.5])
 })
 
-/** @returns {object} arguments of create_region */
+/** Return the arguments of create_region. @returns {object} */
 function region (name, more = {}) {
   return {
     region: name, seed: name, box: BOX, tick: 0, blocks: floor(), containers: [], agents: THREE(), items: {}, internal_state: null, ...more

@@ -8,7 +8,7 @@ describe('the process', () => {
     const node = new Node()
     await node.hello()
     await node.request('create_region', region('busy'))
-    // Never answered: an endless loop holds the main thread.
+    // Never answered: an endless loop blocks the main thread.
     node.request('run', { region: 'busy', programs: { sally: 'for (;;) {}' }, timeout_ticks: 10 }).catch(() => {})
     node.child.stdio[4].destroy()
     assert.deepEqual(await node.exited, { code: null, signal: 'SIGKILL' })
@@ -17,7 +17,7 @@ describe('the process', () => {
   it('tells that it lives while a program computes within one tick, and while quiet ticks pass', async () => {
     const node = new Node()
     await node.hello()
-    // Enough of them to compute for more than a second on any machine.
+    // Enough agents to compute for more than a second on any machine.
     const names = Array.from({ length: 8 }, (_, number) => `agent${number}`)
     const agents = Object.fromEntries(names.map((name, number) => [name, agent([number - 3.5, BOX[0][1] + 1, 0.5])]))
     const { tick } = await node.request('create_region', region('busy', { agents }))
@@ -26,7 +26,7 @@ describe('the process', () => {
     assert.equal(node.beats[0], tick)
     node.beats.length = 0
     let ticks = tick + 1
-    // However fast the machine is, some number of ticks takes longer than Node may be silent.
+    // On any machine, some number of ticks takes longer than Node may be silent.
     for (let span = 4000; node.beats.length === 0; span *= 2) {
       await node.request('step', { region: 'busy', ticks: span })
       ticks += span

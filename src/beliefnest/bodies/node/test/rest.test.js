@@ -1,7 +1,7 @@
 'use strict'
 /**
- * What an agent's body does once its program has ended depends on nobody else's program. What time itself brings about,
- * as that somebody picks up what lies at its feet, is left out.
+ * The behaviour of an agent's body after the end of its program does not depend on other agents' programs. Effects of
+ * time itself are left out, such as somebody picking up an item at its feet.
  */
 const assert = require('node:assert/strict')
 const { after, before, describe, it } = require('node:test')
@@ -44,7 +44,7 @@ describe('the body of an agent whose program has ended', () => {
   before(() => node.hello(7))
   after(() => node.close())
 
-  /** @returns {Promise<object[]>} AGENT of Ann after each of her programs, and what it said of itself */
+  /** Return AGENT of Ann after each of her programs, and her reports. @returns {Promise<object[]>} */
   async function annBeside (bob, anns, name) {
     const blocks = floor([[0, -51, 2, STONE], [2, -51, 0, 2955]])
     await node.request('create_region', region(name, { seed: 'one', blocks, agents: AGENTS() }))

@@ -9,7 +9,7 @@ const ROAM = `
     await bot.pathfinder.goto(new goals.GoalNear(at(), -51, at(), 1))
     bot.chat('at ' + bot.entity.position + ' ' + Date.now())
   }`
-// Ends in the middle of a step, with speed left.
+// This program ends in the middle of a step, while the body still moves.
 const RUSH = "bot.setControlState('sprint', true); bot.setControlState('forward', true); await bot.waitForTicks(13)"
 const run = (node, code) => node.request('run', {
   region: 'roam', programs: { sally: code, anne: ROAM, observer: ROAM }, timeout_ticks: 2000

@@ -12,7 +12,7 @@ describe('programs', () => {
   })
   after(() => node.close())
 
-  /** Run programs in a new region; gives tick, results and the frames of the run. */
+  /** Run programs in a new region. Return the tick, the results and the frames of the run. */
   async function run (programs, timeoutTicks = 100, more = {}) {
     const name = `region ${regions++}`
     await node.request('create_region', region(name, more))
@@ -27,8 +27,8 @@ describe('programs', () => {
     assert.equal(tick, results.anne.ticks)
     assert.ok(results.sally.ticks < results.anne.ticks)
     const said = frames.map(frame => frame.events.filter(event => event.kind === 'chat').map(event => event.actor).join())
-    // Programs begin as they are listed, bots move in order of their names. What comes before the first wait belongs
-    // to the first tick, as what comes after it.
+    // Programs begin in the given order; bots move in order of their names. Code before the first wait belongs to the
+    // first tick, like the code after it.
     assert.deepEqual(said.filter(Boolean), ['sally,anne,anne,sally', 'anne,sally', 'anne', 'anne', 'anne'])
   })
 

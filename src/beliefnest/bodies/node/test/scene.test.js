@@ -1,5 +1,5 @@
 'use strict'
-/** What a server elsewhere tells of blocks, made into deeds of those who did them. */
+/** Attribution of a remote server's block changes to the agents who caused them. */
 require('../src/prepare').prepare()
 const assert = require('node:assert/strict')
 const { test } = require('node:test')
@@ -17,7 +17,7 @@ const LOWER = new Vec3(0, 0, 0)
 
 const half = (name, open) => encode(registry, 'oak_door', { half: name, open: String(open) })
 
-/** A place with a door, which is shut, and what is told of it. */
+/** Return a place with a shut door, and the list of its recorded events. */
 function place () {
   const box = new Box([0, 0, 0], [0, 1, 0])
   const told = []
@@ -37,7 +37,7 @@ for (const order of [['lower', 'upper'], ['upper', 'lower']]) {
     const change = (name, open) => scene.blockChanged(name === 'upper' ? LOWER.offset(0, 1, 0) : LOWER, half(name, open))
     witness.use({ location: LOWER })
     change(order[0], true)
-    // Its bot has seen the door open, and shuts it.
+    // The agent's bot has seen the open door, and shuts it.
     witness.use({ location: LOWER })
     change(order[1], true)
     for (const name of order) change(name, false)

@@ -3,7 +3,7 @@ const assert = require('node:assert/strict')
 const { test } = require('node:test')
 const { ServerClock } = require('../src/remote/serverClock')
 
-/** A clock, and the ticks it shows while the server tells its age as it will. */
+/** Return a clock and the ticks it shows while the server sends its age at arbitrary times. */
 function following (tellings) {
   let now = 0
   const clock = new ServerClock(() => now)
@@ -21,7 +21,7 @@ const rises = ages => ages.every((age, index) => index === 0 || age >= ages[inde
 test('between tellings ticks are counted as fast as the server goes', () => {
   const slow = following([[0, 100], [2000, 120], [4000, 140], [6000, 160]])
   assert.ok(rises(slow))
-  // In the last two seconds it takes the server's own 20 ticks of 100 ms each, and not 19 in the first one.
+  // In the last two seconds it counts the server's own 20 ticks of 100 ms each, and not 19 in the first one.
   const last = slow.slice(-200)
   assert.deepEqual([last[0], last[100], last.at(-1)], [140, 150, 160])
 })

@@ -1,5 +1,5 @@
 'use strict'
-/** Programs that misuse a real bot: each ends, those beside it and the next one go on as if nothing had been. */
+/** Programs that misuse a real bot. Each ends; the others and the next one run as if nothing had happened. */
 const assert = require('node:assert/strict')
 const { after, before, describe, it } = require('node:test')
 const registry = require('minecraft-data')('1.20.4')

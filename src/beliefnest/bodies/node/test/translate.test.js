@@ -10,7 +10,7 @@ const NAMES = new Map([['r1_sally', 'sally'], ['r1_anne', 'anne']])
 const place = { x: 3.25, y: -51, z: -4.5 }
 const block = { x: 3, y: -51, z: -4 }
 
-/** A packet in scenario coordinates for every entry, and the same in the server's. */
+/** A packet in scenario coordinates for every entry, and the same packet in the server's. */
 const server = {
   point: { x: 16003.25, y: -51, z: -116.5 },
   block: { x: 16003, y: -51, z: -116 }
@@ -88,14 +88,14 @@ describe('translation', () => {
   })
 })
 
-/** Names of the fields of a packet that hold an absolute place. */
+/** Return the names of a packet's fields that hold an absolute position. */
 function placesOf (type) {
   return type[1].filter(field => field.type === 'position' || field.name === 'x' || field.name === 'chunkX' ||
     JSON.stringify(field.type).includes('"position"') || /chunk(Coordinates|X)|sourcePosition/.test(field.name))
 }
 
 describe('the table', () => {
-  // x of a map's picture, of a sign's cursor and of a hit on an entity are no places of the world.
+  // The x of a map's picture, of a sign's cursor and of a hit on an entity are no positions in the world.
   const RELATIVE = { toClient: ['map'], toServer: ['use_entity'] }
 
   for (const [direction, table] of [['toClient', TO_CLIENT], ['toServer', TO_SERVER]]) {

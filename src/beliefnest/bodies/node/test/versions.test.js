@@ -15,7 +15,7 @@ const { minecraft } = require('../src/versions')
 
 const registry = version => require('prismarine-registry')(version)
 const ours = registry(minecraft)
-// What a place is made of in ours and not in the other version.
+// Blocks that our version has and the other one lacks.
 const NEWER = { '1.20.1': /copper_bulb|copper_door|copper_trapdoor|copper_grate|chiseled_copper|crafter|tuff_|_tuff|trial_spawner/, '1.21.11': /^$/ }
 
 for (const version of Object.keys(NEWER)) {

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * What there is in a region, in materials: crafting, smelting, placing and mining change kinds, never
- * what a thing is worth. Eaten, burnt, and mined without a drop is what may be missing.
+ * Balance of a region in materials: crafting, smelting, placing and mining change the kinds of things but not their
+ * worth. Only items that were eaten, burnt or mined without a drop may be missing.
  */
 
 const WORTH = {
@@ -14,10 +14,13 @@ const HALVES = /_door$|_bed$/
 const LEAST_BURNING = { wood: 100, coal: 1600 }
 const MOST_OF_A_FUEL = { wood: 8, coal: 1 }
 const FOOD = ['apple', 'bread']
-/** Blocks that drop nothing; the skills mine all others with what it takes. */
+/** Blocks that drop nothing; skills mine all others with a suitable tool. */
 const BREAKS = /glass/
 
-/** Materials of an item: those of the table, or those of what it is crafted from, or itself. */
+/**
+ * Return a function from items to materials: those of the table, or those of the item's ingredients, or the item
+ * itself.
+ */
 function worthTable (registry) {
   const known = new Map()
   const crafted = new Set(['chest', 'crafting_table', 'furnace', 'barrel', 'lever', 'ladder', 'bowl', 'wooden_pickaxe', 'stone_pickaxe', 'wooden_axe',
@@ -34,7 +37,7 @@ function worthTable (registry) {
   function materialsOf ({ inShape, ingredients, result }) {
     const total = {}
     for (const id of (inShape?.flat() ?? ingredients).map(entry => entry?.id ?? entry).filter(id => id !== null && id !== -1)) {
-      // Of these alone: the recipes of everything else lead in circles.
+      // Only these items are taken apart; the recipes of all others form cycles.
       const { name } = registry.items[id]
       for (const [key, value] of Object.entries(WORTH[name] ?? { [name]: 1 })) total[key] = (total[key] ?? 0) + value / result.count
     }
@@ -44,10 +47,11 @@ function worthTable (registry) {
 }
 
 /**
+ * Return the amount of each material, placed blocks included.
  * @param {(name: string) => object} worth
  * @param {object} snapshot SNAPSHOT of the region
- * @param {(state: number) => {name: string}} describe a block state
- * @returns {Object<string, number>} how much of each material there is, placed blocks included
+ * @param {(state: number) => {name: string}} describe describes a block state
+ * @returns {Object<string, number>}
  */
 function materials (worth, snapshot, describe) {
   const total = {}
@@ -66,11 +70,11 @@ function materials (worth, snapshot, describe) {
 }
 
 /**
- * How much of each material may be missing after what frames tell.
+ * Return how much of each material may be missing after the events of some frames.
  * @param {object[]} frames
- * @param {Object<string, number>} food level of each agent before
- * @param {number} ticks that passed
- * @param {number} furnaces that there may be
+ * @param {Object<string, number>} food food level of each agent before
+ * @param {number} ticks number of ticks that passed
+ * @param {number} furnaces largest number of furnaces
  */
 function mayBeMissing (worth, frames, food, ticks, furnaces) {
   const missing = {}
@@ -89,7 +93,7 @@ function mayBeMissing (worth, frames, food, ticks, furnaces) {
   return missing
 }
 
-/** @returns {string[]} what is wrong, by material; empty if nothing is */
+/** Return the differences that are not explained, by material; empty if there are none. @returns {string[]} */
 function unexplained (before, after, missing) {
   return [...new Set([...Object.keys(before), ...Object.keys(after)])].flatMap(key => {
     const change = (after[key] ?? 0) - (before[key] ?? 0)

@@ -1,9 +1,9 @@
 'use strict'
 /**
- * Random neighbours of known attacks: texts with half characters on every way out, built-ins replaced in any
+ * Random variations of known attacks: texts with lone surrogates on every way out, built-ins replaced in any
  * combination, raw messages of timers, programs of odd texts.
  *
- * BELIEFNEST_NIGHTLY=1 tries thousands; BELIEFNEST_FUZZ_SEED=17 those of one seed again.
+ * BELIEFNEST_NIGHTLY=1 tries thousands; BELIEFNEST_FUZZ_SEED=17 repeats those of one seed.
  */
 const assert = require('node:assert/strict')
 const { before, describe, it } = require('node:test')
@@ -58,7 +58,7 @@ describe('neighbours of known attacks', () => {
       const patches = several(random, 4, () => pick(random, Object.values(PATCHES)))
       const told = await messagesOf(sandbox, `${patches.map((patch) => `try { ${patch} } catch {}`).join('\n')}\n${USES}`)
       for (const message of told) {
-        // What a broken program says of its own errors is its own.
+        // A broken program may say anything about its own errors.
         assert.ok(honest.includes(message) || /^\["(log|settled)",/.test(message), `seed ${seed}: ${message} after ${patches.join('\n')}`)
       }
     }

@@ -1,9 +1,9 @@
 'use strict'
 /**
- * Random programs that try to tell of what they did not do, to act into a closed cell and to utter what is no
- * line; the events must add up with what there is. And: nothing of another branch can be read of a bot.
+ * Random programs that try to report acts they did not do, to act into a closed cell and to utter texts that are not
+ * one line. The events must agree with the state, and a bot must reveal nothing of another branch.
  *
- * BELIEFNEST_NIGHTLY=1 tries hundreds; BELIEFNEST_FUZZ_SEED=17 tries that seed again.
+ * BELIEFNEST_NIGHTLY=1 tries hundreds; BELIEFNEST_FUZZ_SEED=17 repeats that seed.
  */
 const { Clock } = require('../../src/time/clock')
 const { installTime } = require('../../src/time/install')
@@ -24,7 +24,7 @@ const MOST_TICKS = 200
 const AGENTS = ['ann', 'bob', 'cid']
 const ITEMS = ['diamond', 'dirt', 'stick']
 const CHEST = [3, FLOOR, 3]
-// In the middle of bedrock.
+// Inside bedrock.
 const HIDDEN = [-4, FLOOR, -4]
 const FLAWED = ['\n', '\r', '\u2028', '\u2029', '\u0085', '\u001b[2J', '\u0000', '\u009b', 'x'.repeat(250)]
 
@@ -32,7 +32,7 @@ const vector = ([x, y, z]) => `new Vec3(${x}, ${y}, ${z})`
 const around = ([x, y, z]) => [-1, 0, 1].flatMap(a => [0, 1].flatMap(b => [-1, 0, 1].map(c => [x + a, y + b, z + c])))
 const CELL = around(HIDDEN).filter(place => place.join() !== HIDDEN.join())
 
-/** A statement that has nothing to do with any other, and may be wrong. */
+/** Return a statement that is independent of all others and may be wrong. */
 function statement ({ below, pick, chance }) {
   const other = () => `'${pick(AGENTS)}'`
   const item = () => `'${pick(ITEMS)}'`
@@ -104,7 +104,7 @@ describe('forged at random', () => {
     op: 'run', region, programs: Object.fromEntries(AGENTS.map(name => [name, program(random)])), timeout_ticks: 20 + random.below(MOST_TICKS)
   })
 
-  /** What events say that an agent gained of an item, and what gifts tell on both sides. */
+  /** Return each agent's gain of items according to events, and the gifts according to both sides. */
   function accounts (events) {
     const gains = {}
     const gifts = { give_item_to_other: {}, receive_item_from_other: {} }
@@ -122,7 +122,7 @@ describe('forged at random', () => {
     return { gains, gifts }
   }
 
-  /** Nobody has more or less than what events, and what it threw and nobody picked up, account for. */
+  /** Check that nobody has more or less than explained by events and by items that it threw and nobody picked up. */
   function checkPossessions (first, last, events) {
     const { gains, gifts } = accounts(events)
     assert.deepEqual(gifts.give_item_to_other, gifts.receive_item_from_other)
@@ -163,7 +163,7 @@ describe('forged at random', () => {
     }
   }
 
-  /** Make a region that went on be as a snapshot of it says. */
+  /** Set a region that ran on to the state of a snapshot. */
   async function returnTo (region, past) {
     const now = await snapshot(region)
     const [before, after] = [now, past].map(({ blocks }) => new Int32Array(blocks.slice().buffer))

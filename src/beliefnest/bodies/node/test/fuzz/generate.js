@@ -1,5 +1,5 @@
 'use strict'
-/** Random programs put together from the skills, with arguments that may make sense or not. */
+/** Random programs of skill calls, with sensible and senseless arguments. */
 const { SKILLS } = require('../../../../programs/skills')
 
 const AGENTS = ['sally', 'anne', 'bob']
@@ -13,7 +13,7 @@ const NONSENSE = [
   'new Vec3(NaN, 0, 0)', 'new Vec3(Infinity, -51, 0)', 'new Vec3(1e300, 0, 0)', 'new Vec3(40, -51, 40)', 'new Vec3(0, -53, 0)', '{ diamond: -1 }', '{ nothing: 1 }', 'true'
 ]
 
-/** The generator of numbers behind everything random here. */
+/** Return the generator of all random numbers here. */
 function generator (seed) {
   let state = Math.imul(seed, 2654435761) >>> 0
   const below = n => {
@@ -25,7 +25,7 @@ function generator (seed) {
 
 const vector = ([x, y, z]) => `new Vec3(${x}, ${y}, ${z})`
 
-/** Arguments, besides bot, with which a skill has a chance to succeed. */
+/** Arguments, besides bot, with which a skill can succeed. */
 const SENSIBLE = {
   mineBlock: writer => [vector(writer.block(/./)), `"${writer.last}"`],
   givePlacedItemBack: writer => { const position = vector(writer.block(/chest|table|furnace|dirt|lever/)); return [`"${writer.last}"`, position] },
@@ -47,8 +47,8 @@ const SENSIBLE = {
 class Writer {
   /**
    * @param {{below: function, pick: function, chance: function}} random
-   * @param {[number, number, number, string][]} blocks that are worth going to
-   * @param {string[]} items that the program's agent has
+   * @param {[number, number, number, string][]} blocks useful targets
+   * @param {string[]} items items of the program's agent
    */
   constructor (random, blocks, items) {
     this.random = random
@@ -57,7 +57,7 @@ class Writer {
     this.last = null
   }
 
-  /** One of the blocks with such a name; `last` is its name. */
+  /** Return one of the blocks with a matching name; `last` becomes its name. */
   block (name) {
     const block = this.random.pick(this.blocks.filter(entry => name.test(entry[3])))
     this.last = block[3]
@@ -77,14 +77,14 @@ class Writer {
     return vector(chance(60) ? pick(this.blocks) : [below(23) - 11, -51 + below(3) - below(2), below(23) - 11])
   }
 
-  /** An argument for a parameter of a skill's manifest. */
+  /** Return an argument for a parameter of a skill's manifest. */
   argument ({ name, type }) {
     const { below, pick, chance } = this.random
     if (name === 'bot') return chance(99) ? 'bot' : pick(NONSENSE)
     if (chance(12)) return pick(NONSENSE)
     const named = {
       name: () => `"${pick([...ITEMS, ...BLOCKS])}"`,
-      // Not logs: torches of charcoal are not worth what torches of coal are.
+      // No logs: torches of charcoal have another worth than torches of coal.
       itemName: () => `"${pick(ITEMS.filter(item => item !== 'oak_log'))}"`,
       otherName: () => `"${pick(AGENTS)}"`,
       destination: () => `"${pick(['hand', 'off-hand', 'head', 'torso', 'legs', 'feet'])}"`,
@@ -124,7 +124,7 @@ class Writer {
     ])()
   }
 
-  /** @returns {string} the text of a program */
+  /** Return the text of a program. @returns {string} */
   program () {
     return Array.from({ length: 1 + this.random.below(6) }, () => this.statement()).join('\n')
   }

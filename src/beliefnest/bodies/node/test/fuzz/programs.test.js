@@ -1,9 +1,9 @@
 'use strict'
 /**
- * Random programs of several agents in one region, ended at random moments: whatever they do, items are
- * conserved, nothing leaves the region, frames tell what happened, and the next program runs.
+ * Random programs of several agents in one region, ended at random moments. Whatever they do, items are conserved,
+ * nothing leaves the region, frames report what happened, and the next program runs.
  *
- * BELIEFNEST_NIGHTLY=1 runs thousands; BELIEFNEST_FUZZ_SEED=17 runs those of one seed again.
+ * BELIEFNEST_NIGHTLY=1 runs thousands; BELIEFNEST_FUZZ_SEED=17 repeats those of one seed.
  */
 const { Clock } = require('../../src/time/clock')
 const { installTime } = require('../../src/time/install')
@@ -66,7 +66,7 @@ describe('random programs', () => {
     return perform({ op: 'create_region', region, seed, box: BOXED, tick: 0, blocks: floor(states, BOXED), containers: CONTAINERS, agents, items: {}, internal_state: null })
   }
 
-  /** A snapshot as frames change it; items by what they are, for numbers are the region's own. */
+  /** Apply frames to a snapshot. Items are compared by content, because numbers differ between regions. */
   function fold (snapshot, told) {
     const state = { ...plain(snapshot) }
     const shape = [0, 1, 2].map(axis => BOXED[1][axis] - BOXED[0][axis] + 1)
@@ -91,7 +91,7 @@ describe('random programs', () => {
     return state
   }
 
-  /** Everything around a region's box: barriers, and nothing beyond them. */
+  /** Check that barriers surround a region's box and nothing is beyond them. */
   function surroundings (region) {
     const found = new Set()
     const { box, origin, columns } = region
@@ -124,9 +124,9 @@ describe('random programs', () => {
     console.log(String(bot.currentWindow))
     console.log(JSON.stringify(bot.entity.position))`
 
-  /** After anything, an ordinary program runs, and its bot knows what it has and where it is. */
+  /** Check that an ordinary program runs afterwards, and that its bot knows its possessions and its position. */
   async function checkMinds (region) {
-    // What was tossed can be picked up by now, and is not in the very tick in which bots look.
+    // By now tossed items can be picked up; no pickup happens in the tick in which bots look.
     await perform({ op: 'step', region, ticks: SETTLING_TICKS })
     const { results } = await perform({ op: 'run', region, programs: Object.fromEntries(AGENTS.map(name => [name, LOOK])), timeout_ticks: 40 })
     const { agents } = await perform({ op: 'snapshot', region })
@@ -148,7 +148,7 @@ describe('random programs', () => {
     const last = await perform({ op: 'snapshot', region })
     try {
       assert.deepEqual(told.filter(frame => frame.region !== region), [], 'frames of other regions')
-      // No frame tells the internal state.
+      // Frames do not contain the internal state.
       const { tick, internal_state: internalState } = plain(last)
       assert.deepEqual({ ...fold(first, told), tick, internal_state: internalState }, plain(last))
       const food = Object.fromEntries(Object.entries(first.agents).map(([name, state]) => [name, state.food]))

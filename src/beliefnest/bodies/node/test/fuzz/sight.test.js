@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Lines of sight at random: what can be used by one's rule can be reached by a line that a slow
- * walker along it finds free, and where skills walk to in order to use something the server agrees.
+ * Random lines of sight. A slow walk along a line must confirm what the rule says about usable targets; and the server
+ * must agree that targets can be used from the positions to which skills walk.
  *
  * BELIEFNEST_NIGHTLY=1 tries thousands.
  */
@@ -28,7 +28,7 @@ rememberBlocks(registry)
 const World = require('prismarine-world')(registry)
 const Chunk = require('prismarine-chunk')(registry)
 
-/** A world with blocks here and there, in any of their states. */
+/** Return a world with scattered blocks in random states. */
 function someWorld ({ below, pick, chance }) {
   const world = new World(() => new Chunk({ minY: -64, worldHeight: 384 }))
   for (const [x, z] of [[0, 0], [-1, 0], [0, -1], [-1, -1]]) world.sync.setColumn(x, z, new Chunk({ minY: -64, worldHeight: 384 }))
@@ -45,7 +45,7 @@ function someWorld ({ below, pick, chance }) {
   return world.sync
 }
 
-/** Whether some point of a line lies well within a box of a block, found step by step. */
+/** Return true if some point of a line lies well within a box of a block, found step by step. */
 function isBroken (shapesAt, eye, to, target) {
   for (let step = 0; step <= STEPS; step++) {
     const point = eye.plus(to.minus(eye).scaled(step / STEPS))
@@ -58,7 +58,7 @@ function isBroken (shapesAt, eye, to, target) {
   return false
 }
 
-/** Whether any of many points of a block's cell has a free line, by the slow way. */
+/** Return true if any of many points of a block's cell has a free line, found by brute force. */
 function isSeenSlowly (shapesAt, eye, target) {
   const parts = [0, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 1]
   const own = shapesAt(target.x, target.y, target.z)

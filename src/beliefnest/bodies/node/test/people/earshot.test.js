@@ -3,7 +3,7 @@ const assert = require('node:assert/strict')
 const { describe, it } = require('node:test')
 const { Earshot } = require('../../src/live/earshot')
 
-/** Anne and Carl are people, Bob is a bot. */
+/** Return a scene in which Anne and Carl are people and Bob is a bot. */
 function scene () {
   const players = ['anne', 'bob', 'carl'].map(agent => ({ agent, read: [], system (text) { this.read.push(text) } }))
   const [anne, bob, carl] = players

@@ -1,5 +1,5 @@
 'use strict'
-/** What a client may send that nobody plays with: it ends that client's connection at most, and everybody stays whole. */
+/** Packets that no normal client would send. They end that client's connection at most, and harm nobody else. */
 const assert = require('node:assert/strict')
 const { once } = require('node:events')
 const path = require('node:path')
@@ -31,7 +31,7 @@ afterEach(async () => {
   await here([])
 })
 
-/** Let time pass until those people are there. */
+/** Let time pass until these people are there. */
 async function here (names) {
   for (;;) {
     const { here: present } = await node.request('people', { invited: ['anne'] })
@@ -53,7 +53,7 @@ async function anneIn () {
   return client
 }
 
-/** Let what was sent arrive, and some time pass. */
+/** Let sent packets arrive, and let some time pass. */
 async function settled (client) {
   const heard = once(client, 'system_chat')
   client.write('chat_command', { command: 'settled', timestamp: 0n, salt: 0n, argumentSignatures: [], messageCount: 0, acknowledged: Buffer.alloc(3) })

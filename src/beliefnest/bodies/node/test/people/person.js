@@ -1,8 +1,8 @@
 'use strict'
 /**
- * Somebody with a Minecraft client, as a process of its own: `node person.js PORT NAME [VERSION]`. Takes programs on its standard
- * input, one a line as JSON, and plays them one after the other; what it prints, one JSON object a line, is what
- * came of it: `{"here": true}`, `{"done": N}`, `{"failed": why}`, `{"left": why}`. It leaves with the end of its input.
+ * Person with a Minecraft client, as a process of its own: `node person.js PORT NAME [VERSION]`. It reads programs on
+ * its standard input, one a line as JSON, and plays them one after the other. It prints one JSON object a line:
+ * `{"here": true}`, `{"done": N}`, `{"failed": why}`, `{"left": why}`. It leaves at the end of its input.
  */
 require('../../src/prepare').prepare()
 const readline = require('node:readline')
@@ -38,7 +38,7 @@ function main (port, username, version = versions.minecraft) {
 }
 
 function listen (bot) {
-  // What programs' skills report is for those whom BeliefNest plays.
+  // The skills' reports are dropped: only agents that BeliefNest plays have them.
   const scope = scopeOf(bot, () => {}, new AbortController().signal)
   const input = readline.createInterface({ input: process.stdin })
   let turn = Promise.resolve()

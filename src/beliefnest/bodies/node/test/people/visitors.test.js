@@ -1,5 +1,5 @@
 'use strict'
-/** Whoever visits a belief changes nothing, whatever their client sends, and nobody in reality is told of them. */
+/** Visitors of a belief change nothing, whatever their clients send, and nobody in reality learns of them. */
 const assert = require('node:assert/strict')
 const { once } = require('node:events')
 const path = require('node:path')

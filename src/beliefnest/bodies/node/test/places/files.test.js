@@ -12,7 +12,7 @@ const compounds = list => nbt.list(nbt.comp(list.map(({ value }) => value)))
 const HELD = { Items: compounds([stack('minecraft:bread', 2), stack('minecraft:bread', 1)]) }
 const WRITTEN = { front_text: nbt.comp({ messages: nbt.list(nbt.string(['{"text":"left"}', '"right"', '""', '""'])) }) }
 
-/** 2 x 2 x 3 blocks: a floor of stone, and on it a chest, a sign and air. */
+/** Blocks of a place of 2 x 2 x 3: a floor of stone, and on it a chest, a sign and air. */
 const NUMBERS = [0, 0, 0, 0, 0, 0, 1, 200, 3, 3, 3, 3]
 const BYTES = NUMBERS.flatMap(number => number < 128 ? [number] : [(number & 127) | 128, number >> 7]).map(byte => byte << 24 >> 24)
 
@@ -42,7 +42,7 @@ function structure (position = [0, 1, 0]) {
   }))
 }
 
-/** The place of a file: text by position, without air. */
+/** Return the blocks of a file: text by position, without air. */
 function blocksOf ({ shape: [width, height, length], palette: texts, blocks }) {
   const numbers = new Int32Array(blocks.buffer)
   const found = {}

@@ -55,7 +55,7 @@ test('what a client sent at two times and comes at one is mined when the time is
     for (const status of [0, 2]) dig(sally, status)
     await world.ticks(1)
     assert.equal(sally.blockAt(location).name, 'dirt')
-    // Asking again, or for something else, is no reason to begin anew.
+    // A repeated request, or one for another block, does not begin digging anew.
     for (const status of [1, 0, 2]) dig(sally, status)
     await world.ticks(sally.digTime(sally.blockAt(location)) / 50)
     assert.equal(world.block(2, FLOOR, 0).name, 'air')

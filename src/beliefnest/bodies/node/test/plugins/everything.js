@@ -1,10 +1,10 @@
 'use strict'
 
 /**
+ * Return the count of all items by name: in containers, inventories, on cursors and on the ground.
  * @param {object} serv
- * @param {(position: Vec3) => boolean} within which part of the world counts
- * @returns {Object<string, number>} name to count of all there is: in containers, inventories, on
- *   cursors and on the ground
+ * @param {(position: Vec3) => boolean} within returns true for positions in the part of the world that counts
+ * @returns {Object<string, number>}
  */
 function everything (serv, within) {
   const total = {}

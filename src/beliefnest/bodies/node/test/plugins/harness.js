@@ -1,5 +1,5 @@
 'use strict'
-/** Real bots on the real server, in memory under virtual time, in this very process. */
+/** Worlds with real bots on the real server, in memory under virtual time, in this process. */
 const { Clock } = require('../../src/time/clock')
 const { installTime } = require('../../src/time/install')
 
@@ -43,7 +43,7 @@ function worldOf (regions, frames) {
       await regions.tick(region)
     }
   }
-  /** Let time pass until a promise is settled; gives its outcome. */
+  /** Let time pass until a promise is settled. Return its outcome. */
   async function during (promise) {
     let settled = false
     const done = () => { settled = true }

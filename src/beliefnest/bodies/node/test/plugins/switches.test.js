@@ -26,7 +26,7 @@ for (const [name, expected] of [['stone_button', 20], ['oak_button', 30]]) {
       await world.until(() => world.block(...PLACE).properties.powered)
       const pushed = world.region.tick
       await world.until(() => !world.block(...PLACE).properties.powered)
-      // The push is handled before the countdown of the tick it happens in.
+      // The push is handled before the countdown of its tick.
       assert.equal(world.region.tick - pushed, expected - 1)
     })
   })

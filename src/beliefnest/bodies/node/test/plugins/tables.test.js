@@ -1,8 +1,8 @@
 'use strict'
 /**
- * The tables of drops, smelting and fuel against a second source than the one they were made from: the
- * loot tables and recipes of the game's own data pack, and the wiki's table of fuels. The values
- * here were written down from those; design/decisions.md says what was compared as a whole.
+ * Tables of drops, smelting and fuel, compared with other sources than those they were made from: the loot tables and
+ * recipes of the game's own data pack, and the wiki's table of fuels. The values here were copied from those sources;
+ * design/decisions.md says what was compared as a whole.
  */
 const test = require('node:test')
 const assert = require('node:assert/strict')
@@ -13,7 +13,7 @@ const { decode } = require('../../src/server/plugins/lib/states')
 
 const PICKAXE = { type: registry.itemsByName.netherite_pickaxe.id, enchants: [] }
 
-/** What a block drops at least and at most, as "name low-high". */
+/** Return the least and the most that a block drops, as "name low-high". */
 function drops (name, properties = {}) {
   const block = { name, properties: { ...decode(registry, registry.blocksByName[name].defaultState), ...properties } }
   const [least, most] = [0, 0.999999].map(chance => dropsOf(registry, block, PICKAXE, () => chance))

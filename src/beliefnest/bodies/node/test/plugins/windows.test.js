@@ -8,7 +8,7 @@ const RIGHT = [3, FLOOR, 0]
 const sallyAndAnne = (inventory = {}) => ({
   sally: agent([1.5, FLOOR, 2.5], { inventory }), anne: agent([3.5, FLOOR, 2.5])
 })
-/** Facing north, the half of type "left" has the other one to its east. */
+/** Of a double chest that faces north, the half of type "left" has the other half to its east. */
 const double = [[...LEFT, 'chest', { type: 'left' }], [...RIGHT, 'chest', { type: 'right' }]]
 const idOf = (bot, name) => bot.registry.itemsByName[name].id
 const open = (world, name, place) => world.during(world.bots[name].openContainer(world.bots[name].blockAt(new Vec3(...place))))

@@ -1,5 +1,5 @@
 'use strict'
-/** Speaks to the host as a program would that has taken the guest's side of the border over. */
+/** Messages to the host of a program that has taken over the guest's side of the border. */
 const assert = require('node:assert/strict')
 const { beforeEach, describe, it } = require('node:test')
 const { Session } = require('../../src/sandbox/session')
@@ -8,7 +8,7 @@ const { fakeBot, fakeScope } = require('./fake-world')
 
 const BOT = { $: 'h', id: 0 }
 
-/** A guest that takes everything and answers every callback with undefined. */
+/** Return a guest that accepts everything and answers every callback with undefined. */
 const silentGuest = () => ({
   charge () {},
   start () {},

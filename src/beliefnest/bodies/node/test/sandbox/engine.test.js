@@ -13,7 +13,7 @@ describe('the metered interpreter', () => {
   let engine
   before(() => { engine = new Engine() })
 
-  /** How a program of statements ends: fuel used, and the kind of end. */
+  /** Run a program of statements. Return the fuel used and the kind of its end. */
   async function run (statements, limits = LIMITS, world = WORLD) {
     const guest = await engine.open(limits, SCOPE)
     try {

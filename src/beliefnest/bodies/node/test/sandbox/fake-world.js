@@ -1,5 +1,5 @@
 'use strict'
-/** A hand-made bot and skills: enough of the game to see what crosses the border. */
+/** Fake bot and skills: enough of the game to see what crosses the border. */
 
 const { EventEmitter } = require('node:events')
 const { Vec3 } = require('vec3')
@@ -44,7 +44,7 @@ class FakeWindow extends EventEmitter {
   close () { this.closed = true }
 }
 
-/** @returns {object} a bot whose `calls` lists what was asked of it */
+/** Return a bot whose `calls` lists the calls that it received. @returns {object} */
 function fakeBot (username = 'sally') {
   const calls = []
   const note = (name) => (...args) => { calls.push([name, ...args]) }
@@ -79,7 +79,7 @@ function fakeBot (username = 'sally') {
   return bot
 }
 
-/** @returns {object} skills and data, as the scope of a program */
+/** Return skills and data, as the scope of a program. @returns {object} */
 function fakeScope (bot) {
   return {
     async goToPosition (own, position, dist = 2) {

@@ -1,5 +1,5 @@
 'use strict'
-/** Programs that try to do harm: each must end with a clear error, and the next program run normally. */
+/** Programs that try to do harm. Each must end with a clear error, and the next program must run normally. */
 const assert = require('node:assert')
 const { before, beforeEach, describe, it } = require('node:test')
 const { createSandbox } = require('../../src/sandbox')
@@ -7,7 +7,7 @@ const { fakeBot, fakeScope } = require('./fake-world')
 
 const FUEL = 15_000_000
 
-// name, program, kind of the error, what its message must match
+// Each: name, program, kind of the error, pattern of its message.
 const HARM = [
   ['an endless loop', 'while (true) {}', 'fuel', /fuel exhausted.*15000000/],
   ['an endless loop after an await', 'await null\nfor (;;) {}', 'fuel', /fuel exhausted/],

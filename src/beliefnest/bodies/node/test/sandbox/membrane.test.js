@@ -17,7 +17,7 @@ describe('the membrane', () => {
   })
   const run = (code, more) => sandbox.run({ code, bot, scope, ...more })
 
-  /** The text the program logged. */
+  /** Return the text that a program logged. */
   async function logged (code) {
     const { ok, error, log } = await run(code)
     assert.strictEqual(ok, true, error?.message)

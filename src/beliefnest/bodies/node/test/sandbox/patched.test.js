@@ -1,5 +1,5 @@
 'use strict'
-/** Programs that replace what the language is made of: what leaves them is what leaves any other. */
+/** Programs that replace built-ins of the language. Their messages must be like those of any other program. */
 const assert = require('node:assert/strict')
 const { before, describe, it } = require('node:test')
 const { createSandbox } = require('../../src/sandbox')
@@ -17,7 +17,7 @@ describe('built-ins that a program has replaced', () => {
   for (const [what, patch] of Object.entries(PATCHES)) {
     it(`have no part in what leaves it: ${what}`, async () => {
       const told = await messagesOf(sandbox, `${patch}\n${USES}`)
-      // What it gets may be broken for it, so that it ends early.
+      // Values that it gets may be broken by its own replacements, so that it ends early.
       assert.ok(told.length > 0)
       assert.deepEqual(told, honest.slice(0, told.length))
     })

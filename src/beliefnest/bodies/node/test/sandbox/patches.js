@@ -1,5 +1,5 @@
 'use strict'
-/** Ways to replace built-ins, a program that uses the border in every way, and what it says there. */
+/** Ways to replace built-ins, a program that uses the border in every way, and its messages there. */
 const { Session } = require('../../src/sandbox/session')
 const { fakeBot, fakeScope } = require('./fake-world')
 
@@ -22,7 +22,7 @@ const PATCHES = {
   'what is an error or a list': 'Array.isArray = () => false'
 }
 
-// Whatever a program can make of what it gets is left out: replaced built-ins may change that.
+// The program ignores all results, because replaced built-ins may change them.
 const USES = `
 ;{
   const tell = (value) => { try { echo(bot, value) } catch {} }
@@ -52,7 +52,7 @@ const USES = `
 }
 `
 
-/** @returns {Promise<string[]>} what a program says at the border, up to its end */
+/** Return the messages of a program at the border, up to its end. @returns {Promise<string[]>} */
 async function messagesOf (sandbox, code) {
   const { answer } = Session.prototype
   const told = []

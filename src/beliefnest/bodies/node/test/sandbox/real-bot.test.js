@@ -1,5 +1,5 @@
 'use strict'
-/** The allow-list against real Mineflayer bots in the embedded world. */
+/** The allow-list with real Mineflayer bots in the embedded world. */
 const assert = require('node:assert/strict')
 const { after, before, describe, it } = require('node:test')
 const { agent, floor, Node, region } = require('../harness')
@@ -17,7 +17,7 @@ describe('a program with a real bot', () => {
   })
   after(() => node.close())
 
-  /** Run sally's program in a fresh region and returns its result. */
+  /** Run sally's program in a new region and return its result. */
   async function run (code, more = {}) {
     const name = `real-${count++}`
     const agents = {

@@ -1,5 +1,5 @@
 'use strict'
-/** Promises that are rejected while nothing waits for them: as in Node, an error of the program. */
+/** Promises that are rejected without a handler are errors of the program, as in Node. */
 const assert = require('node:assert/strict')
 const { before, beforeEach, describe, it } = require('node:test')
 const { createSandbox } = require('../../src/sandbox')
@@ -58,7 +58,7 @@ describe('a rejected promise', () => {
 
   it('after the end is none, and the next program runs', async () => {
     assert.equal((await run('bot.waitForTicks(3).then(() => { throw new Error("late") })')).ok, true)
-    // Its ticks began before these, so they have passed too.
+    // The program's ticks began before these, so that they have passed too.
     await bot.waitForTicks(3)
     assert.equal((await run('await bot.waitForTicks(1)')).ok, true)
   })

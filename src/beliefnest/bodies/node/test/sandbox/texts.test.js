@@ -1,5 +1,5 @@
 'use strict'
-/** Texts with half a character in them: no program can hand one out, whatever way it takes. */
+/** Texts with lone surrogates: no program can hand one out, whatever way it takes. */
 const assert = require('node:assert/strict')
 const { before, describe, it } = require('node:test')
 const { decode } = require('@msgpack/msgpack')
@@ -32,7 +32,7 @@ const WAYS = {
   'in its own text, where it is no program': 'let \ud83d = 1'
 }
 
-/** @returns {string[]} every text in a value */
+/** Return every text in a value. @returns {string[]} */
 function textsIn (value) {
   if (typeof value === 'string') return [value]
   if (value === null || typeof value !== 'object') return []

@@ -1,5 +1,5 @@
 'use strict'
-/** The guest's Vec3 against the vec3 package, method by method. */
+/** The guest's Vec3 compared with the vec3 package, method by method. */
 const assert = require('node:assert/strict')
 const { describe, it } = require('node:test')
 const { Vec3, default: make = require('vec3') } = require('vec3')

@@ -9,7 +9,7 @@ const TABLE = [-3, FLOOR, 4]
 const STEPS = 60
 // Sixty skills take minutes of real time.
 const TOO_LONG = process.env.BELIEFNEST_SKILLS_OVER === 'tcp' && process.env.BELIEFNEST_NIGHTLY !== '1'
-/** What a thing is worth in planks: crafting changes kinds, never this. */
+/** Worth of things in planks: crafting changes kinds, never the worth. */
 const WORTH = { oak_log: 4, oak_planks: 1, stick: 0.5, crafting_table: 4, chest: 8 }
 const PLACED = ['dirt', 'oak_log']
 
@@ -34,7 +34,7 @@ function generator (seed) {
   return { below, pick: list => list[below(list.length)] }
 }
 
-/** Worth of wood, and counts of everything else, placed blocks included. */
+/** Return the worth of all wood and the counts of everything else, placed blocks included. */
 async function balance (world) {
   const total = { wood: 0 }
   const add = (name, count) => {

@@ -1,13 +1,13 @@
 'use strict'
 /**
- * Worlds for the skills' tests in this very process, under virtual time. What both kinds of worlds
- * offer (the other kind is ../tcp/world.js), all of it to be awaited:
+ * Worlds for the skills' tests in this process, under virtual time. Both kinds of worlds (the other kind is
+ * ../tcp/world.js) offer these members, all to be awaited:
  *
- * `bots` by name; `isVirtual`, whether ticks are exact; `nextTick()`; `ticks(n)` lets what is under way
- * arrive and n ticks pass; `until(condition)`; `during(promise)` gives its outcome once time has passed; `tick()`;
- * `events(...kinds)` so far, without block updates unless they are asked for; `player(name)`, the
- * channel's AGENT; `has(name)`, its inventory; `container(x, y, z)`; `block(x, y, z)`, `{name, properties}`;
- * `countBlocks(names)`; `everything()`, name to count of all items; `drop(position, name, age)`.
+ * `bots` by name; `isVirtual`, true if ticks are exact; `nextTick()`; `ticks(n)` lets sent packets arrive and n ticks
+ * pass; `until(condition)`; `during(promise)` returns its outcome once time has passed; `tick()`; `events(...kinds)`
+ * so far, without block updates unless named; `player(name)`, the channel's AGENT; `has(name)`, its inventory;
+ * `container(x, y, z)`; `block(x, y, z)`, `{name, properties}`; `countBlocks(names)`; `everything()`, counts of all
+ * items by name; `drop(position, name, age)`.
  */
 const plugins = require('../plugins/harness')
 const { agentState } = require('../../src/regions/facts')

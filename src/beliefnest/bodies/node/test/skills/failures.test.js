@@ -1,5 +1,5 @@
 'use strict'
-/** Failures of skills that the tests of what they do leave out: each says what was found and what to do. */
+/** Failures of skills that the tests of their effects leave out. Each message says what was found and what to do. */
 const test = require('node:test')
 const assert = require('node:assert/strict')
 const { agent, failure, withSkills, FLOOR, Vec3 } = require('./harness')

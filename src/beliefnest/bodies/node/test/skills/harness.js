@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Worlds with the skills of every bot and what they emitted. The same tests run in both kinds of
- * worlds: embedded.js, and over TCP if ../tcp/skills.test.js loads them.
+ * Worlds with the skills of every bot and their emitted events. The same tests run in both kinds of worlds:
+ * embedded.js, and over TCP if ../tcp/skills.test.js loads them.
  */
 const { inWorld } = process.env.BELIEFNEST_SKILLS_OVER === 'tcp' ? require('../tcp/shared') : require('./embedded')
 const { goals } = require('mineflayer-pathfinder')
@@ -16,9 +16,9 @@ const { agent, BOX } = require('../harness')
 const FLOOR = BOX[0][1] + 1
 
 /**
- * Run `body(world)` where there is a stone floor; see embedded.js for what a world offers.
- * @param {object} setting `agents` (AGENT by name), `blocks` ([x, y, z, name, properties]),
- *   `containers` ([x, y, z, ITEMS]), `box` (inclusive corners), `signal` of the skills
+ * Run `body(world)` in a world with a stone floor; see embedded.js for a world's members.
+ * @param {object} setting `agents` (AGENT by name), `blocks` ([x, y, z, name, properties]), `containers` ([x, y, z,
+ *   ITEMS]), `box` (inclusive corners), `signal` of the skills
  */
 async function withSkills ({ signal, ...setting }, body) {
   const defaults = { agents: { sally: agent([0.5, FLOOR, 0.5]) }, blocks: [], containers: [], box: BOX }
@@ -32,8 +32,9 @@ async function withSkills ({ signal, ...setting }, body) {
 }
 
 /**
- * @returns {(programs: Object<string, string>, timeoutTicks?: number) => Promise<Object<string, object>>} runs
- *   programs of several agents together in the sandbox, as a region does; gives RESULT by agent
+ * Return a function that runs programs of several agents together in the sandbox, as a region does.
+ * @returns {(programs: Object<string, string>, timeoutTicks?: number) => Promise<Object<string, object>>} resolves
+ *   with RESULT by agent
  */
 function programsOf ({ bots, nextTick }, emitted) {
   const region = { tick: 0, faults: [], body: name => ({ bot: bots[name] }), report: (actor, event) => emitted.push({ actor, ...event }) }
@@ -57,7 +58,7 @@ function programsOf ({ bots, nextTick }, emitted) {
   }
 }
 
-/** What a promise is rejected with, once time has passed. */
+/** Return the error with which a promise is rejected, once time has passed. */
 async function failure (world, promise) {
   try {
     await world.during(promise)

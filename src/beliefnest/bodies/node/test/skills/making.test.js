@@ -12,7 +12,7 @@ async function run (world, name, ...args) {
   await world.during(world.skills.sally[name](world.bots.sally, ...args))
   await world.ticks(1)
 }
-/** How many of what events tell of. */
+/** Return the counts of items in events, by name. */
 function made (events) {
   const total = {}
   for (const [name, count] of events.flatMap(({ detail }) => Object.entries(detail.items))) total[name] = (total[name] ?? 0) + count

@@ -1,5 +1,5 @@
 'use strict'
-/** Programs as agents write them, in the sandbox: what they did, and what their writers are told. */
+/** Programs as agents write them, in the sandbox: their effects, and the messages for their authors. */
 const test = require('node:test')
 const assert = require('node:assert/strict')
 const { agent, withSkills, FLOOR } = require('./harness')

@@ -30,7 +30,7 @@ test('goToPosition to a place without a way fails, says how near, and does not c
 })
 
 test('goToPosition arrives, also where each step of the search for a way takes longer than a tick', async () => {
-  // Every first step leads away from where the bot is to go.
+  // Every first step leads away from the bot's goal.
   const wall = [-2, -1, 0, 1, 2].flatMap(z => [0, 1, 2].map(up => [1, FLOOR + up, z, 'stone']))
   await withSkills({ blocks: wall }, async world => {
     const { bots: { sally }, skills } = world

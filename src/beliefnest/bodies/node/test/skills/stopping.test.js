@@ -42,7 +42,7 @@ test('who is stopped in a doorway stands there, and the world goes on', async ()
     await world.ticks(60)
     await world.during(going)
     const stood = sally.entity.position.clone()
-    // A busy machine takes several steps at once before it hears that the program has ended.
+    // A busy machine makes several steps at once before the bot learns that the program has ended.
     if (world.isVirtual) assert.ok(stood.z < 5)
     await world.ticks(20)
     assert.deepEqual(sally.entity.position, stood)

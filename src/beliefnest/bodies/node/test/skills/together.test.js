@@ -7,7 +7,7 @@ const both = (inventory, blocks = [], annes = {}) => ({
   agents: { sally: agent([0.5, FLOOR, 0.5], { inventory }), anne: agent([8.5, FLOOR, -6.5], { inventory: annes }) }, blocks
 })
 
-/** How many of what events of gifts tell of, by who did it, with whom and which item. */
+/** Return the counts of items in events of gifts, by actor, other agent and item. */
 function given (events) {
   const total = {}
   for (const { actor, detail } of events) {
@@ -190,7 +190,7 @@ test('walks of one agent that look for ways through doors at the same time take 
     const walks = Array.from({ length: 6 }, () => skills.sally.goToPosition(sally, new Vec3(4, FLOOR, -9), 0).catch(error => error.message))
     const told = await world.during(Promise.all(walks))
     assert.ok(told.some(message => /no way to it on foot/.test(message)), String(told))
-    // The first to look need not wait: both sides of one door.
+    // The first search need not wait: both sides of one door.
     assert.ok(most > 0 && most <= 3, String(most))
   })
 })

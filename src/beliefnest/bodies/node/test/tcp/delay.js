@@ -1,11 +1,11 @@
 'use strict'
-/** Distance between two ends of a connection: every byte arrives, in order, some time later. */
+/** Delay between two ends of a connection: every byte arrives, in order, some time later. */
 const net = require('node:net')
 
 /**
- * Open a port that leads to another one of this machine.
- * @param {number} target port
- * @param {number} milliseconds each way
+ * Open a port that forwards to another port of this machine.
+ * @param {number} target number of the other port
+ * @param {number} milliseconds delay each way
  * @returns {Promise<number>} the port
  */
 function openDelayed (target, milliseconds) {
@@ -24,7 +24,7 @@ function carry (from, to, milliseconds) {
   const later = action => setTimeout(action, milliseconds)
   from.on('data', bytes => later(() => { if (to.writable) to.write(bytes) }))
   from.on('end', () => later(() => to.end()))
-  // Whoever breaks off tells the other side no more than that.
+  // The other side learns only that the connection has ended.
   from.on('error', () => to.destroy())
   from.on('close', () => later(() => to.destroy()))
 }

@@ -1,10 +1,11 @@
 'use strict'
-/** What the tests may ask of the server: to make places, and to look into them. */
+/** Requests of tests to the server: making places and reading them. */
 
 /**
+ * Return the operations.
  * @param {import('./places').Places} places
  * @param {(serv: object, within: function) => object} everything
- * @returns {Object<string, function(object): any>} by name; places are scenario coordinates
+ * @returns {Object<string, function(object): any>} operations by name; positions are scenario coordinates
  */
 function operations (places, everything) {
   const { serv } = places
@@ -32,7 +33,7 @@ function operations (places, everything) {
   }
 }
 
-/** How many of some kinds of blocks there are in a region, by name. */
+/** Return the number of blocks of some kinds in a region, by name. */
 function countBlocks (serv, region, names) {
   const counts = {}
   region.box.forEach((x, y, z) => {

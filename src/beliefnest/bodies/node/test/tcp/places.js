@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Regions of a server whose players come over TCP and whose time is real. Any number of them
- * live at the same time: an AsyncLocalStorage says in which one code is running.
+ * Regions of a server whose players come over TCP and whose time is real. Any number of them exist at the same time:
+ * an AsyncLocalStorage says to which one the running code belongs.
  */
 const { AsyncLocalStorage } = require('node:async_hooks')
 const { once } = require('node:events')
@@ -17,7 +17,9 @@ const { TcpEnd } = require('../../src/net/tcpEnd')
 const { floor } = require('../harness')
 
 class Places {
-  /** @param {object} serv from createServer */
+  /**
+   * @param {object} serv server from createServer
+   */
   constructor (serv) {
     this.serv = serv
     this.running = new AsyncLocalStorage()
@@ -40,10 +42,10 @@ class Places {
   }
 
   /**
-   * Make a place with a stone floor, to which its agents can come.
-   * @param {object} setting `place` its name, `box`, `blocks` as [x, y, z, name, properties], `containers`,
-   *   `agents` AGENT by name, `players` name on the server by agent
-   * @returns {{x: number, z: number}} where scenario (0, y, 0) lies
+   * Make a place with a stone floor, which its agents can join.
+   * @param {object} setting name `place`, `box`, `blocks` as [x, y, z, name, properties], `containers`, `agents` AGENT
+   *   by name, `players` name on the server by agent
+   * @returns {{x: number, z: number}} server position of scenario (0, y, 0)
    */
   create ({ place: name, box: corners, blocks, containers, agents, players }) {
     const { serv } = this
@@ -63,7 +65,7 @@ class Places {
     return { x: origin.x, z: origin.z }
   }
 
-  /** Let in whom a connection belongs to. */
+  /** Let the player of a connection join. */
   join (client) {
     const guest = this.expected.get(client.username)
     if (guest === undefined) return client.end(`nobody called ${client.username} is expected`)
@@ -81,7 +83,7 @@ class Places {
     })
   }
 
-  /** One tick of all places. */
+  /** Run one tick of all places. */
   tick () {
     for (const place of this.byName.values()) this.inside(place, () => this.tickPlace(place))
   }
@@ -96,7 +98,7 @@ class Places {
     if (frame !== null) events.push(...frame.events)
   }
 
-  /** Resolve when everything the place's clients sent before they heard of this call has been handled. */
+  /** Resolve when all packets that the place's clients sent before they learn of this call have been handled. */
   async settled (place) {
     await Promise.all([...place.players.values()].map(({ _client }) => {
       if (_client.client.ended) return null
@@ -106,7 +108,7 @@ class Places {
     }))
   }
 
-  /** Let ticks pass, between all that was on its way before and all that is on its way after. */
+  /** Let ticks pass. All earlier packets arrive before them, all later ones after them. */
   async pass (place, ticks) {
     await this.settled(place)
     const last = place.region.tick + ticks

@@ -1,11 +1,10 @@
 'use strict'
 /**
- * A Minecraft server of the project's own plugins as a process of its own: it listens on a TCP
- * port of this machine in offline mode, speaks the whole protocol, and ticks in real time.
- * Whoever started it makes and inspects places over the IPC channel: {id, op, ...} is answered by
- * {id, result} or {id, error}. It ends with that channel.
+ * Minecraft server of the project's own plugins, as a process of its own. It listens on a TCP port of this machine in
+ * offline mode, speaks the whole protocol, and ticks in real time. Its parent process makes and inspects places over
+ * the IPC channel: {id, op, ...} is answered by {id, result} or {id, error}. The server ends with that channel.
  *
- * `node server.js LATENCY`: milliseconds every byte takes each way.
+ * `node server.js LATENCY`: milliseconds that every byte takes each way.
  */
 require('../../src/prepare').prepare()
 const { once } = require('node:events')
@@ -36,7 +35,7 @@ async function main (latency) {
   process.send({ port })
 }
 
-/** Twenty ticks a second; what comes late is made up for. */
+/** Run twenty ticks a second; late ticks are made up for. */
 function keepTime (places) {
   const start = performance.now()
   let ticks = 0

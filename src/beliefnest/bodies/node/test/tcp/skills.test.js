@@ -1,5 +1,5 @@
 'use strict'
-/** The skills' own tests once more, against a server in another process, over TCP, in real time. */
+/** The skills' own tests, repeated on a server in another process, over TCP, in real time. */
 process.env.BELIEFNEST_SKILLS_OVER = 'tcp'
 const { describe } = require('node:test')
 const fs = require('node:fs')

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Real bots over TCP, in real time, on a server of another process (server.js): the same
- * interface as the embedded worlds of ../skills/embedded.js.
+ * Worlds with real bots over TCP, in real time, on a server in another process (server.js). They have the interface of
+ * the embedded worlds of ../skills/embedded.js.
  */
 require('../../src/prepare').prepare()
 const { fork } = require('node:child_process')
@@ -17,7 +17,9 @@ const TICK_MS = 50
 const LIMIT_MS = 180_000
 
 class Server {
-  /** @param {number} latency milliseconds every byte takes each way */
+  /**
+   * @param {number} latency milliseconds that every byte takes each way
+   */
   constructor (latency) {
     this.child = fork(path.join(__dirname, 'server.js'), [String(latency)], { stdio: ['ignore', 'inherit', 'inherit', 'ipc'] })
     this.waiting = new Map()
@@ -41,7 +43,7 @@ class Server {
     else reject(new Error(`the server says: ${error}`))
   }
 
-  /** @returns {Promise<any>} what operations.js answers */
+  /** Return the answer of operations.js. @returns {Promise<any>} */
   ask (op, args) {
     return new Promise((resolve, reject) => {
       this.waiting.set(++this.lastId, { resolve, reject })
@@ -80,7 +82,7 @@ async function inWorld (server, { agents, blocks, containers, box }, body) {
     await body(world)
     if (faults.length > 0) throw faults[0]
   } finally {
-    // What a bot sends while it is being sent away reaches nobody.
+    // Packets that a bot sends while it is being disconnected reach nobody.
     const ended = Object.values(bots).map(bot => new Promise(resolve => { bot.once('end', resolve) }))
     await server.ask('destroy', { place })
     await Promise.all(ended)

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * The commands of a vanilla server that an operator bot uses, in the game's own syntax, with absolute coordinates. Each
- * is `run(serv, words, player)`; it returns what the server says, and throws a Refusal for what it will not do.
+ * Commands of a vanilla server that an operator bot uses, in the game's own syntax, with absolute coordinates. Each is
+ * `run(serv, words, player)`; it returns the server's answer, and throws a Refusal if the command is refused.
  */
 const { Vec3 } = require('vec3')
 const { fromDegrees, toDegrees } = require('../../src/server/angles')
@@ -14,7 +14,7 @@ const OWN_SLOTS = {
 
 class Refusal extends Error {}
 
-/** @returns {number} the state of `minecraft:lever[face=floor]` */
+/** Return the state of a text such as `minecraft:lever[face=floor]`. @returns {number} */
 function stateOf (serv, text) {
   const [, name, given] = /^(?:minecraft:)?(\w+)(?:\[(.*)\])?$/.exec(text) ?? []
   if (serv.registry.blocksByName[name] === undefined) throw new Refusal(`Unknown block type '${text}'`)
@@ -72,7 +72,7 @@ function fill (serv, words) {
   return `Successfully filled ${changed} block(s)`
 }
 
-/** `NAME X Y Z YAW PITCH`, or `X Y Z` of oneself */
+/** Run `NAME X Y Z YAW PITCH`, or `X Y Z` for the player itself. */
 function tp (serv, words, self) {
   const [name, x, y, z, yaw, pitch] = words.length === 3 ? [self.username, ...words] : words
   const player = playerOf(serv, name)
@@ -82,7 +82,7 @@ function tp (serv, words, self) {
   return `Teleported ${name} to ${x}, ${y}, ${z}`
 }
 
-/** `replace block X Y Z SLOT with ITEM COUNT`, `replace entity NAME SLOT with ITEM COUNT` */
+/** Run `replace block X Y Z SLOT with ITEM COUNT` or `replace entity NAME SLOT with ITEM COUNT`. */
 function item (serv, [, kind, ...words]) {
   if (kind === 'entity') {
     const [name, slot, , what, count] = words
@@ -137,7 +137,7 @@ function effect (serv, [act, name, what, , amplifier]) {
   return `Applied effect ${kind} to ${name}`
 }
 
-/** Of the selectors, that of dropped items in a box. */
+/** Run the command for the only supported selector: dropped items in a box. */
 function kill (serv, [selector]) {
   const [, conditions] = /^@e\[type=item,(.*)\]$/.exec(selector) ?? []
   if (conditions === undefined) throw new Refusal(`this server kills dropped items only, not ${selector}`)
@@ -162,8 +162,8 @@ function forceload (serv, [act, ...corners]) {
 }
 
 /**
- * `get block X Y Z`: contents, as the game writes them; `get entity NAME`; `modify block X Y Z
- * front_text.messages[N] set value '"TEXT"'`
+ * Run `get block X Y Z`, which returns contents in the game's notation, `get entity NAME`, or `modify block X Y Z
+ * front_text.messages[N] set value '"TEXT"'`.
  */
 function data (serv, [act, kind, x, y, z, ...words]) {
   if (kind === 'entity') return entityData(playerOf(serv, x))
@@ -185,7 +185,7 @@ function entityData (player) {
     `OnGround: ${Number(player.onGround)}b, Health: ${health}f, foodLevel: ${food}, SelectedItemSlot: ${heldItemSlot}, Inventory: [${items.join(', ')}]}`
 }
 
-/** The game's own number of a slot of an inventory; null for those of crafting. */
+/** Return the game's own number of an inventory slot; null for crafting slots. */
 function numbers (slot) {
   if (slot === OWN_SLOTS['weapon.offhand']) return -106
   if (slot >= 36) return slot - 36
@@ -217,7 +217,7 @@ function kick (serv, [name, ...reason]) {
 
 const COMMANDS = { clear, data, effect, fill, forceload, gamemode, gamerule, give, item, kick, kill, setblock, summon, tp }
 
-/** @returns {string} what the server says to a command */
+/** Return the server's answer to a command. @returns {string} */
 function runCommand (serv, text, player) {
   const [name, ...words] = text.split(' ')
   try {

@@ -1,10 +1,10 @@
 'use strict'
 /**
- * A Minecraft server of the project's own plugins that does what an operator bot asks of a vanilla one, as a process of
- * its own: `node server.js [OPTIONS]`, a JSON object: `port` (0: any), `ops`, `age`,
- * `latency` (milliseconds each way), `tickMs`, `version` of Minecraft, `diesAt` (which packet of players kills it), `commandsLate`
- * (ticks after which operators are told their own commands). It prints `{"port": N}` and then
- * takes lines on its standard input as a console does (world.js); it ends with that input.
+ * Minecraft server of the project's own plugins that reacts to an operator bot like a vanilla one, as a process of its
+ * own: `node server.js [OPTIONS]`. OPTIONS is a JSON object: `port` (0: any), `ops`, `age`, `latency` (milliseconds
+ * each way), `tickMs`, `version` of Minecraft, `diesAt` (number of the players' packet that ends the process),
+ * `commandsLate` (ticks after which operators receive their own commands). It prints `{"port": N}` and then reads
+ * lines on its standard input like a console (world.js); it ends with that input.
  */
 require('../../src/prepare').prepare()
 const { once } = require('node:events')
@@ -42,7 +42,7 @@ async function main (options) {
   process.stdout.write(`${JSON.stringify({ port })}\n`)
 }
 
-/** As many ticks as the length of one says; what comes late is made up for, up to two seconds. */
+/** Run as many ticks as fit into the time by the length of one; late ticks are made up for, up to two seconds. */
 function keepTime (world, tickMs) {
   let due = performance.now()
   setInterval(() => {

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * One open world without regions, as on any server: a floor of stone under air, players who join where they were last,
- * operators, time that is told. Its players come over TCP.
+ * One open world without regions, as on any server: a floor of stone under air, players who join where they left,
+ * operators, and a time of day. Players come over TCP.
  */
 const nbt = require('prismarine-nbt')
 const { Box } = require('../../src/regions/box')
@@ -16,33 +16,34 @@ const FLOOR_Y = -61
 const SPAWN = [0.5, FLOOR_Y + 1, 0.5]
 const AGE_EVERY = 20
 const CRAFTER = 7
-// Chunks that one sees far.
+// View distance in chunks.
 const VIEW = 8
 const NEWCOMER = { position: SPAWN, yaw: 0, pitch: 0, on_ground: true, health: 20, food: 20, gameMode: 0 }
-// Who leaves does not wait for what is on its way.
+// Errors of connections whose client left without waiting for the packets on their way.
 const BROKEN_OFF = ['EPIPE', 'ECONNRESET']
 const ALL_MAY = ['tell', 'msg', 'w']
 
 class OpenWorld {
   /**
-   * @param {object} serv from createServer
+   * @param {object} serv server from createServer
    * @param {object} options
    * @param {string[]} options.ops names of the operators
-   * @param {number} options.age in ticks
-   * @param {number} options.diesAt which packet of players kills the process
-   * @param {number} options.commandsLate ticks after which operators are told their own commands
+   * @param {number} options.age age in ticks
+   * @param {number} options.diesAt number of the players' packet that ends the process
+   * @param {number} options.commandsLate ticks after which operators receive their own commands
    */
   constructor (serv, { ops, age, diesAt, commandsLate }) {
     this.serv = serv
     this.packets = { heard: 0, diesAt }
     this.commandsLate = commandsLate
     this.ops = new Set(ops)
-    // Set on the console: commands (or `completions`) that are not there, whether only operators may use blocks, how many may come in, who is to be verified.
+    // Settings of the console: missing commands (or `completions`), whether only operators may use blocks, how many
+    // players may join, and who is to be verified.
     this.lacking = new Set()
     this.isProtected = false
     this.room = Infinity
     this.verified = {}
-    // Lines of the console that are typed at a tick.
+    // Console lines that are typed at a later tick.
     this.later = []
     this.known = new Map()
     this.region = openRegion(age)
@@ -88,7 +89,7 @@ class OpenWorld {
     }))
   }
 
-  /** Refuse who does not find room, as the game does. */
+  /** Refuse a player if the server is full, as the game does. */
   admit (client) {
     client.on('packet', () => { if (++this.packets.heard === this.packets.diesAt) process.kill(process.pid, 'SIGKILL') })
     if (this.serv.players.length >= this.room) client.end('full', JSON.stringify({ translate: 'multiplayer.disconnect.server_full' }))
@@ -133,7 +134,7 @@ class OpenWorld {
     if (region.tick % AGE_EVERY === 0) this.tellAge(serv.players)
   }
 
-  /** Send everybody away and ends, as the game does. */
+  /** Disconnect everybody and end, as the game does. */
   stop () {
     let here = this.serv.players.length
     if (here === 0) process.exit(0)
@@ -143,7 +144,7 @@ class OpenWorld {
     }
   }
 
-  /** What is typed on the console: one line. */
+  /** Run one line of the console. */
   console (line) {
     const [word, name, ...more] = line.split(' ')
     if (word === 'after') {
@@ -173,7 +174,10 @@ class OpenWorld {
   }
 }
 
-/** Windows as versions before 1.20.3 have them: titles as JSON, and no crafter among their kinds; before 1.20.2, logins with all there is. */
+/**
+ * Send windows in the form before 1.20.3 (titles as JSON, no crafter among the kinds), and logins in the form before
+ * 1.20.2 (with all registries).
+ */
 function speakOlder (end, { loginPacket: { dimensionCodec } }) {
   const { write } = end
   const older = {
@@ -185,19 +189,19 @@ function speakOlder (end, { loginPacket: { dimensionCodec } }) {
   end.write = (name, params) => write.call(end, name, older[name]?.(params) ?? params)
 }
 
-/** Stand still, as a server does that is busy with something else. */
+/** Block the process, like a server that is busy with something else. */
 function stall (milliseconds) {
   Atomics.wait(new Int32Array(new SharedArrayBuffer(4)), 0, 0, milliseconds)
 }
 
-/** A region that records nothing: what happens here nobody writes down. */
+/** Open a region that records nothing. */
 function openRegion (age) {
   const region = new Region({ name: 'world', seed: 'world', box: new Box(...BOX), origin: { x: 0, z: 0 }, tick: age, known: [] })
   region.recorder = { event () {}, serverEvent () {}, blockChanged () {} }
   return region
 }
 
-/** Let there be air where something is force-loaded far away, and shows it to those who come near. */
+/** Set air at force-loaded distant positions, and show it to players who come near. */
 function loadFar (serv, columns) {
   const Chunk = require('prismarine-chunk')(serv.registry)
   serv.loadColumns = (x1, z1, x2, z2) => {
@@ -211,7 +215,7 @@ function loadFar (serv, columns) {
   }
 }
 
-/** What of it is near a player who has not been shown it yet. */
+/** Return the loaded columns near a player who has not received them yet. */
 function nearColumns ({ position, loadedChunks }, columns) {
   const [x, z] = [position.x, position.z].map(value => Math.floor(value) >> 4)
   return columns.filter(each => !loadedChunks[each.join()] && Math.max(Math.abs(each[0] - x), Math.abs(each[1] - z)) <= VIEW)
