@@ -103,7 +103,7 @@ def test_what_a_server_lacks_and_can_do_without_is_named_at_the_start(server, ca
     with on_console(server, ("lack data", "lack")):
         open_world(server.address(), 0).close()
     said = capsys.readouterr().err
-    assert "BeliefNest not use /data (signs cannot be written on" in said
+    assert "does not let BeliefNest use /data (signs cannot be written on" in said
     assert said.count("\n") == 1
 
 

@@ -62,7 +62,7 @@ function requireShape (shape) {
   return size
 }
 
-/** The palette with air for cells of which a file says nothing. */
+/** Return a palette with air added, for cells that a file does not mention. */
 const withAir = texts => ({ palette: [...texts, 'minecraft:air'], air: texts.length })
 
 function structure ({ size, palette, palettes, blocks }) {

@@ -62,7 +62,7 @@ class Lids {
     for (const [name, count] of Object.entries(items)) add(session.items, name, MOVES[kind] * count)
   }
 
-  /** At the end of a tick, check the containers that are due. */
+  /** Check the containers that are due; called at the end of a tick. */
   endTick () {
     const { tick } = this.scene.region
     for (const session of this.open.values()) {

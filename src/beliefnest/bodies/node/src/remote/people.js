@@ -83,7 +83,7 @@ class People {
     return [...this.here.values()].find(person => person.mayHaveThrown(position))?.agent ?? null
   }
 
-  /** At the end of a tick, update everybody. @returns {string[]} agents whose people have left */
+  /** Update everybody; called at the end of a tick. @returns {string[]} agents whose people have left */
   endTick () {
     if (!this.operator.link.isHere) return []
     for (const [agent, person] of this.here) {

@@ -94,7 +94,7 @@ class Person {
     return this.latest
   }
 
-  /** At the end of a tick, report a `move_to` if they have come to stand after walking. */
+  /** Report a `move_to` if they have come to stand after walking; called at the end of a tick. */
   endTick (tick) {
     if (this.entity === null) return
     const { stood, entity: { position } } = this

@@ -61,7 +61,7 @@ const noCommands = server => new Unplayable(
   `${where(server)} does not list its commands, as a vanilla server does; without /fill, /setblock and others it cannot be used`)
 
 
-/** Warning about a usable server that lacks something. */
+/** Return a warning about a usable server that lacks optional commands. */
 const lesser = (server, lacking) =>
   `${where(server)} does not let ${server.operator} use ${lacking.map(([name, without]) => `/${name} (${without})`).join(', ')}`
 

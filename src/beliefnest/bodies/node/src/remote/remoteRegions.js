@@ -164,7 +164,7 @@ class RemoteRegions {
     for (const [agent, state] of Object.entries(agents)) if (state !== null) region.recorder.known.agents.set(agent, state)
   }
 
-  /** After the operator was disconnected, find the changed blocks by comparing all of them. */
+  /** Find the blocks that changed while the operator was disconnected, by comparing all of them. */
   async lookAgain ({ region, scene, setup }) {
     await setup.arrive()
     const present = setup.present()

@@ -118,7 +118,7 @@ class Witness extends EventEmitter {
     if (text !== undefined) this.scene.expect({ actor: this.agent, text, to })
   }
 
-  /** At the end of a tick, report the acts counted in it. */
+  /** Report the acts counted in a tick; called at its end. */
   endTick () {
     this.uttered = 0
     this.windows.settle()
