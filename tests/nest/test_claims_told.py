@@ -74,7 +74,7 @@ def test_of_any_belief_it_is_told_whether_it_was_taken_up_and_by_which_condition
     assert (never.taken_up("/max"), never.why("/max")[-5:]) == (False, " (1b)")
     assert "1000 ticks" in never.why("/max/nora")
     assert "testimony is 'none'" in played(testimony="none").claims()[1].why("/max")
-    with pytest.raises(bn.InputError, match="'/' is no belief in /"):
+    with pytest.raises(bn.InputError, match="'/' is not a belief in /"):
         lie.why("/")
     with pytest.raises(bn.PathError, match="zed"):
         lie.taken_up("/zed")

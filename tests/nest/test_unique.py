@@ -223,7 +223,7 @@ def test_a_world_with_two_of_them_is_refused() -> None:
         containers={LEFT: {"diamond": 1}},
         inventories={"max": {"diamond": 1}},
     )
-    with pytest.raises(InputError, match=r"'diamond' is unique, and at the start there are 1 in "):
+    with pytest.raises(InputError, match=r"'diamond' is unique, but at the start there are 1 in "):
         bn.Nest(world, unique=["diamond"])
 
 
@@ -245,7 +245,7 @@ def test_a_world_with_two_of_them_is_refused() -> None:
 def test_initial_beliefs_with_two_of_them_are_refused(
     initial: tuple[bn.InitialBelief, ...],
 ) -> None:
-    with pytest.raises(InputError, match=r"'diamond' is unique, and initial_beliefs give '/.*max"):
+    with pytest.raises(InputError, match=r"'diamond' is unique, but initial_beliefs give '/.*max"):
         hall(initial=initial)
     # Who believes it elsewhere has to believe the first place empty.
     prior = bn.InitialBelief(("**",), {LEFT: ({"diamond": 1}, True)})

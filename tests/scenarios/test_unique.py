@@ -41,7 +41,7 @@ def test_a_scenario_lists_unique_items(tmp_path: Path) -> None:
             ("unique:", "initial_beliefs:\n  - path: /ann/**\n    containers:\n"
              "      - {at: [4, 1, 4], items: {diamond: 1}}\n"
              "      - {at: [6, 1, 4], items: {diamond: 1}}\nunique:"),
-            r"one.yaml:16: unique\[1\]: 'diamond' is unique, and initial_beliefs give '/ann/\*\*'",
+            r"one.yaml:16: unique\[1\]: 'diamond' is unique, but initial_beliefs give '/ann/\*\*'",
         ),
     ],
 )  # fmt: skip

@@ -66,7 +66,7 @@ class State(Protocol):
 
     @property
     def signs(self) -> Mapping[Position, str]:
-        """The texts of known signs, in order of position. Signs without text are left out."""
+        """The texts of known signs, in order of position; empty for a blank sign."""
 
     @property
     def containers(self) -> Mapping[Position, ContainerBelief]:

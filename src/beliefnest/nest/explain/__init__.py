@@ -1,1 +1,1 @@
-"""Why a simulator holds what it holds, and where two of them differ."""
+"""Explanations of beliefs, and differences between simulators."""

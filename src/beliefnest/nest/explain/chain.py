@@ -1,4 +1,9 @@
-"""The chain of perceptions behind a belief, worked out from the log by the rules of sight."""
+"""Chain of perceptions behind a belief, computed from the log.
+
+The log is folded once more, entry by entry, from the oldest basis on the path. For each belief
+along the path a `_Finding` notes when the belief took its present value, and the first later change
+in the parent node that did not reach it. `sightings` then says why it did not.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
@@ -49,16 +54,19 @@ def element_of(
     agent: str | None,
     block: Position | None,
 ) -> Element:
-    """Return the one element that is asked for; errors as those of `ShownSimulator.explain`."""
+    """Return the one element that is asked for; raises as `ShownSimulator.explain` does."""
     given = [name for name in (container, agent, block) if name is not None]
     if len(given) != 1:
         raise InputError(
-            f"explain() was given {len(given)} things; give one of container=(x, y, z), "
+            f"explain() was given {len(given)} things; give exactly one of container=(x, y, z), "
             "agent='name' and block=(x, y, z)"
         )
     if agent is not None:
         if agent not in recording.agents:
-            raise PathError(f"no agent {agent!r}; there are {', '.join(recording.agents)}")
+            raise PathError(
+                f"explain() got the unknown agent {agent!r}; agents are "
+                f"{', '.join(recording.agents)}"
+            )
         return Element("agent", agent)
     if container is not None:
         return Element("container", _inside(recording, container))
@@ -69,7 +77,7 @@ def _inside(recording: Recording, place: Position | None) -> Position:
     if not (
         isinstance(place, tuple) and len(place) == 3 and all(isinstance(p, int) for p in place)
     ):
-        raise InputError(f"{place!r} is no block position; give a tuple of three whole numbers")
+        raise InputError(f"{place!r} is not a block position; give a tuple of three whole numbers")
     recording.box.check(place)
     return place
 
@@ -77,7 +85,13 @@ def _inside(recording: Recording, place: Position | None) -> Position:
 def explain(
     recording: Recording, path: BeliefPath, tick: int | None, element: Element
 ) -> Explanation:
-    """Return the chain of perceptions behind what a node holds of an element at a tick; None: now.
+    """Return the chain of perceptions behind a node's belief about an element.
+
+    Args:
+        recording: Recording of the nest.
+        path: Path of the node.
+        tick: Tick of the belief; None: now.
+        element: The element.
 
     Raises:
         TickError: The tick is in the future, or before the start of everything.
@@ -105,7 +119,7 @@ def _explained(
 
 @dataclass(frozen=True)
 class _HeldNow:
-    """What a node holds of an element when it is explained, read as users read it."""
+    """Value of an element in a node at the explained moment, with its ground, as users read it."""
 
     value: Value
     block: str | None
@@ -116,7 +130,20 @@ class _HeldNow:
 
 @dataclass
 class _Finding:
-    """What comes to light of one belief while the log is gone through."""
+    """Facts about one belief, collected while the log is folded.
+
+    Attributes:
+        path: Path of the node.
+        held: The belief at the explained moment.
+        since: Tick since which the node has held that value.
+        stood: The owner's feet in the parent node at that tick.
+        parent: Value in the parent node at that tick.
+        was_known: Whether the node ever held another value.
+        missed: First later change in the parent node that did not reach the node.
+        value: Value in the node after the last entry.
+        told: Claims that moved the element's items.
+        elsewhere: Perceptions of unique items that moved the element's items.
+    """
 
     path: BeliefPath
     held: _HeldNow
@@ -131,7 +158,7 @@ class _Finding:
 
     @property
     def observed_at(self) -> int | None:
-        """Last tick at which the belief was current."""
+        """The last tick at which the belief was current."""
         return None if self.held.basis is None else self.held.basis.observed_at
 
 
@@ -162,7 +189,7 @@ def _held_now(
 def _ground_of(
     recording: Recording, moment: ForkPoint, forest: Forest, node: BeliefPath, element: Element
 ) -> tuple[Basis | None, bool]:
-    """What a node's value rests on, and whether it is current."""
+    """Return the basis of a node's value, and True if the value is current."""
     reading = NodeView(forest, node, moment.tick)
     if isinstance(element.where, str):
         agent = reading.agents[element.where]
@@ -198,10 +225,10 @@ def _follow(
     element: Element,
     traces: list[_Finding],
 ) -> None:
-    """Go through the log from the oldest basis on, and note in each trace what happened."""
+    """Fold the log from the oldest basis on, and note in each trace what happened."""
     if not traces:
         return
-    # Only the whole log shows whether something unknown was ever known.
+    # For an unknown element start at the beginning, to find out if it was ever known.
     first = recording.setting.snapshot.tick
     start = min(first if trace.observed_at is None else trace.observed_at for trace in traces)
     last = None
@@ -213,13 +240,13 @@ def _follow(
         if last is not None and trace.held.basis is None:
             parent = value_in(last.forest, trace.path[:-1], element)
             if parent is not None:
-                # Nothing happened to be missed; the looks are those of now.
+                # The node never knew the element: explain why the owner does not see it now.
                 missed = _missed(recording, trace.path, last, element, parent, acts=())
                 trace.missed = replace(missed, tick=moment.tick)
 
 
 def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element) -> None:
-    """Note what one entry means for one belief."""
+    """Update the findings on one belief after one entry."""
     forest = step.forest
     outside = value_in(forest, trace.path[:-1], element)
     mine = value_in(forest, trace.path, element)
@@ -247,9 +274,10 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
 
 
 def _is_held(trace: _Finding, forest: Forest, value: Value, element: Element) -> tuple[bool, bool]:
-    """Whether a node holds what it holds when it is explained, and whether it perceives it still.
+    """Return if a node holds the explained value already, and if it still perceives it.
 
-    What is current is one perception up to the last tick at which it was.
+    While a value is current it is one perception, which lasts up to its `observed_at`. So a value
+    with an earlier `observed_at` is the same belief as long as it is current.
     """
     ground = observed_at(forest, trace.path, element)
     if value != trace.held.value or trace.observed_at is None or ground is None:
@@ -267,7 +295,7 @@ def _missed(
     before: Value,
     acts: tuple[PerceivedEvent, ...],
 ) -> Missed:
-    """Why acts in the parent of a node, or how things are in it, did not reach the node."""
+    """Return why a change or a value in the parent of a node did not reach the node."""
     forest = step.forest
     mine = NodeView(forest, path).events() if acts else ()
     present = forest.is_present(path)
@@ -288,7 +316,7 @@ def _missed(
 def _told(
     recording: Recording, path: BeliefPath, step: LogStep, element: Element
 ) -> Iterable[HeardClaim]:
-    """The claims of one entry by which a node may have moved something out of a container."""
+    """Yield the claims of one entry that may have moved items in a node out of a container."""
     entry = _entry(recording, step) if element.kind == "container" else None
     if not isinstance(entry, Frame):
         return
@@ -313,7 +341,7 @@ def _told(
 def _elsewhere(
     step: LogStep, path: BeliefPath, element: Element, before: Value
 ) -> Iterable[SeenElsewhere]:
-    """Return the unique items that one entry took out of a container because they are elsewhere."""
+    """Yield the unique items that one entry took out of a container: they are elsewhere."""
     forest = step.forest
     after = value_in(forest, path, element)
     held = forest.holdings.of(forest.node(path))
@@ -328,13 +356,13 @@ def _elsewhere(
 
 
 def _entry(recording: Recording, step: LogStep) -> Entry | None:
-    """Return the entry that a step took in; None at the beginning of a timeline."""
+    """Return the entry that a step folded; None at the beginning of a timeline."""
     count = step.forest.position
     return next(recording.journal.entries(step.timeline, count - 1, count)) if count else None
 
 
 def _absence(recording: Recording, forest: Forest, path: BeliefPath) -> Absence:
-    """Why the parent of a node does not know where the node's owner is."""
+    """Return why the parent of a node does not see the node's owner."""
     parent = path[:-1]
     last_seen = forest.seen_at(parent, path[-1])
     if forest.node(parent) == 0 or not forest.is_present(parent):
@@ -351,7 +379,7 @@ def _sightings(
     element: Element,
     acts: Iterable[PerceivedEvent],
 ) -> tuple[Sighting, ...]:
-    """Return the looks that would have shown a change: at who did it, and at the element."""
+    """Return the looks that would have shown a change: at its actors and at the element."""
     box = recording.box
     if isinstance(element.where, str):
         return (sighting_of_agent(parent, box, viewer, element.where),)

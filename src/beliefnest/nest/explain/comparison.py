@@ -1,4 +1,4 @@
-"""Where two simulators differ, and what in a belief is false."""
+"""Differences between two simulators, and false beliefs."""
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
@@ -30,27 +30,27 @@ __all__ = [
 ]
 
 _MOST = 12
-"""Differences that are shown in a terminal; more are counted."""
+"""Number of differences that a terminal shows; the others are only counted."""
 
 _APART = 0.5
-"""Blocks from which on somebody is elsewhere."""
+"""Distance in blocks from which on a believed position is false."""
 
 
 class BelievedThings(Protocol):
-    """What is held of containers and agents."""
+    """Beliefs about containers and agents."""
 
     @property
     def containers(self) -> Mapping[Position, ContainerBelief]:
-        """Known containers by position."""
+        """The known containers by position."""
 
     @property
     def agents(self) -> Mapping[str, AgentBelief]:
-        """Every agent by name."""
+        """All agents by name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where an agent stands, and how it looks.
+    """Position of an agent, and the direction of its look.
 
     Attributes:
         position: Middle of the feet, blocks.
@@ -65,12 +65,11 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One thing that two simulators, `a` and `b`, hold differently.
+    """Element with different values in two simulators `a` and `b`.
 
     Attributes:
-        kind: What it is.
-        where: Position of a block or container, or name of the agent whose pose or
-            inventory it is.
+        kind: Kind of the element.
+        where: Position of a block or container, or name of the agent with the pose or inventory.
         a: Block state text, `Pose` or `Contents` in `a`; None: unknown, or there is none.
         b: The same in `b`.
     """
@@ -82,12 +81,12 @@ class Difference:
 
 
 class Differences(list[Difference]):
-    """A list of differences that a terminal and a notebook show as a table.
+    """List of differences that a terminal and a notebook show as a table.
 
     Args:
         found: The differences.
-        a: What `a` is, for the headings.
-        b: What `b` is.
+        a: Heading of the column of `a`.
+        b: Heading of the column of `b`.
     """
 
     def __init__(self, found: Iterable[Difference], a: str, b: str) -> None:
@@ -118,7 +117,7 @@ class Differences(list[Difference]):
 
 
 def value_words(value: str | Pose | Contents | None) -> str:
-    """Return one side of a difference, for people."""
+    """Return one value of a difference in words."""
     match value:
         case Pose(position=position):
             return point_words(position)
@@ -138,9 +137,9 @@ def _what(difference: Difference) -> str:
 def compare(
     recording: Recording, a: BeliefPath, b: BeliefPath, tick: int | None, *, unknown: bool
 ) -> list[Difference]:
-    """Where two nodes differ at a tick (None: now), as `ShownNest.compare` says.
+    """Return the differences between two nodes at a tick (None: now); see `ShownNest.compare`.
 
-    Blocks come first, then containers, agents, inventories, each in order.
+    Blocks come first, then containers, agents and inventories, each in order.
     """
     one, other = recording.reading(a, tick), recording.reading(b, tick)
     blocks = _different_blocks(one, other, recording.context)
@@ -156,16 +155,16 @@ def false_beliefs(
     against: BeliefPath = (),
     against_tick: int | None = None,
 ) -> list[Difference]:
-    """What a node holds and another one does not: unknown is not false.
+    """Return the beliefs of a node that another node contradicts. Unknown values are never false.
 
-    Contents are false by `are_false`, an agent's place by `are_elsewhere`.
+    Contents are compared by `are_false`, positions of agents by `are_elsewhere`.
 
     Args:
-        recording: The nest's.
-        path: The node.
-        tick: Its tick; None: now.
-        against: The node that is taken for true.
-        against_tick: Its tick; None: the same.
+        recording: Recording of the nest.
+        path: Path of the node.
+        tick: Tick of the node; None: now.
+        against: Path of the node that is taken for true.
+        against_tick: Tick of that node; None: `tick`.
     """
     belief = recording.reading(path, tick)
     real = recording.reading(against, tick if against_tick is None else against_tick)
@@ -176,7 +175,7 @@ def false_beliefs(
 
 
 def false_things(real: BelievedThings, belief: BelievedThings) -> Iterator[Difference]:
-    """What of containers, agents' places and inventories is false, as in `false_beliefs`."""
+    """Yield the false beliefs about contents, positions and inventories; see `false_beliefs`."""
     return (found for found in _different_things(real, belief) if _is_false(found))
 
 
@@ -193,25 +192,31 @@ def _is_false(thing: Difference) -> bool:
 def are_elsewhere(
     real: npt.NDArray[np.float64], held: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.bool_]:
-    """Return True if places at which agents are believed to be are false: from half a block on.
+    """Return by agent if its believed position is false: half a block or more away.
 
-    Less is a shuffle on the spot. Where somebody looks changes all the time, and nobody who
-    remembers where somebody stands claims to know it.
+    A smaller distance is a shuffle on the spot. Angles are not compared: agents turn all the time,
+    and a remembered position makes no statement about them.
 
     Args:
-        real: Feet, shape (..., 3).
-        held: The same, as they are believed to be.
+        real: Feet positions, shape (..., 3).
+        held: Believed feet positions, same shape.
+
+    Returns:
+        bool, shape (...).
     """
     apart: npt.NDArray[np.bool_] = np.linalg.norm(real - held, axis=-1) >= _APART
     return apart
 
 
 def are_false(real: Contents | None, belief: Contents) -> bool:
-    """Return True if contents claim items that are missing, or to be all and miss some.
+    """Return True if believed contents are false.
+
+    They are if they have an item that is missing in reality, or if they count as complete and lack
+    an item.
 
     Args:
-        real: What there is; None: there is nothing that could hold items.
-        belief: What is claimed.
+        real: Real contents; None: there is no container.
+        belief: Believed contents.
     """
     true, claimed = {} if real is None else real.items, belief.items
     too_much = any(count > true.get(name, 0) for name, count in claimed.items())
@@ -244,14 +249,14 @@ def _different_things(a: BelievedThings, b: BelievedThings) -> Iterator[Differen
 def _pose(agent: AgentBelief) -> Pose | None:
     if agent.position is None:
         return None
-    # A prior gives a place only; that its angles are 0 is nobody's belief.
+    # A prior gives a position only: its angles of 0 are no belief.
     if agent.basis is not None and agent.basis.source is Source.PRIOR:
         return Pose(agent.position, None, None)
     return Pose(agent.position, agent.yaw, agent.pitch)
 
 
 def _differ(a: Pose | None, b: Pose | None) -> bool:
-    """Return True if two poses differ; angles that a prior does not give differ from none."""
+    """Return True if two poses differ. Unknown angles count as equal to any angles."""
     if a is None or b is None:
         return a is not b
     if a.yaw is None or b.yaw is None:

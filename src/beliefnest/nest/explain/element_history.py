@@ -1,4 +1,4 @@
-"""The history of one element in the nodes of a path, entry by entry, up to what is explained."""
+"""History of one element in the nodes of a path, entry by entry, up to the explained moment."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -28,14 +28,14 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class LogStep:
-    """A forest after one more entry of a timeline."""
+    """Forest after one more entry of a timeline."""
 
     timeline: TimelineKey
     forest: Forest
 
 
 def cells_of(element: Element, box: Box) -> Sequence[int]:
-    """Return cells whose basis has to be followed; contents carry theirs along."""
+    """Return the cells whose basis must be tracked. Contents and poses carry a basis anyway."""
     if isinstance(element.where, str) or element.kind == "container":
         return ()
     return (cell_of(box, element.where),)
@@ -60,7 +60,7 @@ def steps_since(
 
 
 def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:
-    """What a node of a forest holds of an element."""
+    """Return the value of an element in a node of a forest."""
     if isinstance(element.where, str):
         return forest.feet(path, element.where)
     node, context = forest.node(path), forest.context
@@ -74,7 +74,7 @@ def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:
 
 
 def observed_at(forest: Forest, path: BeliefPath, element: Element) -> int | None:
-    """Last tick at which a node's value of an element was current; None: no value."""
+    """Return the last tick at which a node's value of an element was current; None: no value."""
     if isinstance(element.where, str):
         return forest.seen_at(path, element.where)
     node, cell = forest.node(path), cell_of(forest.context.box, element.where)
@@ -98,7 +98,7 @@ def is_current(forest: Forest, path: BeliefPath, element: Element) -> bool:
 
 
 def touches(element: Element, event: PerceivedEvent) -> bool:
-    """Return True if an event is about an element's content or block; moves of agents are none."""
+    """Return True if an event is about an element's content or block, which none is for agents."""
     return element.kind != "agent" and event.detail.get("position") == element.where
 
 
@@ -124,7 +124,14 @@ def last_change(
 
 
 def _after(entry: Entry, element: Element, registry: Registry, held: object) -> object:
-    """What an element is after an entry, as bare as `_bare` makes it."""
+    """Return the value of an element in its own world after an entry, in the form of `_bare`.
+
+    Args:
+        entry: The entry.
+        element: The element.
+        registry: Registry of blocks.
+        held: Value before the entry, in the same form.
+    """
     if isinstance(element.where, str):
         if isinstance(entry, Edit) or element.where not in entry.agents:
             return held
@@ -144,4 +151,5 @@ def _after(entry: Entry, element: Element, registry: Registry, held: object) -> 
 
 
 def _bare(value: Value) -> object:
+    """Return a value in the form that entries give: contents without completeness."""
     return dict(value.items) if isinstance(value, Contents) else value

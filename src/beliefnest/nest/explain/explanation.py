@@ -1,4 +1,4 @@
-"""Why a simulator holds what it holds: an explanation as a value, and in words."""
+"""Explanation of a belief, as a value and in words."""
 
 from dataclasses import dataclass
 
@@ -11,15 +11,15 @@ __all__ = ["Explanation"]
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """The chain of perceptions behind a belief; `str()` puts it into words.
+    """Chain of perceptions behind a belief; `str()` puts it into words.
 
     Attributes:
-        element: What is explained.
+        element: The explained element.
         tick: The tick of the explained state.
-        fact: How the element is in the world that the beliefs are about.
+        fact: The element in the world that the beliefs are about.
         levels: The beliefs along the path, outermost first; empty for that world itself.
-        before: Where that world is a branch in which the element has not changed: the
-            explanation of the belief at the fork.
+        before: Explanation of the belief at the fork, if that world is a branch on which the
+            element has not changed; None otherwise.
     """
 
     element: Element

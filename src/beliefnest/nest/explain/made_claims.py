@@ -1,4 +1,4 @@
-"""Claims that were made: who heard them, whether they were false or lies, who took them up."""
+"""Claims that were made, with their hearers, their truth and the verdicts of all beliefs."""
 
 from collections.abc import Iterator
 from functools import cached_property
@@ -25,18 +25,19 @@ __all__ = ["MadeClaim", "claims_made", "says_otherwise"]
 
 
 class MadeClaim:
-    """A claim that was made, and what became of it; worked out when it is asked for.
+    """Claim that was made, with the verdicts of all beliefs, which are computed on demand.
 
     Attributes:
-        tick: When it was made.
-        speaker: Who made it; None: it stood on a sign from the start, so that nobody is known to
-            have written it.
-        addressee: To whom it was whispered; None: it was said aloud.
-        text: The words it was made with.
-        sign: Position of the sign on which it is written; None: it was said.
-        claim: What was claimed.
-        claims_from: Who read it out of the text; None: the speaker said so beside it.
-        made_in: Path of the simulator in whose world it was made.
+        tick: Tick of the claim.
+        speaker: Name of the speaker or writer; None: the sign had the claim from the start, so its
+            writer is unknown.
+        addressee: Name of the agent to whom it was whispered; None: it was said aloud.
+        text: Text of the utterance or of the sign.
+        sign: Position of the sign with the claim; None: it was said.
+        claim: The claim.
+        claims_from: Name of the model that read the claim out of the text; None: the speaker gave
+            the claim beside the text.
+        made_in: Path of the simulator in whose world the claim was made.
     """
 
     def __init__(
@@ -67,33 +68,36 @@ class MadeClaim:
 
     @cached_property
     def hearers(self) -> tuple[str, ...]:
-        """Who heard it, or has read it so far, the speaker excepted, in order of names."""
+        """The agents other than the speaker that heard the claim or have read it, by name."""
         others = [name for name in self._recording.agents if name != self.speaker]
         return tuple(name for name in others if self._was_perceived((*self._key.path, name)))
 
     @cached_property
     def false(self) -> bool:
-        """True if the world it was made in said otherwise at its tick."""
+        """True if the world in which it was made contradicted the claim at its tick."""
         return self._is_contradicted(self._key.path)
 
     @cached_property
     def lie(self) -> bool:
-        """True if the speaker believed otherwise; without a known speaker it is no lie."""
+        """True if the speaker's belief contradicted the claim; False without a known speaker."""
         if self.speaker is None:
             return False
         return self._is_contradicted(normalised((*self._key.path, self.speaker)))
 
     def taken_up(self, path: str) -> bool:
-        """Return True if it changed what a simulator holds, or holds the speaker to believe.
+        """Return True if a simulator believes the claim from then on (semantics, section 8).
+
+        Args:
+            path: Path of the simulator; it may be a model of the speaker.
 
         Raises:
             PathError: The path is malformed or names an unknown agent.
-            InputError: It is no belief in the world in which the claim was made.
+            InputError: The path is not a belief in the world in which the claim was made.
         """
         return self._verdict(path).believed
 
     def why(self, path: str) -> str:
-        """Why it was taken up, or by which condition it was not; errors as for `taken_up`."""
+        """Return in words why a simulator took the claim up or not; raises as `taken_up` does."""
         names = parse_path(path, self._recording.agents)
         grace = self._recording.setting.perception.grace
         verdict, speaker = self._weighed(path)
@@ -103,24 +107,27 @@ class MadeClaim:
         return f"{as_known_to(unaware[:-1])}{unaware[-1]} does not know of it"
 
     def _unaware(self, path: BeliefPath) -> BeliefPath:
-        """The first simulator on the way to one that did not hear it in which it is not known."""
+        """Return the outermost simulator on a path that did not perceive the claim.
+
+        The last simulator of the path is known not to have perceived it.
+        """
         ways = (path[:depth] for depth in range(len(self._key.path) + 1, len(path)))
         return next((way for way in ways if not self._was_perceived(way)), path)
 
     def condition(self, path: str) -> str | None:
-        """Return the condition (`0`, `1a`, `1b`, `3`, `4`; semantics, section 8); errors as above.
+        """Return the rule of semantics, section 8, that decided; raises as `taken_up` does.
 
-        None where none had to: it was taken up, was not heard, is about its hearer's own place,
-        or testimony is off.
+        It is one of `0`, `1a`, `1b`, `3`, `4`. None if no such rule had to decide: the claim was
+        taken up, was not heard, is about its hearer's own position, or testimony is off.
         """
         return self._verdict(path).condition
 
     def is_heard(self, path: str) -> bool:
-        """Whether it was perceived in a simulator, as far as that weighs it; errors as above."""
+        """Return True if a simulator perceived the claim; raises as `taken_up` does."""
         return self._verdict(path) is not Verdict.NOT_HEARD
 
     def heard_at(self, path: str) -> int:
-        """Tick at which a simulator perceived it, or for a sign read it; errors as above."""
+        """Return the tick at which a simulator heard or read it; raises as `taken_up` does."""
         names = parse_path(path, self._recording.agents)
         if self.sign is None:
             return self.tick
@@ -132,13 +139,13 @@ class MadeClaim:
         return self._weighed(path)[0]
 
     def _weighed(self, path: str) -> tuple[Verdict, str | None]:
-        """What a simulator made of it, and who is the speaker there."""
+        """Return the verdict of a simulator, and the speaker as far as that simulator knows."""
         names = parse_path(path, self._recording.agents)
         root = self._key.path
         if names[: len(root)] != root or len(names) == len(root):
             raise InputError(
-                f"{path!r} is no belief in {path_text(root)}, where the claim was made; "
-                f"ask for one such as {path_text((*root, self._recording.agents[0]))}"
+                f"{path!r} is not a belief in {path_text(root)}, where the claim was made; "
+                f"give a path such as {path_text((*root, self._recording.agents[0]))}"
             )
         with self._recording.turn:
             if self._recording.setting.perception.testimony == "none":
@@ -158,16 +165,16 @@ class MadeClaim:
         return forest
 
     def _read(self, path: BeliefPath) -> Holdings:
-        """What a node has read on signs so far."""
+        """Return the holdings of a node now, which tell the signs that its owner has read."""
         moment = self._until
         forest = self._recording.history.shared(moment.timeline, path, moment.entries)
         return forest.holdings.of(forest.node(path))
 
     @property
     def _written(self) -> tuple[int, str]:
-        """Cell of its sign, and the text."""
+        """The cell of the sign with the claim, and its text."""
         if self.sign is None:
-            raise AssertionError("it was said")
+            raise AssertionError("the claim was said, not written")
         return cell_of(self._recording.box, self.sign), self.text
 
     def _was_perceived(self, path: BeliefPath) -> bool:
@@ -191,7 +198,7 @@ def claims_made(recording: Recording, path: BeliefPath, tick: int | None) -> lis
     """Return all claims made in a simulator, or in what it follows, up to a tick (None: all)."""
     moment = recording.moment(path)
     if tick is not None:
-        # A tick to come is no fault: what was claimed by then is what was claimed by now.
+        # A future tick is allowed: it gives the claims made so far.
         moment = ForkPoint(*recording.place_of(moment.timeline, tick), tick)
     return [
         claim
@@ -213,7 +220,7 @@ def _told(
     for number, entry in recording.journal.filtered(key, 0, count, EntryFilter.EVENTS):
         if isinstance(entry, Frame):
             for row, event in enumerate(entry.events):
-                # A sign that was turned claims nothing anew.
+                # An event without text, such as a sign that was turned, makes no new claim.
                 for index, claim in enumerate(claims_of(event) if "text" in event.detail else ()):
                     place_of = (number, row, index)
                     yield MadeClaim(recording, key, place_of, until, entry.tick, event, claim)
@@ -225,7 +232,7 @@ def _is_first(recording: Recording, key: TimelineKey) -> bool:
 
 
 def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
-    """Return True if a state contradicts a claim; what it does not know it does not contradict."""
+    """Return True if a state contradicts a claim. An unknown value contradicts nothing."""
     match claim.kind:
         case ClaimKind.POSITION:
             believed = held.agents[str(claim.agent)].position
@@ -257,7 +264,11 @@ def _is_other_block(block: str | None, stated: str) -> bool:
 
 
 def _is_elsewhere(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
-    """Whether an item is known to be missing in the container, or believed to be elsewhere."""
+    """Return True if an item is known not to be in the claimed container.
+
+    Its content is complete and lacks the item, the block is known and is no container, or the item
+    is believed to be somewhere else.
+    """
     content = held.containers.get(claim.cell)
     if content is not None and claim.item in content.items:
         return False
@@ -272,19 +283,20 @@ def _is_elsewhere(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
 def _words(
     verdict: Verdict, path: BeliefPath, speaker: str | None, grace: int, sign: Position | None
 ) -> str:
-    """A verdict in words, with the condition that decided it; each is the view of a believer."""
+    """Return a verdict in words, with the rule that decided, as the believers know it."""
     me, believers = path[-1], path[:-1]
     what = f"what {speaker} said" if sign is None else f"what the sign at {sign} says"
     unheard = f"{me} did not hear it" if sign is None else f"{me} has not read it"
     outer = believers[-1] if believers else None
     words = {
-        Verdict.TAKEN_UP: f"{me} believes {what}; nothing spoke against it",
+        Verdict.TAKEN_UP: f"{me} believes {what}; nothing contradicts it",
         Verdict.NOT_HEARD: unheard,
-        Verdict.OFF: "testimony is 'none': what is said is known as text alone",
+        Verdict.OFF: "testimony is 'none': hearers know the text only",
         Verdict.OWN_PLACE: f"{me} knows where {me} is",
         Verdict.SEES_OTHERWISE: f"{me} perceives how it is, and seeing beats hearing (0)",
-        Verdict.SEES_KNOWN: f"{me} sees where it was last perceived, and needs no telling (1a)",
-        Verdict.SEES_CLAIMED: f"{me} sees the place that is spoken of, and needs no telling (1a)",
+        Verdict.SEES_KNOWN: f"{me} sees the place where it last perceived it, and relies on "
+        "that (1a)",
+        Verdict.SEES_CLAIMED: f"{me} sees the claimed place, and relies on that (1a)",
         Verdict.NO_CHANCE: f"{me} did not lose sight of {speaker} for more than {grace} ticks "
         f"since it last watched the place, so {speaker} cannot know better (1b)",
         Verdict.WORD: f"{speaker} believes what {speaker} says (3)",

@@ -1,4 +1,4 @@
-"""What an explanation consists of: facts, beliefs, sightings and what was missed."""
+"""Parts of an explanation: facts, beliefs, sightings and missed changes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Contents:
 
     Attributes:
         items: Item name to count.
-        complete: Whether these are known to be all.
+        complete: Whether it is known to hold nothing else.
     """
 
     items: Mapping[str, int]
@@ -39,16 +39,16 @@ class Contents:
 
 
 Value = str | Point | Contents | None
-"""A block state's text, an agent's feet (blocks), contents; None: unknown, or there is none."""
+"""Text of a block state, feet position of an agent, or contents; None: unknown, or none."""
 
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """What is explained.
+    """Element that is explained.
 
     Attributes:
-        kind: What it is.
-        where: Its position, or the agent's name.
+        kind: `container`, `agent` or `block`.
+        where: Position of the element, or name of the agent.
     """
 
     kind: Literal["container", "agent", "block"]
@@ -56,7 +56,7 @@ class Element:
 
 
 class View(StrEnum):
-    """How a look at something ends."""
+    """Result of a look at something."""
 
     SEEN = "seen"
     BLOCKED = "blocked"
@@ -67,15 +67,15 @@ class View(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """A look at an agent or a block.
+    """Look at an agent or a block.
 
     Attributes:
         target: Agent name or block name.
         at: The agent's feet, or the block's position; None: unknown.
-        view: How it ended.
-        distance: From the eye to the block's centre or to the agent's body centre, blocks;
-            None where the place is unknown.
-        blocker: Position of the first block the ray enters, if it is blocked.
+        view: Result of the look.
+        distance: Distance from the eye to the block's centre or the agent's body centre, in blocks;
+            None if the position is unknown.
+        blocker: Position of the first block that the ray enters, if the look is blocked.
         blocker_name: Name of that block.
     """
 
@@ -89,12 +89,15 @@ class Sighting:
 
 @dataclass(frozen=True, slots=True)
 class Absence:
-    """The parent node cannot say what the perceiver saw: it did not see the perceiver itself.
+    """Absence of a perceiver: the owner of the parent node did not see it at that tick.
+
+    The parent node then cannot tell what the perceiver saw (semantics, section 5.2).
 
     Attributes:
-        last_seen: Tick of the pose that the parent node held; None: it held none.
-        sighting: The look of that simulator's owner for the perceiver in that tick; None
-            where the owner was itself not present one level up.
+        last_seen: Last tick at which the parent node's pose of the perceiver was current; None: it
+            has none.
+        sighting: The look of the parent node's owner for the perceiver at that tick; None if that
+            owner was itself not present one level up.
     """
 
     last_seen: int | None
@@ -103,18 +106,20 @@ class Absence:
 
 @dataclass(frozen=True, slots=True)
 class Missed:
-    """A change in the parent node that did not reach the belief.
+    """Change in the parent node that did not reach the belief.
+
+    For an element that was never known there need be no change: `tick` is that of the explanation,
+    and `before` equals `after`.
 
     Attributes:
-        tick: When; for what was never known, the tick of the explanation.
-        before: What the parent node held before; equal to `after` for what was never
-            known.
-        after: What it held then.
-        acts: Who did what to it in that tick, as perceived in the parent node.
+        tick: Tick of the change.
+        before: Value in the parent node before the change.
+        after: Value in the parent node after the change.
+        acts: Acts on the element at that tick, as perceived in the parent node.
         edited: Whether the parent node was changed by hand.
         stood: The perceiver's feet in the parent node; None: unknown.
-        absence: Set where the perceiver was not present.
-        sightings: The looks that would have shown it, where the perceiver was present.
+        absence: The reason, if the perceiver was not present.
+        sightings: The looks that would have shown the change, if the perceiver was present.
         saw_acts: Whether the perceiver perceived the acts, which did not show the change.
     """
 
@@ -131,13 +136,13 @@ class Missed:
 
 @dataclass(frozen=True, slots=True)
 class HeardClaim:
-    """A claim by which something went out of a container, as it is believed.
+    """Claim that made a holder believe that an item left a container.
 
     Attributes:
-        tick: When it was made.
-        speaker: Who made it; None: nobody is known to have written it.
-        claim: What was claimed.
-        sign: Position of the sign on which it was read; None: it was heard.
+        tick: Tick at which the holder perceived the claim.
+        speaker: Name of the speaker or writer; None: the writer is unknown.
+        claim: The claim.
+        sign: Position of the sign with the claim; None: the claim was heard.
     """
 
     tick: int
@@ -148,13 +153,13 @@ class HeardClaim:
 
 @dataclass(frozen=True, slots=True)
 class SeenElsewhere:
-    """A perception of a unique item by which it went out of a container, as it is believed.
+    """Perception of a unique item that made a holder believe that it left a container.
 
     Attributes:
-        tick: When.
+        tick: Tick of the perception.
         item: Name of the item.
-        where: Position of another container, name of the agent that has it, feet-high point of the
-            floor; None: it was seen to be moved, and not where to.
+        where: Position of another container, name of the agent that has the item, or point of the
+            floor; None: the holder saw the item moved, but not to which place.
     """
 
     tick: int
@@ -164,16 +169,16 @@ class SeenElsewhere:
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """How the element is in the world of the timeline that everything rests on.
+    """Element as it is in the world of the timeline from which all beliefs follow.
 
     Attributes:
-        path: Belief path of that world, agent names; the real one's is empty.
-        branch: Its branch.
-        value: How it is.
-        block: Name of the block at its position; None for an agent, or where unknown.
-        since: Tick of its last change on this branch; None: as it was at the start.
-        acts: Who did what to it in that tick.
-        edited: Whether it was changed by hand.
+        path: Belief path of that world, agent names; empty for the real world.
+        branch: Name of the branch.
+        value: Value of the element.
+        block: Name of the block at its position; None for an agent, or if unknown.
+        since: Tick of its last change on this branch; None: it has not changed on it.
+        acts: Acts on the element at that tick.
+        edited: Whether the element was changed by hand at that tick.
         forked_at: Tick at which the branch forked from another; None: it did not.
     """
 
@@ -189,25 +194,24 @@ class Fact:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """What one belief holds of the element, and what that rests on.
+    """Belief of one agent along the path about the element, with its ground.
 
     Attributes:
         path: Belief path, agent names from the outermost believer inwards.
-        holder: Whose belief it is.
-        value: What it holds.
-        block: Name of the block it holds to be at the position; None: unknown, or an agent.
-        basis: The perception it rests on; None where nothing is known.
-        current: Whether a perception in this tick backs it.
-        acts: What was perceived of acts on the element, at the last tick of any up to that of the
-            basis.
-        since: Tick from which on the belief held this; later than the basis where it was
-            handed on stale; None where nothing was ever known.
+        holder: Name of the agent whose belief it is.
+        value: Believed value.
+        block: Name of the believed block at the position; None: unknown, or an agent.
+        basis: Ground of the value; None if nothing is known.
+        current: Whether a perception in this tick backs the value.
+        acts: Perceived acts on the element at the last tick with any, up to that of the basis.
+        since: Tick since which the belief has had this value. It is later than the tick of the
+            basis if the holder took over a stale value. None: nothing was ever known.
         stood: The holder's feet in the parent node at tick `since`; None: unknown.
-        missed: The first change since that did not reach the belief, or for what was never
-            known, why it is not perceived now; None: there is none.
-        weighed: Whether hearsay is believed of those alone who may know better.
-        told: Claims by which something went out of the container since the basis' tick.
-        elsewhere: Perceptions of unique items by which these went out of it since then.
+        missed: The first later change that did not reach the belief. For an element that was never
+            known, the reason why it is not perceived now. None: there is none.
+        weighed: Whether hearers weigh claims (`testimony: informed`).
+        told: Claims since the tick of the basis by which items left the container.
+        elsewhere: Perceptions since then by which unique items left the container.
     """
 
     path: BeliefPath

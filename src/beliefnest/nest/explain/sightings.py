@@ -1,4 +1,4 @@
-"""Sightings: how looks of an agent at others and at blocks end inside one simulator."""
+"""Looks of an agent at other agents and at blocks inside one simulator, and their results."""
 
 import math
 from collections.abc import Callable
@@ -37,7 +37,7 @@ def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position)
     centre = (x + 0.5, y + 0.5, z + 0.5)
     view = _view(reading.geometry, sees)
     look = Sighting(name or "block", place, view, math.dist(_eye(here), centre))
-    # What is looked at hides nothing of itself.
+    # The block that is looked at does not block its own rays.
     without = reading.geometry.with_blocks({place: reading.geometry.sight.registry.air})
     return _with_blocker(look, reading, box, without, _eye(here), [centre])
 
@@ -61,7 +61,11 @@ def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> S
 
 
 def _view(geometry: Geometry, sees: _Sees) -> View:
-    """What stops a look, found by looking without limits; distance before direction."""
+    """Return the result of a look, found by lifting limits one after the other.
+
+    The look is `OUTSIDE_VIEW` if it succeeds in all directions, `TOO_FAR` if it succeeds without a
+    limit of distance as well, and `BLOCKED` if it fails even then.
+    """
     if sees(geometry):
         return View.SEEN
     all_round = replace(geometry.sight, field_of_view=360.0)

@@ -1,4 +1,4 @@
-"""Explanations in words: one line for what is so, then one or two for each belief."""
+"""Explanations in words: one line for the fact, then one or two lines for each belief."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -27,11 +27,11 @@ _KINDS = {
     EventKind.GET_ITEM_FROM_CHEST: "something was taken out",
     EventKind.OPEN_CONTAINER: "somebody looked in",
 }
-"""Acts of which no more is known than their kind."""
+"""Words for acts of which only the kind is known."""
 
 
 def explanation_lines(element: Element, fact: Fact, levels: Iterable[Level]) -> list[str]:
-    """What is so, then what each belief along the path holds and why."""
+    """Return the fact, then each belief along the path with its reason, line by line."""
     lines = [_fact_text(fact, element)]
     for level in levels:
         lines.append(_belief_text(level, element))
@@ -77,7 +77,7 @@ def _given_up(level: Level, element: Element) -> str:
 
 
 def _context(level: Level, basis: Basis, name: str) -> str:
-    """What a belief rests on."""
+    """Return the ground of a belief in words."""
     tick, holder = basis.observed_at, level.holder
     late = level.since is not None and level.since > tick
     moved = [_told_text(level, told) for told in level.told if told.tick > tick]
@@ -128,7 +128,7 @@ def _heard(level: Level, basis: Basis) -> str:
 
 
 def _told_text(level: Level, told: HeardClaim) -> str:
-    """Who made which claim to the holder."""
+    """Return a claim that the holder heard or read, in words."""
     holder, speaker = level.holder, told.speaker
     if told.sign is not None and speaker != holder:
         by = "" if speaker is None else f", which {speaker} wrote,"
@@ -139,7 +139,7 @@ def _told_text(level: Level, told: HeardClaim) -> str:
 
 
 def _elsewhere_text(level: Level, seen: SeenElsewhere) -> str:
-    """Where else the holder perceived a unique item."""
+    """Return in words where else the holder perceived a unique item."""
     begin = f"{level.holder} perceived at tick {seen.tick}"
     if seen.where is None:
         return f"{begin} that the only {seen.item} was moved"
@@ -149,7 +149,7 @@ def _elsewhere_text(level: Level, seen: SeenElsewhere) -> str:
 
 
 def _missed_text(missed: Missed, level: Level, fact: Fact, element: Element) -> str:
-    """Why a change did not reach a belief."""
+    """Return in words why a change did not reach a belief."""
     never = level.basis is None
     name, holder = _named(element, level.block or fact.block), level.holder
     begin = f"At tick {missed.tick}"
@@ -198,7 +198,7 @@ def _absence_text(missed: Missed, level: Level) -> str:
 
 
 def _look_text(look: Sighting) -> str:
-    """What was not to be seen, and why."""
+    """Return the target of a failed look, and the reason."""
     if look.at is None:
         return f"{look.target}, whose place is not known"
     match look.view:
@@ -235,7 +235,7 @@ def _how(acts: Iterable[PerceivedEvent], edited: bool) -> str:
 
 def _acts_text(acts: Iterable[PerceivedEvent]) -> str:
     told = list(acts)
-    # A deed and the change of the block that it brings about are recorded both.
+    # An act and the block update that it causes are both recorded: tell the act alone.
     deeds = [act for act in told if act.actor is not None or act.kind is not EventKind.BLOCK_UPDATE]
     words = (f"{act.actor or 'something'} {_deed_text(act)}" for act in deeds or told)
     return ", then ".join(dict.fromkeys(words))
@@ -264,7 +264,7 @@ def _deed_text(act: PerceivedEvent) -> str:
 
 
 def _made_text(detail: Mapping[str, Any]) -> str:
-    """What was done to a block, as it is recorded."""
+    """Return the recorded change of a block in words."""
     written = detail.get("text")
     if written is None:
         return f"made it {detail['block']}"
@@ -330,21 +330,24 @@ def _point(point: Iterable[float]) -> str:
 
 
 def _knows(level: Level) -> str:
-    """By whom it is known what the holder of a belief perceives."""
+    """Return a clause that names the believers in whose view the holder perceives."""
     return as_known_to(level.path[:-1])
 
 
 def as_known_to(believers: Sequence[str]) -> str:
-    """`as far as b knows,`, `a believes that as far as b knows,`: whose view a sentence tells.
+    """Return a clause that names the believers in whose view a sentence is true.
 
     Args:
-        believers: Agent names from the outermost believer inwards; empty: it is a fact.
+        believers: Agent names from the outermost believer inwards; empty: the sentence is a fact.
+
+    Returns:
+        For example `as far as b knows, ` or `a believes that as far as b knows, `.
     """
     outer = "".join(f"{name} believes that " for name in believers[:-1])
     return f"{outer}as far as {believers[-1]} knows, " if believers else ""
 
 
 def _teller(level: Level) -> str:
-    """`a saw that`, `a believes that b saw that`: by whom a look is known."""
+    """Return a clause about the believers who know of a look, such as `a saw that `."""
     names = level.path[:-1]
     return "" if not names else " believes that ".join(names) + " saw that "

@@ -1,1 +1,1 @@
-"""What was recorded, and any state of any simulator from it."""
+"""Recorded past of a nest, from which any state of any simulator is computed."""

@@ -1,7 +1,8 @@
-"""The state of a body at a moment of a timeline, its internal state included.
+"""Internal state of bodies at moments of a timeline.
 
-Frames hold what can be perceived. What else goes on in a body is kept at the ends of calls; at
-any other moment, and where a belief is forked, nothing is under way.
+Frames hold everything that agents can perceive. The rest, for example how far a furnace has got, is
+stored when a call ends. At any other moment, and where a belief is forked, a body begins without
+internal state.
 """
 
 from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
@@ -10,19 +11,19 @@ __all__ = ["internal_state_at", "note_internal_state", "present"]
 
 
 def present(journal: Journal, key: TimelineKey) -> ForkPoint:
-    """Return the moment a timeline is at."""
+    """Return the moment at the head of a timeline."""
     info = journal.info(key)
     return ForkPoint(key, info.entries, info.head)
 
 
 def note_internal_state(journal: Journal, moment: ForkPoint, state: bytes) -> None:
-    """Keep what goes on in the timeline's body at a moment."""
+    """Store the internal state of the timeline's body at a moment."""
     if state:
         journal.put_body_state(moment.timeline, moment.entries, moment.tick, state)
 
 
 def internal_state_at(journal: Journal, moment: ForkPoint) -> bytes:
-    """What was noted to go on in the timeline's body at a moment; empty if nothing was."""
+    """Return the internal state stored for a moment; empty bytes if there is none."""
     found = journal.body_state(moment.timeline, moment.entries, moment.tick)
     if found is not None:
         return found

@@ -1,8 +1,10 @@
-"""Saved forests of a journal's timelines: written now and then, trusted only where they fit.
+"""Checkpoints: saved forests of a journal's timelines, from which later folds begin.
 
-A checkpoint is a cache: without any, every answer is the same. Its name carries a digest of all
-that a forest follows from besides the journal: the setting, and the program that folds; under
-another name it is not looked for.
+A checkpoint is a cache. Beliefs are a pure function of the recorded timelines (semantics, section
+6), so every answer is the same without any. A forest depends on the journal, the setting and the
+program that folds. The journal only grows and a checkpoint has a position in it, so it stays true.
+The name of a checkpoint carries a digest of the setting and of the source files that fold: another
+setting or another version looks under another name and never finds it.
 """
 
 from collections.abc import Iterator
@@ -26,18 +28,19 @@ from beliefnest.world.paths import BeliefPath
 __all__ = ["Checkpoints", "Pace"]
 
 _ROOMS = ("world", "perception", "belief", "nest/past")
-"""Where the program is that decides what a forest holds."""
+"""Folders of the package whose source decides what a forest holds."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How often something is done, in entries of a timeline.
+    """Intervals of folding and saving, in entries of a timeline.
 
     Attributes:
-        every: Entries between two checkpoints, at least.
-        lag: Entries that are folded on demand, without looking for a checkpoint.
-        stretch: Entries that are held in columns at once.
-        budget: Bytes of checkpoints for each entry, at most.
+        every: Least number of entries between two checkpoints.
+        lag: Number of entries up to which folding is cheaper than looking for a checkpoint.
+        stretch: Number of entries held in columns at once.
+        budget: Greatest number of bytes of checkpoints for each entry. It bounds what large forests
+            add to a run file.
     """
 
     every: int = 2048
@@ -48,7 +51,7 @@ class Pace:
 
 @dataclass(frozen=True, slots=True)
 class _Kept:
-    """The last checkpoint of a timeline: its place, its size in bytes, how many nodes it has."""
+    """Last checkpoint of a timeline: its position, its size in bytes and its number of nodes."""
 
     place: int = 0
     size: int = 0
@@ -56,7 +59,11 @@ class _Kept:
 
 
 class Checkpoints:
-    """Saved forests of the timelines of one journal; one that is not writable is only read."""
+    """Checkpoints of the timelines of one journal. None are written if it is read-only.
+
+    Forests with beliefs and forests of the timeline's own simulator alone are saved under different
+    names. The latter are small and cheap to continue, so they serve where no belief is wanted.
+    """
 
     def __init__(
         self, journal: Journal, setting: Setting, context: BeliefContext, pace: Pace
@@ -75,10 +82,18 @@ class Checkpoints:
         path: BeliefPath | None = None,
         after: int = 0,
     ) -> Forest | None:
-        """The last saved forest of a timeline after one position, up to another; None: none is.
+        """Return the last saved forest of a timeline that helps to get to a position.
 
-        It has to hold the node `path`, and holds no more than its ancestors besides; None: all
-        nodes that were saved.
+        Args:
+            key: The timeline.
+            position: Number of entries that are to be folded; the checkpoint lies at or before it.
+            events: Events of the timeline.
+            path: Node that the forest must hold; only it and its ancestors are restored. None: all
+                saved nodes are.
+            after: Position of a forest that the caller has; earlier checkpoints do not help.
+
+        Returns:
+            The forest. None if there is none, or if it would spare less than `Pace.lag` entries.
         """
         if position - after <= self._pace.lag:
             return None
@@ -95,31 +110,34 @@ class Checkpoints:
         return forest
 
     def keep(self, key: TimelineKey, forest: Forest) -> None:
-        """Save a forest if that is due."""
+        """Save a forest if enough entries were folded since the last checkpoint.
+
+        The interval grows with the size of the last checkpoint, to stay within `Pace.budget`.
+        """
         kept = self._last(key, forest)
         due = max(self._pace.every, kept.size // self._pace.budget)
         if forest.position - kept.place >= due:
             self._save(key, forest)
 
     def keep_last(self, key: TimelineKey, forest: Forest) -> None:
-        """Save the last forest of a timeline, unless it is as good as saved or soon folded."""
+        """Save the last forest of a timeline, unless it is cheap to fold from what is saved."""
         kept = self._last(key, forest)
         news = forest.position - kept.place > self._pace.lag or forest.count_of_nodes != kept.nodes
         if forest.position > self._pace.lag and news:
             self._save(key, forest)
 
     def forget(self, key: TimelineKey) -> None:
-        """Drop what is remembered of a timeline that was deleted or renamed."""
+        """Forget the last checkpoint of a timeline that was deleted or renamed."""
         self._kept = {at: kept for at, kept in self._kept.items() if at[0] != key}
 
     def forget_all(self) -> None:
-        """Drop what is remembered of all timelines."""
+        """Forget the last checkpoints of all timelines."""
         self._kept = {}
 
     def _save(self, key: TimelineKey, forest: Forest) -> None:
         if self._journal.writable:
             body = saved(forest)
-            # What was recorded is safe; without this one it is folded for longer, that is all.
+            # A failed write loses nothing but time: the entries themselves are recorded.
             with suppress(StoreError):
                 name = self._name(beliefs=forest.has_beliefs)
                 self._journal.put_checkpoint(key, name, forest.position, body)
@@ -133,7 +151,7 @@ class Checkpoints:
         return self._kept.get((key, forest.has_beliefs), _Kept())
 
     def _name(self, *, beliefs: bool) -> str:
-        """Name of checkpoints with beliefs, or with nothing but the timeline's own simulator."""
+        """Return the name of checkpoints with beliefs, or without any node below node 0."""
         return f"{'beliefs' if beliefs else 'world'} {self._origin}"
 
     @cached_property
@@ -144,7 +162,7 @@ class Checkpoints:
 
 @cache
 def _program() -> bytes:
-    """A digest of the program that folds, so that another one does not trust what it left."""
+    """Return a digest of the source files that decide what a forest holds."""
     digest = blake2b(VERSION.encode(), digest_size=16)
     for room in _ROOMS:
         for source in _sources(files("beliefnest").joinpath(room)):
@@ -153,7 +171,7 @@ def _program() -> bytes:
 
 
 def _sources(room: Traversable) -> Iterator[Traversable]:
-    """Python files of a room and of those in it, in order of names."""
+    """Yield the Python files of a folder and of its folders, in order of names."""
     for each in sorted(room.iterdir(), key=lambda each: each.name):
         if each.is_dir():
             yield from _sources(each)

@@ -1,8 +1,9 @@
-"""Which blocks claims are about, so that it is known from the beginning who watches them.
+"""Cells of blocks that claims are about, which have to be tracked from the beginning.
 
-Whether a hearer takes a claim up depends on when it last saw the place (semantics, section 8).
-Who sees a cell is kept only for cells that are tracked: containers, doors and switches from
-the start, any other block from the first claim about it, for which timelines are folded anew.
+A hearer takes a claim up depending on when it last saw the place (semantics, section 8). Nodes
+remember this for tracked cells only. Containers, doors and switches are tracked from the start. Any
+other block is tracked from the first claim about it on, and timelines are then folded again from
+the beginning, so that the result does not depend on when the claim was met.
 """
 
 import numpy as np
@@ -19,10 +20,10 @@ __all__ = ["ClaimedBlocks"]
 
 
 class ClaimedBlocks:
-    """The cells that have to be tracked from the beginning of every timeline.
+    """Cells that have to be tracked from the beginning of every timeline.
 
     Attributes:
-        cells: The cells so far, which the context tracks.
+        cells: The cells found so far. The context tracks them.
     """
 
     def __init__(self, journal: Journal, context: BeliefContext, snapshot: Snapshot) -> None:
@@ -35,7 +36,7 @@ class ClaimedBlocks:
         context.track(sorted(self.cells))
 
     def read(self, key: TimelineKey) -> bool:
-        """Read what was added to a timeline; returns whether there are new cells."""
+        """Read the entries added to a timeline, and return True if they claim new cells."""
         if not self._weighs:
             return False
         count, first = self._journal.info(key).entries, self._read.get(key, 0)
@@ -56,16 +57,16 @@ class ClaimedBlocks:
         return bool(new)
 
     def forget(self, key: TimelineKey) -> None:
-        """Read a timeline anew, which was deleted or renamed."""
+        """Read a timeline again from its start, after it was deleted or renamed."""
         self._read.pop(key, None)
 
     def forget_all(self) -> None:
-        """Read all timelines anew."""
+        """Read all timelines again from their starts."""
         self._read.clear()
 
 
 def _claimed_at_first(context: BeliefContext, snapshot: Snapshot) -> list[int]:
-    """Return cells of blocks that are spoken of on signs at the start."""
+    """Return cells of blocks that claims on signs are about at the start."""
     written = snapshot.sign_claims.values()
     claims = [claim for plain in written for claim in claims_from_plain(plain)]
     return [cell_of(context.box, c.cell) for c in claims if c.kind is ClaimKind.BLOCK]

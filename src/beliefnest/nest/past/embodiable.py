@@ -1,8 +1,8 @@
-"""Beliefs made such that a body can be filled with them.
+"""Adaptation of believed states to what a body can hold.
 
-A belief may hold what no world can: items in a block that is unknown or no container, more of them
-than fit. The belief is left as it is; its body differs (semantics, section 7). Everything here is
-a pure function of the believed state, so that a body made again is as it was.
+A belief may be physically impossible: items in a block that is unknown or no container, or more
+items than fit. The belief stays as it is, and its body differs (semantics, section 7). Every
+function here is pure, so that a body that is made again from the same belief is the same.
 """
 
 from collections import Counter
@@ -19,7 +19,7 @@ from beliefnest.world.values import EQUIPMENT_SLOTS, HALF_WIDTH, AgentState, Box
 __all__ = ["CHEST", "chest_places", "embodiable", "with_chests", "with_chests_at"]
 
 CHEST = "chest"
-"""Block that holds what is believed to be where no other block can hold it."""
+"""Block that a body puts where items are believed to be and no block can hold them."""
 
 _HANDS = ("main_hand", "off_hand")
 _WORN = frozenset(EQUIPMENT_SLOTS) - frozenset(_HANDS)
@@ -28,11 +28,11 @@ _WORN = frozenset(EQUIPMENT_SLOTS) - frozenset(_HANDS)
 def chest_places(
     registry: Registry, box: Box, blocks: BlockGrid, contents: Mapping[Position, Items]
 ) -> list[Position]:
-    """Positions of believed contents whose believed block is unknown or cannot hold them.
+    """Return the positions of contents whose believed block is unknown or cannot hold them.
 
     Args:
-        registry: Knows the blocks.
-        box: Where the blocks lie.
+        registry: Registry of blocks.
+        box: Box of the blocks.
         blocks: Believed block states, -1 unknown.
         contents: Believed items by position.
     """
@@ -46,14 +46,14 @@ def chest_places(
 def with_chests(
     registry: Registry, box: Box, blocks: BlockGrid, contents: Mapping[Position, Items]
 ) -> BlockGrid:
-    """Return believed blocks, -1 unknown, with the chests that a body puts; see `chest_places`."""
+    """Return believed blocks, -1 unknown, with chests at the positions of `chest_places`."""
     return with_chests_at(registry, box, blocks, chest_places(registry, box, blocks, contents))
 
 
 def with_chests_at(
     registry: Registry, box: Box, blocks: BlockGrid, places: Iterable[Position]
 ) -> BlockGrid:
-    """Return believed blocks with chests at some places; the same array if there are none."""
+    """Return believed blocks with chests at some positions; the same array if there are none."""
     cells = [box.index(place) for place in places]
     if not cells:
         return blocks
@@ -64,15 +64,15 @@ def with_chests_at(
 
 
 def embodiable(registry: Registry, snapshot: Snapshot, blocks: BlockGrid) -> Snapshot:
-    """Make a believed snapshot one that a body can be filled with.
+    """Return a believed snapshot changed so that a body can be filled with it.
 
-    What does not fit into a chest or an inventory is left out, the last names first. An agent
-    outside the box begins inside.
+    Items that do not fit into a chest or an inventory are left out, the last names first. An agent
+    outside the box is moved inside.
 
     Args:
-        registry: Knows blocks and items.
-        snapshot: What is believed.
-        blocks: Its blocks by `with_chests`, -1 unknown.
+        registry: Registry of blocks and items.
+        snapshot: The believed state.
+        blocks: Its blocks from `with_chests`, -1 unknown.
     """
     held = {
         place: _fitting(registry, items, container_slots(_name(registry, blocks, snapshot, place)))
@@ -96,7 +96,7 @@ def _holds(registry: Registry, state: int, items: Items) -> bool:
     name = registry.name(state)
     if not registry.is_container(name):
         return False
-    # A chest in place of a full chest would hold no more.
+    # A chest holds no more than another chest, so putting one would not help.
     slots = container_slots(name)
     return slots == container_slots(CHEST) or items_fault(items, registry, slots, name) is None
 
@@ -106,7 +106,7 @@ def _name(registry: Registry, blocks: BlockGrid, snapshot: Snapshot, place: Posi
 
 
 def _fitting(registry: Registry, items: Items, slots: int) -> Items:
-    """As many of the items as fit into so many slots, in order of their names."""
+    """Return as many of the items as fit into a number of slots, in order of names."""
     if items_fault(items, registry, slots, "") is None:
         return items
     fitting: dict[str, int] = {}
@@ -122,7 +122,7 @@ def _fitting(registry: Registry, items: Items, slots: int) -> Items:
 def _inside(box: Box, agent: AgentState) -> AgentState:
     (x0, y0, z0), (x1, y1, z1) = box.low, box.high
     x, y, z = agent.position
-    # One who stands on the topmost blocks has its feet above them.
+    # An agent that stands on the topmost blocks has its feet one block above the box.
     if x0 <= x < x1 + 1 and y0 <= y < y1 + 2 and z0 <= z < z1 + 1:
         return agent
     side = HALF_WIDTH
@@ -135,7 +135,7 @@ def _inside(box: Box, agent: AgentState) -> AgentState:
 
 
 def _laden(registry: Registry, agent: AgentState) -> AgentState:
-    """Return the agent with as much as it can carry; what it wears or holds comes first."""
+    """Return the agent with as many items as it can carry. Its equipment comes first."""
     worn = [name for slot, name in agent.equipment.items() if slot in _WORN]
     carried = _without(agent.inventory, worn)
     off_hand = int("off_hand" in agent.equipment)

@@ -1,4 +1,4 @@
-"""The list of a timeline's events, read from its journal when it is needed."""
+"""List of a timeline's events, read from its journal on demand."""
 
 from collections.abc import Callable, Sequence
 
@@ -13,12 +13,12 @@ __all__ = ["EventLog"]
 
 
 class EventLog:
-    """All events of one timeline so far, and what nodes perceived before it began.
+    """Events of one timeline so far, and the events that nodes perceived before it began.
 
     Args:
-        journal: Where the timeline is kept.
+        journal: The journal of the timeline.
         key: The timeline.
-        before: Says what a node perceived before the timeline began.
+        before: Function that returns the events a node perceived before the timeline began.
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class EventLog:
         self._entries = 0
 
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
-        """Return the first `count` events or more, each with its tick."""
+        """Return at least the first `count` events, each with its tick."""
         if len(self._events) < count:
             stop = self._journal.info(self._key).entries
             for _, entry in self._journal.filtered(
@@ -47,13 +47,13 @@ class EventLog:
         return self._events
 
     def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
-        """What a node perceived before the timeline began, oldest first."""
+        """Return the events that a node perceived before the timeline began, oldest first."""
         if path not in self._before:
             self._before[path] = self._work_out(path)
         return self._before[path]
 
     def take(self, columns: Columns) -> None:
-        """Take over the events of a stretch, where it goes on from what is known."""
+        """Append the events of a stretch if it continues the list."""
         if columns.first <= self._entries < columns.end:
             self._events.extend(columns.events_since(self._entries))
             self._entries = columns.end

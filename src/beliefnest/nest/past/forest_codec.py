@@ -1,4 +1,4 @@
-"""The codec of forests: their state as bytes, so that a timeline is not folded from the start."""
+"""Codec of forests: their state as bytes, for checkpoints."""
 
 import msgspec
 import zstandard
@@ -20,9 +20,9 @@ class _Saved(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def saved(forest: Forest) -> bytes:
-    """Return bytes of a forest, which leaves the stretch it is in; `restored` is the inverse."""
+    """Return the bytes of a forest; `restored` is the inverse. The forest leaves its stretch."""
     state, nodes = forest.saved()
-    # Many nodes with all their blocks take a lot of memory, so each is packed by itself.
+    # Nodes hold all blocks of the box, so each is compressed by itself to bound the memory in use.
     packer = zstandard.ZstdCompressor(level=_LEVEL)
     packed = [(node.row.path, packer.compress(codec.encode(node))) for node in nodes]
     return codec.encode(_Saved(state, packed))
@@ -31,13 +31,19 @@ def saved(forest: Forest) -> bytes:
 def restored(
     context: BeliefContext, events: EventHistory, data: bytes, path: BeliefPath | None = None
 ) -> Forest | None:
-    """A forest from the bytes of `saved`, with the nodes down to `path`; None: all there are.
+    """Return a forest from the bytes of `saved`.
+
+    Args:
+        context: The part that all nodes share.
+        events: Events of the timeline.
+        data: The bytes.
+        path: Node to restore, with its ancestors; None: all nodes.
 
     Returns:
-        None if that node is not among those saved.
+        The forest. None if it has no such node.
 
     Raises:
-        StoreError: The bytes hold no forest.
+        StoreError: The bytes are not those of a forest.
     """
     body = codec.decode(data, _Saved)
     nodes = [node for node in body.nodes if path is None or path[: len(node[0])] == node[0]]

@@ -1,9 +1,10 @@
-"""The history of a nest: any node, at any entry of any timeline, from the journal alone.
+"""History of a nest: any node, at any entry of any timeline, computed from the journal alone.
 
-Follow-mode beliefs are pure functions of the control timelines (semantics, section 6). For
-the head of every timeline one forest is kept, with the nodes that someone asked for, and
-every few thousand entries it is saved as a checkpoint; further forests, for the past, are
-folded from the checkpoint before, or from the timeline's beginning where there is none.
+Follow-mode beliefs are pure functions of the control timelines (semantics, section 6). `History`
+keeps one forest at the head of every timeline, with the nodes that somebody has asked for. Every
+few thousand entries it saves this forest as a checkpoint. Forests of the past are folded from the
+last checkpoint before the wanted entry, or from the beginning of the timeline. All of these are
+caches: an answer does not depend on the forest that it comes from.
 """
 
 import functools
@@ -35,7 +36,7 @@ _STRETCHES = 8
 
 
 def context_of(setting: Setting) -> BeliefContext:
-    """What the nodes of a nest with this setting stand on."""
+    """Return the part that all nodes of a nest with this setting share."""
     options = setting.perception
     sight, first = _seeing(
         options.max_visible_distance, options.field_of_view, tuple(options.transparent_blocks)
@@ -56,13 +57,13 @@ def context_of(setting: Setting) -> BeliefContext:
 def _seeing(
     far: float | None, field: float, transparent: tuple[str, ...]
 ) -> tuple[Sight, FirstPerceptions]:
-    """How agents see, worked out once for nests that are alike: shapes, and first perceptions."""
+    """Return sight and the cache of first perceptions, shared by nests with the same options."""
     return Sight(Registry.load(), far, field, transparent), FirstPerceptions()
 
 
 @dataclass
 class _Stretch:
-    """Some entries of a timeline: columns, and by number the edits among them."""
+    """Stretch of a timeline: its entries in columns, and the edits among them by number."""
 
     columns: Columns
     edits: dict[int, Edit] = field(default_factory=dict)
@@ -75,7 +76,7 @@ class _Stretch:
             self.columns.add(entry)
 
     def fold(self, forest: Forest, stop: int) -> None:
-        """Fold entries up to number `stop` into a forest that is in this stretch."""
+        """Fold entries up to number `stop` (excluded) into a forest that is in this stretch."""
         box = forest.context.box
         for number in sorted(n for n in self.edits if forest.position <= n < stop):
             forest.advance(number)
@@ -96,7 +97,8 @@ class History:
     """States of any node, at any entry of any timeline of a journal.
 
     Attributes:
-        generation: Grows when what was read before may not hold any more, as a timeline's name.
+        generation: Counter that grows whenever states read before may have become invalid, for
+            example because a timeline was renamed.
     """
 
     def __init__(self, journal: Journal, setting: Setting, pace: Pace | None = None) -> None:
@@ -119,13 +121,13 @@ class History:
         position: int | None = None,
         tick: int | None = None,
     ) -> NodeView:
-        """State of the node `path` after `position` entries of a timeline; None: at its head.
+        """Return the state of a node after some entries of a timeline.
 
         Args:
             key: The timeline.
-            path: Its own simulator or a node below it that follows it.
-            position: Number of entries.
-            tick: A tick up to the next entry; None: that of the last one.
+            path: The timeline's own simulator, or a node below it that follows it.
+            position: Number of entries; None: all of them.
+            tick: Tick of the view, before that of the next entry; None: that of the last entry.
         """
         if position is None:
             position = self._journal.info(key).entries
@@ -134,7 +136,7 @@ class History:
     def shared(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
         """Return a forest with a node, after some entries of a timeline.
 
-        It goes on with whoever asks next, so read it at once.
+        The forest is shared: read it before the next call, which may fold it further.
         """
         self._keep_up(key)
         if position == self._journal.info(key).entries:
@@ -151,10 +153,17 @@ class History:
     def steps(
         self, key: TimelineKey, path: BeliefPath, first: int, last: int, extra: Sequence[int] = ()
     ) -> Iterator[Forest]:
-        """One forest with a node, after `first` entries of a timeline, then one more, to `last`.
+        """Yield a forest with a node after `first` entries of a timeline, then after each further.
 
-        It is the caller's own, and the same object each time. What blocks rest on is known
-        in it for those of `extra`, for which the timeline is folded from its beginning.
+        The same object is yielded each time, folded by one more entry. It belongs to the caller.
+
+        Args:
+            key: The timeline.
+            path: The node.
+            first: Number of entries at the first yield.
+            last: Number of entries at the last yield.
+            extra: Cells whose basis is to be tracked. For these the timeline is folded from its
+                beginning.
         """
         forest = self._folded(key, path, first, extra)
         yield forest
@@ -163,9 +172,9 @@ class History:
             yield forest
 
     def walk(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
-        """Return a forest with several nodes at a timeline's beginning; it is the caller's own.
+        """Return a forest with several nodes at a timeline's beginning.
 
-        `advance` takes it on.
+        It belongs to the caller. `advance` folds entries into it.
         """
         self._keep_up(key)
         base = self._journal.info(key).base
@@ -180,7 +189,7 @@ class History:
         return forest
 
     def _have(self, fork: ForkPoint, paths: Sequence[BeliefPath]) -> None:
-        """Have several nodes at hand where a timeline forks: folded at once, not one by one."""
+        """Fold several nodes together up to a fork, and keep the forest for later calls."""
         key, position = fork.timeline, fork.entries
         if position == self._journal.info(key).entries:
             self.expect(key, paths)
@@ -199,13 +208,13 @@ class History:
             self._pasts = [(key, self._together(key, paths, position)), *self._pasts][:_PASTS]
 
     def _together(self, key: TimelineKey, paths: Sequence[BeliefPath], position: int) -> Forest:
-        """A new forest of several nodes and their ancestors, after some entries of a timeline."""
+        """Return a new forest of several nodes and their ancestors, after some entries."""
         forest = self.walk(key, paths)
         self.advance(key, forest, position)
         return forest
 
     def advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
-        """Fold entries of a timeline into a forest, up to a number of them."""
+        """Fold entries of a timeline into a forest until it has folded `position` of them."""
         if not forest.has_beliefs and position - forest.position > self._pace.lag:
             self._leap(key, forest, position)
         while forest.position < position:
@@ -215,16 +224,20 @@ class History:
             stretch.fold(forest, min(position, stretch.columns.end))
 
     def note(self, key: TimelineKey) -> None:
-        """Keep up with a timeline, so that who asks for a belief need not wait for long."""
+        """Fold new entries of a timeline at its head if enough have come since the last time.
+
+        Queries of beliefs are then never more than `Pace.lag` entries behind.
+        """
         self._keep_up(key)
         head, count = self._heads.get(key), self._journal.info(key).entries
         if count - (0 if head is None else head.position) >= self._pace.lag:
             self._head(key, key.path, count)
 
     def expect(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> None:
-        """Begin with several nodes at once that will be asked for at a timeline's head.
+        """Prepare the head of a timeline for queries of several nodes.
 
-        One after the other, each is folded anew with all above it.
+        Nodes that are asked for one after the other would each be folded from the beginning, with
+        all their ancestors.
         """
         below = [path for path in paths if path != key.path]
         head = self._heads.get(key) or self._saved(key, self._journal.info(key).entries)
@@ -234,7 +247,7 @@ class History:
             self._heads[key] = head
 
     def close(self) -> None:
-        """Leave checkpoints at the heads of timelines, so that a resumed run begins at them."""
+        """Save checkpoints at the heads of timelines, so that a resumed run begins there."""
         for key, head in self._heads.items() if self._journal.writable else ():
             self.advance(key, head, self._journal.info(key).entries)
             self._checkpoints.keep_last(key, head)
@@ -242,9 +255,9 @@ class History:
     def block_bases(
         self, moment: ForkPoint, path: BeliefPath, cells: Sequence[int]
     ) -> dict[int, Basis | None]:
-        """What a node's blocks at some cells rest on; None where a block is unknown.
+        """Return the bases of a node's blocks at some cells; None where a block is unknown.
 
-        It is not kept while folding, so the timeline is folded anew.
+        Folding keeps bases of tracked cells only, so the timeline is folded again from its start.
         """
         forest = self._folded(moment.timeline, path, moment.entries, cells)
         return forest.table.bases(forest.node(path), cells, moment.tick)
@@ -252,11 +265,11 @@ class History:
     def current_blocks(
         self, key: TimelineKey, path: BeliefPath, position: int, cells: Iterable[int]
     ) -> set[int]:
-        """Return those of some cells whose block a perception in the last of some entries backs."""
+        """Return the cells whose block in a node is current after some entries."""
         base = self._journal.info(key).base
         edited = None if base is None else self._edited_at_first(key, path, position)
         if base is not None and edited is not None:
-            # What agents believed at the fork stays as it was until something happens.
+            # Nothing has happened since the fork: beliefs are as they were there (section 6).
             left = [cell for cell in cells if cell not in edited]
             return self.current_blocks(base.timeline, path, base.entries, left)
         return self.shared(key, path, position).current_blocks(path, cells)
@@ -264,10 +277,10 @@ class History:
     def _edited_at_first(
         self, key: TimelineKey, path: BeliefPath, position: int
     ) -> set[int] | None:
-        """Cells of a node that were edited in some entries; None if it perceived anew in them.
+        """Return the cells of a node that were edited in the first entries of a fork.
 
-        A node perceives when something happens, and when a simulator above it is edited
-        (semantics, section 6).
+        None if the node has perceived since the fork: it does when a tick happens, and when a
+        simulator above it is edited (semantics, section 6).
         """
         edited: set[int] = set()
         if path == key.path:
@@ -283,7 +296,7 @@ class History:
         return edited
 
     def forget(self, key: TimelineKey) -> None:
-        """Drop what is remembered of a timeline that was deleted or renamed."""
+        """Drop everything cached for a timeline that was deleted or renamed."""
         self.generation += 1
         self._stretches = {at: kept for at, kept in self._stretches.items() if at[0] != key}
         self._logs.pop(key, None)
@@ -293,25 +306,29 @@ class History:
         self._pasts = [(other, forest) for other, forest in self._pasts if other != key]
 
     def forget_all(self) -> None:
-        """Drop what is remembered of all timelines."""
+        """Drop everything cached for all timelines."""
         self.generation += 1
         self._stretches, self._logs, self._heads, self._pasts = {}, {}, {}, []
         self._checkpoints.forget_all()
         self._claimed.forget_all()
 
     def _keep_up(self, key: TimelineKey) -> None:
-        """Begin anew where a claim is about a block that nobody was watched looking at."""
+        """Drop all forests if new entries claim something of cells that were not tracked so far.
+
+        Such cells must be tracked from the beginning; see `claimed_blocks`.
+        """
         if self._claimed.read(key):
             self.generation += 1
             self._heads.clear()
             self._pasts.clear()
 
     def _past(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest | None:
-        """Return the last forest at hand with a node that lies no later than a position."""
+        """Return the cached forest with a node that is nearest before a position."""
         found = None
         for other, forest in self._pasts:
             if other == key and path in forest and forest.position <= position:
-                # Only a forest without beliefs can leap.
+                # For the timeline's own simulator a forest without beliefs is better if it is far
+                # back: it can leap over the entries between (see `_leap`).
                 near = position - forest.position <= self._pace.lag
                 fits = near or path != key.path or not forest.has_beliefs
                 if fits and (found is None or forest.position > found.position):
@@ -325,14 +342,15 @@ class History:
         if head is None:
             head = self._saved(key, count)
         if head is None or (not head.has_beliefs and path != key.path):
-            # Folded as the head it leaves checkpoints on the way, other than a late node.
+            # Fold the new node as the head, which leaves checkpoints on the way. A node that is
+            # added to a head later (below) is folded without any.
             head = self._begun(key, path)
         if head is not known:
             self._heads[key] = head
         while head.position < count:
             far = count if not head.has_beliefs else head.position + self._pace.every
             self.advance(key, head, min(count, far))
-            # Where it was a long way, who asks for the past need not go it again.
+            # Checkpoint long folds so that later queries of the past are cheap.
             self._checkpoints.keep(key, head)
         if path not in head:
             _adopt(head, self._folded(key, path, count), key.path, path)
@@ -353,7 +371,11 @@ class History:
     def _saved(
         self, key: TimelineKey, position: int, path: BeliefPath | None = None, after: int = 0
     ) -> Forest | None:
-        """Return the last checkpoint that serves: `Checkpoints.before`."""
+        """Return the forest of the last usable checkpoint; see `Checkpoints.before`.
+
+        A checkpoint is of no use if a cell that claims are about was not tracked in it from the
+        beginning.
+        """
         found = self._checkpoints.before(key, position, self._log(key), path, after)
         return found if found is None or self._claimed.cells <= found.since else None
 
@@ -386,19 +408,22 @@ class History:
 
     def _log(self, key: TimelineKey) -> EventLog:
         if key not in self._logs:
-            # Looked up now: events may be listed after the journal was closed.
+            # Read the base now, because events may be listed after the journal was closed.
             base = self._journal.info(key).base
             self._logs[key] = EventLog(self._journal, key, lambda path: self._before(base, path))
         return self._logs[key]
 
     def _before(self, base: ForkPoint | None, path: BeliefPath) -> Sequence[PerceivedEvent]:
-        """What a node perceived before the timeline began that lies on a base."""
+        """Return the events that a node perceived before the fork from a base, oldest first."""
         return () if base is None else self.reading(base.timeline, path, base.entries).events()
 
     def _leap(self, key: TimelineKey, forest: Forest, position: int) -> None:
-        """Bring a forest without beliefs to a position, past entries in which only agents change.
+        """Fold a forest that has node 0 alone, without most entries on the way.
 
-        Only the last of them counts in the end.
+        Node 0 perceives nothing: its state is the sum of all changes. Of an agent only the last
+        state counts, which the journal can look up. So the stretch has the entries that change
+        blocks, contents or dropped items, without agents and without events that do not concern
+        signs, and then one frame with all agents. Edits at the very end are folded as they are.
         """
         first, last = forest.position, position
         while last > first and isinstance(self._entry(key, last - 1), Edit):
@@ -407,7 +432,7 @@ class History:
         for _, entry in self._journal.filtered(key, first, last, EntryFilter.CHANGES):
             bare = entry
             if isinstance(entry, Frame):
-                # Who wrote what on signs, and what is claimed there, is told by events.
+                # Writers and claims of signs are in the events.
                 written = tuple(event for event in entry.events if "text" in event.detail)
                 signs = (event for event in written if event.kind is EventKind.BLOCK_UPDATE)
                 bare = replace(entry, agents={}, events=tuple(signs))
@@ -426,7 +451,7 @@ class History:
         return next(self._journal.entries(key, number, number + 1))
 
     def _stretch(self, key: TimelineKey, position: int, wanted: int) -> _Stretch:
-        """Return the stretch that an entry lies in, read as far as is wanted."""
+        """Return the stretch that holds an entry, read from the journal up to entry `wanted`."""
         number = position // self._pace.stretch
         first, end = number * self._pace.stretch, (number + 1) * self._pace.stretch
         stretch = self._stretches.pop((key, number), None)
@@ -446,9 +471,13 @@ class History:
 
 
 def _adopt(forest: Forest, other: Forest, own: BeliefPath, path: BeliefPath) -> None:
-    """Take a node and its ancestors, as far as they are not there, from a forest as far on.
+    """Copy a node and its missing ancestors from a forest that has folded the same entries.
 
-    `own` is the timeline's own simulator, the first of the ancestors.
+    Args:
+        forest: Forest that receives the nodes.
+        other: Forest to copy from.
+        own: Path of the timeline's own simulator, the first of the ancestors.
+        path: Path of the node.
     """
     chain = [path[:depth] for depth in range(len(own), len(path) + 1)]
     missing = [node for node in chain if node not in forest]

@@ -1,4 +1,4 @@
-"""One simulator over time, on every timeline that it has or can follow."""
+"""States of simulators over time, on every timeline that they have or can follow."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,14 +19,14 @@ __all__ = ["Moment", "each_tick", "over_time"]
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A simulator at a tick at which something changed.
+    """State of a simulator at a tick at which something changed.
 
     Attributes:
-        timeline: The timeline it is on: its own or that of a simulator it follows.
+        timeline: The simulator's timeline: its own or that of a simulator it follows.
         tick: Tick of that timeline.
-        state: What it holds.
-        blocks: What became of blocks since the moment before on that timeline, None where unknown;
-            in the first one, all blocks that are known.
+        state: State of the simulator.
+        blocks: Blocks that changed since the previous moment on that timeline, with their new
+            state, None where unknown. In the first moment all known blocks.
     """
 
     timeline: TimelineKey
@@ -36,10 +36,10 @@ class Moment:
 
 
 def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
-    """The first tick of each timeline that a simulator has or can follow, and each with a change.
+    """Yield the moments of a simulator: first ticks of timelines, and all ticks with an entry.
 
-    Timelines come in order of creation, each with its own ticks: what lies before its first is
-    part of the timeline that it goes on from.
+    Timelines come in order of creation, each with its own ticks only. Earlier ticks belong to the
+    timeline that it was forked from.
     """
     registry = recording.context.registry
     box = recording.box
@@ -58,13 +58,13 @@ def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
 def each_tick(
     recording: Recording, paths: Sequence[BeliefPath], after: int, until: int
 ) -> Iterator[tuple[int, Mapping[BeliefPath, State]]]:
-    """Yield several simulators below the real world, at each tick at which something happened.
+    """Yield each tick with an entry, with the states of several simulators below the real world.
 
     Args:
-        recording: Where the real world is on the timeline that is looked at.
-        paths: The simulators; read their states before asking for the next tick.
-        after: Ticks up to this one are passed over.
-        until: The last tick.
+        recording: Recording with the real world on the wanted timeline.
+        paths: The simulators. Read their states before asking for the next tick.
+        after: Last tick to leave out.
+        until: Last tick to yield.
     """
     for stretch in recording.stretches(recording.moment(())):
         if stretch.tick <= after:
@@ -85,7 +85,7 @@ def each_tick(
 
 
 def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:
-    """Return the first tick and each with an entry: how many entries lie at it or before."""
+    """Return the number of entries up to a tick, for the first tick and each with an entry."""
     places = {info.start: 0}
     for number, entry in enumerate(journal.entries(info.key, 0, info.entries), start=1):
         places[entry.tick] = number

@@ -1,8 +1,8 @@
 """Differences between an impossible belief and its body (semantics, section 7).
 
-A fork of a belief whose body had to move somebody begins with a frame of the fork's own tick: the
-moved agents where they stand in the body. Any other frame lies later. Chests that the body puts
-are recorded nowhere: they follow from the state.
+If the body had to move agents, the fork of the belief begins with a frame that has the tick of the
+fork: it holds the moved agents where they stand in the body. All other frames have later ticks.
+Chests that the body puts are not recorded, because they follow from the state.
 """
 
 from beliefnest.nest.past.embodiable import CHEST, chest_places
@@ -16,7 +16,10 @@ __all__ = ["fork_of_belief", "placed_in", "placing_frame"]
 
 
 def fork_of_belief(journal: Journal, key: TimelineKey) -> tuple[TimelineInfo, ForkPoint] | None:
-    """The branch on which a simulator left its parent's belief, and where; None: the real world."""
+    """Return the branch on which a simulator left its parent's belief, and the fork point.
+
+    None: the simulator is the real world.
+    """
     info = journal.info(key)
     while info.base is not None and info.base.timeline.path == key.path:
         info = journal.info(info.base.timeline)
@@ -24,7 +27,7 @@ def fork_of_belief(journal: Journal, key: TimelineKey) -> tuple[TimelineInfo, Fo
 
 
 def placing_frame(journal: Journal, info: TimelineInfo) -> Frame | None:
-    """Return the frame that says who was moved when a timeline began; None if nobody was."""
+    """Return the frame of agents that were moved when a timeline began; None if there is none."""
     if info.base is None or info.entries == 0:
         return None
     first = next(iter(journal.entries(info.key, 0, 1)))
@@ -32,13 +35,12 @@ def placing_frame(journal: Journal, info: TimelineInfo) -> Frame | None:
 
 
 def placed_in(recording: Recording, path: BeliefPath, tick: int | None = None) -> Placements:
-    """List what the body of a simulator had to place otherwise than believed.
-
-    Empty in follow mode, in the real world, and at ticks before the fork.
+    """Return the differences between a simulator's belief and its body.
 
     Returns:
-        Agent to from where and to where, as of when the body began; then position of a chest to
-        the block that is believed to be there, None: unknown, and "chest".
+        By agent name, the believed position and the one at which the body began. By position of a
+        chest that the body put, the believed block (None: unknown) and "chest". Empty in follow
+        mode, in the real world, and at ticks before the fork.
     """
     if not path:
         return {}

@@ -1,7 +1,7 @@
-"""The recorded past of one nest: its timelines, who is on which, and any state from them.
+"""Recorded past of one nest: its timelines, the selected ones, and any state from them.
 
-Nothing here acts in a world. What acts (`nest/acting`) appends to the journal and changes the
-selection; what reads (states, explanations, recorded runs) needs no more than this.
+Nothing here acts in a world. `nest/acting` appends to the journal and changes the selection.
+States, explanations and recorded runs only read.
 """
 
 from collections.abc import Iterable, Mapping
@@ -31,15 +31,15 @@ class Recording:
     """Timelines and states of one nest.
 
     Attributes:
-        setting: What the nest started from.
-        journal: The timelines, with what ran on them.
-        seed: Drives every random number of the nest.
-        renderer: Fills prompts.
-        history: From the journal to any node.
-        selected: The timeline of every simulator in control mode.
-        turn: Held by the thread that is in the nest.
-        world: Name of the world that the nest was opened in.
-        remembered: What readers keep of the nest from one question to the next, by their own keys.
+        setting: The setting from which the nest started.
+        journal: The timelines, and notes of the programs and requests that ran.
+        seed: Seed of every random number of the nest.
+        renderer: Renderer of prompts.
+        history: History that computes nodes from the journal.
+        selected: The timeline of every simulator in control mode, by path.
+        turn: Lock of the thread that uses the nest.
+        world: Name of the world in which the nest was opened.
+        remembered: Caches of readers, by keys of their own.
     """
 
     def __init__(
@@ -68,39 +68,46 @@ class Recording:
 
     @property
     def context(self) -> BeliefContext:
-        """What all nodes share."""
+        """The part that all nodes share."""
         return self.history.context
 
     @property
     def box(self) -> Box:
-        """The part of space there is."""
+        """The box of the world."""
         return self.setting.snapshot.box
 
     @property
     def records(self) -> Records:
-        """What ran, with which results."""
+        """The notes of programs and of requests to models, with their results."""
         return self.journal.records
 
     def on(self, key: TimelineKey) -> Self:
-        """Return the same with a simulator on a timeline, and none below it on another."""
+        """Return the recording with one timeline selected.
+
+        The simulators below that timeline's own follow it: none of them has another selected.
+        """
         other = copy(self)
         above = {p: k for p, k in self.selected.items() if key.path[: len(p)] == p}
         other.selected = {**above, key.path: key}
         return other
 
     def controller(self, path: BeliefPath) -> TimelineKey:
-        """The timeline of the nearest simulator in control mode, the node itself included."""
+        """Return the timeline of the nearest simulator in control mode, the node itself included.
+
+        Raises:
+            BranchError: The nest was not opened.
+        """
         for depth in range(len(path), -1, -1):
             if path[:depth] in self.selected:
                 return self.selected[path[:depth]]
-        raise BranchError("the nest was not opened; use Nest.open or Nest(world)")
+        raise BranchError("this nest was not opened: create it with Nest.open or Nest(world)")
 
     def info(self, path: BeliefPath) -> TimelineInfo:
         """Return the timeline that a node's state comes from."""
         return self.journal.info(self.controller(path))
 
     def place_of(self, key: TimelineKey, tick: int) -> tuple[TimelineKey, int]:
-        """Timeline and number of entries that hold a tick, back through the bases.
+        """Return the timeline and the number of entries that hold a tick, back through the bases.
 
         Raises:
             TickError: The tick lies before the first one.
@@ -114,21 +121,24 @@ class Recording:
         return key, self.journal.entries_until(key, tick)
 
     def stretches(self, moment: ForkPoint) -> list[ForkPoint]:
-        """The timelines that lead to a moment, oldest first: each up to where the next begins."""
+        """Return the timelines that lead to a moment, oldest first.
+
+        Each one is given up to the point where the next begins.
+        """
         found = [moment]
         while (base := self.journal.info(found[-1].timeline).base) is not None:
             found.append(base)
         return found[::-1]
 
     def moment(self, path: BeliefPath, tick: int | None = None) -> ForkPoint:
-        """Where a node's state comes from now, or at a past tick of the timeline it is on.
+        """Return the point of a timeline from which a node's state comes, now or at a past tick.
 
         Raises:
             TickError: The tick is in the future, or before the start of everything.
         """
         info = self.info(path)
         if tick is None:
-            # Hundreds of nodes may be asked for one after the other.
+            # Kept, because callers ask for hundreds of nodes one after the other.
             if self._latest is None or self._latest[0] is not info:
                 self._latest = info, ForkPoint(info.key, info.entries, info.head)
             return self._latest[1]
@@ -137,18 +147,18 @@ class Recording:
         return ForkPoint(*self.place_of(info.key, tick), tick)
 
     def reading(self, path: BeliefPath, tick: int | None = None) -> NodeView:
-        """Return a node's state now, or at a past tick; TickError as for `moment`."""
+        """Return the view of a node now, or at a past tick; raises as `moment` does."""
         moment = self.moment(path, tick)
         return self.history.reading(moment.timeline, path, moment.entries, moment.tick)
 
     def state(self, path: BeliefPath, tick: int | None = None) -> LiveState:
-        """Return the view of a node's state now, or at a past tick; TickError as for `moment`."""
+        """Return the state of a node now, or at a past tick; raises as `moment` does."""
         moment = self.moment(path, tick)
         reading = self.history.reading(moment.timeline, path, moment.entries, moment.tick)
         return self.view_of(reading, moment)
 
     def states(self, paths: Iterable[BeliefPath]) -> Mapping[BeliefPath, LiveState]:
-        """Return the views of several nodes' states now, by path."""
+        """Return the states of several nodes now, by path."""
         wanted = list(paths)
         together: dict[TimelineKey, list[BeliefPath]] = {}
         for path in wanted:
@@ -158,18 +168,18 @@ class Recording:
         return {path: self.state(path) for path in wanted}
 
     def view_of(self, reading: NodeView, moment: ForkPoint) -> LiveState:
-        """Return the view of a node's state that was read at a moment."""
+        """Return the state of a node whose view was read at a moment."""
         return LiveState(self.history, moment, reading, self.turn)
 
     def close(self) -> None:
-        """Leave checkpoints for later readers, and close the journal.
+        """Save checkpoints for later readers, and close the journal.
 
-        A forked child closes nothing: all of it is its parent's.
+        Do nothing in a forked child: the journal belongs to its parent.
         """
         if not self.turn.is_own:
             return
         try:
-            # Whoever reads the run without checkpoints gets the same, later.
+            # Without these checkpoints the run reads the same, only more slowly.
             with suppress(StoreError):
                 self.history.close()
         finally:
@@ -177,10 +187,10 @@ class Recording:
 
 
 def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
-    """What a run file holds, as it was left, and the name of the world it ran in.
+    """Return the recording of a run file as it was left, and the name of its world.
 
     Raises:
-        StoreError: It cannot be read, or the run was stopped before it had begun.
+        StoreError: The file cannot be read, or the run was stopped before it had begun.
     """
     run = journal.records.run()
     setting, world = decode_start(run.setting)
@@ -191,5 +201,5 @@ def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
         if branch != FOLLOW
     }
     if () not in recording.selected:
-        raise StoreError("the run was stopped while it began; start it again")
+        raise StoreError("the run was stopped before it had begun: start it again")
     return recording, world

@@ -1,4 +1,4 @@
-"""What a nest starts from: the world at tick 0, the rules of perception, priors, a script."""
+"""Setting of a nest: its world at the first tick, options of perception, priors and script."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -31,14 +31,15 @@ MAIN = "main"
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step of a script: programs that run together in the real world.
+    """Step of a script: programs that run together in the real world.
 
     Attributes:
-        programs: Agent name to the text of its program.
-        label: What the step is, for progress and messages ("sally puts the diamond away").
-        where: Where the step is written, for messages ("sally_anne.yaml:41").
-        timeout_ticks: Ticks after which the step has failed.
-        senses: What its programs read: the whole `world`, or their agents' `percepts` alone.
+        programs: Text of the program by agent name.
+        label: Description for progress and messages ("sally puts the diamond away").
+        where: File and line of the step, for messages ("sally_anne.yaml:41").
+        timeout_ticks: Number of ticks after which the step fails.
+        senses: `world`: programs read the whole world; `percepts`: only what their agents perceive
+            or remember.
     """
 
     programs: Mapping[str, str]
@@ -50,21 +51,21 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """Everything a nest needs to open; a scenario with one condition chosen gives one.
+    """Setting of a nest, as a scenario with one chosen condition gives it.
 
     Attributes:
         name: Name of the scenario.
         snapshot: The real world at its first tick.
-        perception: What agents can perceive.
+        perception: Options of perception.
         static_blocks: Names and positions of blocks that everybody knows from the start.
         initial_beliefs: Further priors, at any depth.
-        script: What happens in the real world, in order.
-        absent: Agents who are not in the world at its first tick and may come later.
-        people: Agents who are people with a Minecraft client, for whom no program acts.
-        labels: What people call containers.
-        places: What people call other places.
-        prompt_labels: What containers are called and look as if they held, for prompts.
-        unique: Items of which everybody knows that there is one (semantics, section 3).
+        script: Steps in the real world, in order.
+        absent: Agents that are not in the world at its first tick and may come later.
+        people: Agents that people play with a Minecraft client. Programs cannot act for them.
+        labels: Names of containers for people, by position.
+        places: Names of other places for people.
+        prompt_labels: Labels of containers in prompts by position, with their outward looks.
+        unique: Items of which everybody knows that there is only one (semantics, section 3).
     """
 
     name: str
@@ -84,7 +85,9 @@ class Setting:
         agents = self.snapshot.agents.keys() | self.absent
         for place in self.static_blocks:
             if not isinstance(place, str) and place not in self.snapshot.box:
-                raise InputError(f"static_blocks names {place}, which lies outside the box")
+                raise InputError(
+                    f"static_blocks names {place}, which lies outside the box; remove it"
+                )
         registry = Registry.load()
         fault = snapshot_fault(self.snapshot, registry)
         for name in self.absent:
@@ -99,11 +102,18 @@ class Setting:
         for belief in self.initial_beliefs:
             text = path_text(belief.path)
             if parse_pattern(text, agents) != belief.path:
-                raise PathError(f"initial belief {text!r} names an agent twice in a row")
+                raise PathError(
+                    f"initial belief {text!r} names an agent twice in a row; name it once"
+                )
             if not belief.path:
-                raise InputError("an initial belief of '/' would be the real world; give agents")
+                raise InputError(
+                    "an initial belief has the path '/', which is the real world; name an agent, "
+                    "as in '/sally'"
+                )
             if belief.path in seen:
-                raise InputError(f"there are two initial beliefs of {text!r}; put them into one")
+                raise InputError(
+                    f"initial_beliefs has the path {text!r} twice; put the two into one"
+                )
             seen.add(belief.path)
             for name in belief.agents:
                 parse_path(path_text((name,)), agents)
@@ -112,7 +122,7 @@ class Setting:
         agents = self.snapshot.agents.keys() | self.absent
         for place, claims in self.snapshot.sign_claims.items():
             if place not in self.snapshot.signs:
-                return f"nothing is written at {place} that could claim anything; give it a text"
+                return f"the sign at {place} has claims but no text; give it a text"
             for claim in claims_from_plain(claims):
                 claim.check(self.snapshot.box, agents)
         return None
@@ -127,10 +137,16 @@ class Setting:
     def _people_fault(self) -> str | None:
         for name in sorted(self.people):
             if name not in self.snapshot.agents:
-                return f"{name} is to be a person and is not in the world at its first tick"
+                return (
+                    f"{name} is played by a person but is not in the world at its first tick; "
+                    "give it a position"
+                )
             label = next((step.label for step in self.script if name in step.programs), None)
             if label is not None:
-                return f"{name} is a person; no program can act for them, as one does in {label!r}"
+                return (
+                    f"{name} is played by a person but has a program in step {label!r}; remove the "
+                    "program"
+                )
         return None
 
     def _text_fault(self) -> str | None:
@@ -138,19 +154,20 @@ class Setting:
         for step in self.script:
             texts += [step.label, step.where, *step.programs.values()]
         bad = next((text for text in texts if not is_well_formed(text)), None)
-        return None if bad is None else f"half a character is in {escaped(bad[:100])!r}; remove it"
+        return None if bad is None else f"{escaped(bad[:100])!r} has half a character; remove it"
 
 
 def _belief_fault(belief: InitialBelief, box: Box, registry: Registry) -> str | None:
-    """What is wrong with the places and contents of an initial belief."""
+    """Return what is wrong with the positions and contents of an initial belief; None: nothing."""
     whose = f"the initial belief {path_text(belief.path)!r}"
     outside = [place for place in (*belief.containers, *belief.blocks) if place not in box]
     if outside:
-        return f"{whose} is of {outside[0]}, which lies outside the box"
+        return f"{whose} names {outside[0]}, which lies outside the box"
     for place, block in belief.blocks.items():
         state = plain_state(block)
         if not -1 <= state < registry.states:
-            return f"{whose} has block state {state} at {place}; states go to {registry.states - 1}"
+            last = registry.states - 1
+            return f"{whose} has block state {state} at {place}; the highest state is {last}"
     for place, (items, _) in belief.containers.items():
         holder = f"the chest at {place} in {whose}"
         if fault := items_fault(items, registry, container_slots("chest"), holder):

@@ -1,4 +1,4 @@
-"""The codec of settings: what a run file keeps of what its nest started from."""
+"""Codec of settings, as run files store them."""
 
 from typing import Literal
 
@@ -55,10 +55,10 @@ def _names_first(static: str | Position) -> tuple[bool, str | Position]:
 
 
 def encode_start(setting: Setting, world: str) -> bytes:
-    """Return bytes of a setting and the name of the world it was opened in.
+    """Return the bytes of a setting and of the name of the world in which it was opened.
 
     Raises:
-        StoreError: Something in it is no value of a world.
+        StoreError: The setting contains a value that cannot be stored.
     """
     return codec.encode(
         _Start(
@@ -81,16 +81,16 @@ def encode_start(setting: Setting, world: str) -> bytes:
 
 
 def decode_start(data: bytes) -> tuple[Setting, str]:
-    """Setting and name of the world from the bytes of `encode_start`.
+    """Return the setting and the name of the world from the bytes of `encode_start`.
 
     Raises:
-        StoreError: The bytes hold none, or in another form.
+        StoreError: The bytes are not those of a setting, or have the form of another version.
     """
     form = codec.decode(data, _Form).form
     if form != _FORM:
         raise StoreError(
-            f"the run keeps its setting in form {form} and this program reads {_FORM}; "
-            "use the version of beliefnest that recorded it"
+            f"the run stores its setting in form {form}, and this version of beliefnest reads form "
+            f"{_FORM}; use the version that recorded it"
         )
     start = codec.decode(data, _Start)
     setting = Setting(

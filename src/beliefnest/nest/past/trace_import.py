@@ -1,4 +1,4 @@
-"""A run file made of a trace, which another program wrote."""
+"""Import of traces of other programs into run files."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,7 +16,12 @@ __all__ = ["import_trace"]
 
 
 def import_trace(trace: Trace, name: str, store: str | Path) -> None:
-    """Make a run file, called `name`, of a trace; it can be read and resumed as any other.
+    """Write a trace to a run file, which can be read and resumed as any other.
+
+    Args:
+        trace: The trace.
+        name: Name of the run.
+        store: Path of the new file.
 
     Raises:
         StoreError: The file exists or cannot be written.
@@ -48,7 +53,7 @@ def import_trace(trace: Trace, name: str, store: str | Path) -> None:
 
 @contextmanager
 def _kept_whole(journal: SqliteJournal) -> Iterator[SqliteJournal]:
-    """Close a new run file in the end, and leave nothing of it if anything raises."""
+    """Close a new run file at the end. Delete it if anything raises."""
     path = journal.path
     try:
         with journal:

@@ -1,4 +1,4 @@
-"""The lock of a nest: one thread of one process at a time."""
+"""Lock of a nest, which one thread of one process uses at a time."""
 
 from threading import RLock
 
@@ -8,7 +8,7 @@ __all__ = ["Turn"]
 
 
 class Turn(Owned):
-    """A lock that the thread inside a nest holds; a context manager, which may be nested.
+    """Lock that a thread holds while it uses a nest: a reentrant context manager.
 
     Raises:
         ForkedError: Another process opened the nest.
@@ -19,7 +19,8 @@ class Turn(Owned):
         self._lock = RLock()
 
     def __enter__(self) -> None:
-        # First: a thread that a fork did not copy may have held the lock.
+        # Check the process first: after a fork the lock may be held by a thread that the child
+        # does not have.
         self.check_own("the nest")
         self._lock.acquire()
 

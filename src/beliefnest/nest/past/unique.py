@@ -1,4 +1,4 @@
-"""Unique items: items of which everybody knows that there is one (semantics, section 3)."""
+"""Unique items: everybody knows that there is only one of each (semantics, section 3)."""
 
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -17,19 +17,19 @@ def unique_items(names: Iterable[str]) -> frozenset[str]:
     """Return the names of unique items without `minecraft:`.
 
     Raises:
-        InputError: They are no list of names.
-        UnknownNameError: There is no such item.
+        InputError: `names` is not a list of names.
+        UnknownNameError: Minecraft has no such item.
     """
     given = None if isinstance(names, str) or not isinstance(names, Iterable) else tuple(names)
     if given is None or not all(isinstance(name, str) for name in given):
-        raise InputError(f"unique is {names!r}; give a list of items such as ['diamond']")
+        raise InputError(f"unique is {names!r}; give a list of items, such as ['diamond']")
     for name in given:
         Registry.load().item_stack(name)
     return frozenset(name.removeprefix("minecraft:") for name in given)
 
 
 def unique_fault(item: str, world: Snapshot, initial: Sequence[InitialBelief]) -> str | None:
-    """Say how a world or initial beliefs contradict that there is one item; None: they do not."""
+    """Return how a world or initial beliefs hold a unique item twice; None: they do not."""
     present = [
         *((f"in the container at {at}", items) for at, items in world.containers.items()),
         *((f"with {name}", agent.inventory) for name, agent in world.agents.items()),
@@ -39,7 +39,7 @@ def unique_fault(item: str, world: Snapshot, initial: Sequence[InitialBelief]) -
         ),
     ]
     if fault := _more_than_one(item, present):
-        return f"{item!r} is unique, and at the start there are {fault}; leave one of them"
+        return f"{item!r} is unique, but at the start there are {fault}; remove all but one"
     for path in dict.fromkeys(_spoken_of(initial)):
         believed = [
             (f"in the container at {at}", items)
@@ -47,14 +47,17 @@ def unique_fault(item: str, world: Snapshot, initial: Sequence[InitialBelief]) -
         ]
         if fault := _more_than_one(item, believed):
             return (
-                f"{item!r} is unique, and initial_beliefs give {path_text(path)!r} {fault}; "
-                "leave one of them"
+                f"{item!r} is unique, but initial_beliefs give {path_text(path)!r} {fault}; "
+                "remove all but one"
             )
     return None
 
 
 def _spoken_of(initial: Iterable[InitialBelief]) -> Iterator[BeliefPath]:
-    """Nodes that differ in what initial beliefs say of them; `**` stands for any other name."""
+    """Yield paths of nodes that cover all sets of applicable initial beliefs.
+
+    The name `**` stands for any agent that no path names.
+    """
     for belief in initial:
         yield belief.path
         if belief.path[:-1] and belief.path[-1] == AND_BELOW:

@@ -1,4 +1,4 @@
-"""What runs on this side of a nest, for the record."""
+"""Versions of the programs that this process runs, for run files."""
 
 import functools
 import platform
@@ -15,7 +15,7 @@ _LIBRARIES = ("jinja2", "msgspec", "numba", "numpy", "zstandard")
 
 
 def own_versions() -> dict[str, str]:
-    """Return the program to version of what this process runs; the world adds its own."""
+    """Return versions by program name for this process. The world adds its own."""
     return {
         "beliefnest": VERSION,
         "python": platform.python_version(),
@@ -27,5 +27,5 @@ def own_versions() -> dict[str, str]:
 
 @functools.cache
 def _library_versions() -> Mapping[str, str]:
-    """Looked up in files once: studies begin many runs a second."""
+    """Return versions of libraries, looked up once: studies begin many runs a second."""
     return MappingProxyType({name: metadata.version(name) for name in _LIBRARIES})

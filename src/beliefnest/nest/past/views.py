@@ -1,4 +1,4 @@
-"""Read-only views of nodes, as users, prompts and pictures get them."""
+"""Read-only states of nodes for users, prompts and pictures."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -18,7 +18,8 @@ from beliefnest.world.values import DroppedItem, EventKind, Position
 
 __all__ = ["LiveState"]
 
-# Questions about blocks, and cells of a box, from which on all blocks are answered at once.
+# After this many questions about single blocks, or in a box of at most this many cells, all blocks
+# are computed at once.
 _FEW = 4
 _SMALL = 1024
 
@@ -31,7 +32,7 @@ _PARTS = (
 
 
 class _Blocks:
-    """The blocks of a node at one entry of a timeline, by position."""
+    """Blocks of a node at one entry of a timeline, by position."""
 
     def __init__(
         self,
@@ -47,7 +48,7 @@ class _Blocks:
 
     @property
     def grid(self) -> BlockGrid:
-        """Block state ids, shape of the box, -1 unknown."""
+        """The block state ids, shape of the box, -1 unknown."""
         with self._turn:
             return self._reading.blocks
 
@@ -71,7 +72,7 @@ class _Blocks:
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Return known blocks of some names."""
         registry, grid = self._context.registry, self.grid
-        # One more, at the end, for what is unknown.
+        # One place more at the end, which -1 (unknown) indexes.
         wanted = np.zeros(registry.states + 1, dtype=np.bool_)
         for name in names:
             ids = registry.state_ids(name)
@@ -83,7 +84,7 @@ class _Blocks:
         }
 
     def signs(self) -> dict[Position, str]:
-        """Text of each known sign, in order of position; empty where nothing is written."""
+        """Return the text of each known sign, in order of position; empty for a blank sign."""
         texts, states = self._reading.signs, self._context.sign_states
         x, y, z = self._context.box.low
         found = np.argwhere(np.isin(self.grid, states)).tolist()
@@ -102,7 +103,7 @@ class _Blocks:
         return self._currents[cell]
 
     def basis(self, position: Position) -> Basis | None:
-        """What the block rests on; None where it is unknown."""
+        """Return the ground of the block; None where it is unknown."""
         cell = self._cell(position)
         if cell not in self._bases:
             cells = self._asked_with(cell, self._bases)
@@ -112,9 +113,10 @@ class _Blocks:
         return self._bases[cell]
 
     def _asked_with(self, cell: int, known: Collection[int]) -> Sequence[int]:
-        """Return the cells to find out about along with one.
+        """Return the cells to compute together with one.
 
-        Who asks for a few will ask for all, and in a small box all cost little more than one.
+        A caller that asked for a few will probably ask for all, and in a small box all of them cost
+        little more than one.
         """
         every = self._context.cells
         return range(every) if len(known) >= _FEW or every <= _SMALL else [cell]
@@ -130,9 +132,9 @@ class _Blocks:
 
 
 class LiveState:
-    """A `State` that is read part by part when it is asked for, in the nest's `turn`.
+    """`State` whose parts are read on demand, under the nest's `turn`.
 
-    Attributes as those of `State`.
+    The attributes are those of `State`.
     """
 
     def __init__(
@@ -156,7 +158,7 @@ class LiveState:
         return f"<state of {path_text(self.path)} at tick {self.tick}: {state_words(self)}>"
 
     def _repr_html_(self) -> str:
-        # What draws takes long to import, and few states are drawn.
+        # Imported here because drawing takes long to import, and few states are drawn.
         from beliefnest.pictures.figure import figure_of
         from beliefnest.pictures.scene import read_scene
 
@@ -169,51 +171,51 @@ class LiveState:
 
     @cached_property
     def blocks(self) -> _Blocks:
-        """Believed blocks."""
+        """The believed blocks."""
         return _Blocks(self._history, self._moment, self._reading, self._turn)
 
     @cached_property
     def signs(self) -> Mapping[Position, str]:
-        """Text of each known sign, in order of position; empty where nothing is written."""
+        """The texts of known signs, in order of position; empty for a blank sign."""
         with self._turn:
             return self.blocks.signs()
 
     @cached_property
     def containers(self) -> Mapping[Position, ContainerBelief]:
-        """Known containers by position."""
+        """The known containers by position."""
         with self._turn:
             return self._reading.containers
 
     @cached_property
     def agents(self) -> Mapping[str, AgentBelief]:
-        """Every agent of the scenario by name."""
+        """All agents of the scenario by name."""
         with self._turn:
             return self._reading.agents
 
     @cached_property
     def items(self) -> Mapping[int, DroppedItem]:
-        """Dropped items last seen."""
+        """The dropped items last seen, by number."""
         with self._turn:
             return self._reading.items
 
     @cached_property
     def events(self) -> tuple[PerceivedEvent, ...]:
-        """Perceived events other than speech and thought."""
+        """The perceived events other than speech and thought, in order."""
         return tuple(event for event in self._perceived if event.kind not in _SPEECH)
 
     @cached_property
     def chat(self) -> list[tuple[int, str, str]]:
-        """What was heard."""
+        """The utterances heard: (tick, speaker, text)."""
         return self._said(EventKind.CHAT)
 
     @cached_property
     def addressees(self) -> list[str | None]:
-        """By line of `chat`, to whom it was whispered; None: it was said aloud."""
+        """The addressee of each line of `chat` that was whispered; None: it was said aloud."""
         return [e.detail.get("to") for e in self._perceived if e.kind is EventKind.CHAT]
 
     @cached_property
     def thoughts(self) -> list[tuple[int, str, str]]:
-        """What the owner thought."""
+        """The owner's thoughts: (tick, thinker, text)."""
         return self._said(EventKind.THINK)
 
     @cached_property
