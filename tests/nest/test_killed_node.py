@@ -235,7 +235,7 @@ def test_node_that_does_not_live(opened, monkeypatch, undisturbed):
         world_of(nest)._channel.kill()
         with (
             killed_in(monkeypatch, "create_region", times=3) as killed,
-            pytest.raises(bn.BodyError, match=r"ended 3 times under one call(.|\n)*doctor"),
+            pytest.raises(bn.BodyError, match=r"ended 3 times during one call(.|\n)*doctor"),
         ):
             nest["/ann"].step(1)
         assert len(set(killed)) == 3

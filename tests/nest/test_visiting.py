@@ -268,7 +268,7 @@ def test_what_nobody_could_visit_is_refused(play_of_a_person):
         with pytest.raises(InputError, match="nothing stands where people could go"):
             nest.layout()
     with Nest.open(play_of_a_person, realtime=True, listen=0) as nest:
-        with pytest.raises(InputError, match=r"stands there already; nest\.layout"):
+        with pytest.raises(InputError, match=r"stands in Minecraft already.*nest\.layout"):
             nest["/"].embody()
         with pytest.raises(UnknownNameError, match="fog"):
             nest["/observer"].embody(unknown="fog")

@@ -1,1 +1,1 @@
-"""What acts in a world and is recorded: bodies, programs, trials, replays."""
+"""Acting in worlds, and recording of it: bodies, programs, edits, speculation and replays."""

@@ -1,6 +1,7 @@
-"""The bodies of a nest's simulators: made when first needed, lost with their process, made again.
+"""Bodies of a nest's simulators.
 
-Every body has a recorder, which appends its frames to the timeline that its simulator is on.
+A body is opened when it is first needed. If its process ends, it is opened again from what was
+recorded. Each body has a recorder, which appends frames to the selected timeline of its simulator.
 """
 
 from collections.abc import Iterator, Sequence
@@ -29,19 +30,19 @@ __all__ = ["Bodies"]
 
 @dataclass(frozen=True, slots=True)
 class _RecordedBody:
-    """A body and what records its frames."""
+    """Body with the recorder of its frames."""
 
     body: Body
     recorder: FrameRecorder
 
 
 class Bodies:
-    """The bodies of simulators in control mode, by path.
+    """Bodies of simulators in control mode, by path.
 
     Attributes:
-        world: Where they live.
-        others: Further worlds of the kind, for programs that run at the same time.
-        chat_listeners: Called on what is said in the real world.
+        world: The world that has the bodies.
+        others: Further worlds of the same kind, for programs that run at the same time.
+        chat_listeners: Functions that are called with each utterance in the real world.
     """
 
     def __init__(
@@ -66,11 +67,11 @@ class Bodies:
         return path in self._embodied
 
     def lives(self) -> Lives:
-        """Return the processes that one call on bodies may use up."""
+        """Return the counter of processes that one call may use up; see `Lives`."""
         return Lives(self.forget_lost)
 
     def of(self, path: BeliefPath) -> Body:
-        """Return the body of a simulator in control mode, made if there is none yet.
+        """Return the body of a simulator in control mode. Open it if there is none.
 
         Raises:
             BranchError: The simulator is in follow mode.
@@ -78,8 +79,8 @@ class Bodies:
         """
         if path not in self._recording.selected:
             raise BranchError(
-                f"{path_text(path)} is in follow mode and has no body to act in; "
-                "switch it to a branch first: simulator.switch('my-branch')"
+                f"{path_text(path)} is in follow mode and has no body to act in; switch it to a "
+                "branch first, with simulator.switch('my-branch')"
             )
         if path not in self._embodied:
             key = self._recording.selected[path]
@@ -87,7 +88,7 @@ class Bodies:
         return self._embodied[path].body
 
     def open(self, key: TimelineKey, snapshot: Snapshot) -> None:
-        """Make the body of a simulator."""
+        """Open the body of a simulator, filled with a snapshot."""
         recorder = self._recorder(key)
         body = self.world.open_body(path_text(key.path), self.seed_of(key.path), snapshot, recorder)
         self._embodied[key.path] = _RecordedBody(body, recorder)
@@ -98,7 +99,7 @@ class Bodies:
     def _recorder(self, key: TimelineKey) -> FrameRecorder:
         recording = self._recording
         on_chat = self._tell_chat if key.path == () else None
-        # Of reality alone: what goes on faster than real time nobody could watch.
+        # Only the real world runs in real time, so only its frames are shown while they come.
         follower = self._embodying if key.path == () else None
         return FrameRecorder(
             recording.journal,
@@ -121,11 +122,11 @@ class Bodies:
             listener(tick, speaker, text)
 
     def seed_of(self, path: BeliefPath) -> str:
-        """Seed of a simulator's body."""
+        """Return the seed of a simulator's body."""
         return f"{self._recording.seed} {path_text(path)}"
 
     def start(self, path: BeliefPath, moment: ForkPoint) -> BodyStart:
-        """What a simulator's body is filled with at a moment of its timeline or its parent's."""
+        """Return the start of a simulator's body at a moment; see `start_of`."""
         recording = self._recording
         return start_of(
             recording.journal,
@@ -136,7 +137,7 @@ class Bodies:
         )
 
     def recorded(self, key: TimelineKey) -> Snapshot:
-        """What a body on a timeline has to be like now."""
+        """Return the snapshot that a body on a timeline must have now."""
         return self.start(key.path, present(self._recording.journal, key)).snapshot
 
     def give_up(self, path: BeliefPath) -> None:
@@ -146,19 +147,19 @@ class Bodies:
             embodied.body.close()
 
     def forget_lost(self) -> None:
-        """Forget the bodies whose process has ended; others are made when they are needed."""
+        """Drop the bodies whose process has ended. New ones are opened when they are needed."""
         self._embodied = {p: each for p, each in self._embodied.items() if not each.body.lost}
 
     def rename(self, key: TimelineKey) -> None:
-        """Record in the timeline that a simulator is on from now on."""
+        """Let a body's recorder append to another timeline of its simulator."""
         if key.path in self._embodied:
             self._embodied[key.path].recorder.key = key
 
     @contextmanager
     def selecting(self, key: TimelineKey, snapshot: Snapshot) -> Iterator[None]:
-        """Give a simulator's body a state and, if the body of the block records that, select it.
+        """Bring a simulator's body to a state, and select the timeline when the block ends.
 
-        If the world or the journal refuses, the simulator is where it was before.
+        The block records the selection. If it or the world raises, the simulator stays where it is.
         """
         embodied = self._embodied.get(key.path)
         try:
@@ -175,12 +176,12 @@ class Bodies:
 
     @contextmanager
     def acting(self, path: BeliefPath) -> Iterator[Body]:
-        """A call on a body; what happens and what is noted is kept once it ends, as a whole."""
+        """Wrap a call on a body: its frames and notes are recorded when it ends, or not at all."""
         body, recorder = self.of(path), self._embodied[path].recorder
         journal = self._recording.journal
         recorder.batched = True
         try:
-            # What a world refuses it has not begun.
+            # A `WorldError` is a refusal: the body was not changed, so it need not be restored.
             with self.changing(path, unless=WorldError):
                 yield body
                 recorder.flush(body.tick)
@@ -190,19 +191,19 @@ class Bodies:
         recorder.keep_up()
 
     def catch_up(self, path: BeliefPath) -> None:
-        """Record what has happened in a body that goes on by itself since the last call on it."""
+        """Record the frames of a body that runs in real time since the last call on it."""
         embodied = self._embodied.get(path)
         if embodied is not None and embodied.body.goes_on:
             with self.acting(path) as body:
                 body.step(0)
 
     def sense_of(self, path: BeliefPath, agent: str, past: ProgramPast | None = None) -> Sense:
-        """What an agent of a simulator perceives or remembers, while programs run in its body.
+        """Return the percepts and memories of an agent, for its program with `senses: percepts`.
 
-        Beliefs are worked out from what has been recorded so far, as they always are, and follow
-        this simulator, whatever branch the agent's own one is on. Where the agent is, and what
-        it has on it, it knows from its own body. A program that goes on from a `past` hears what
-        was said since then.
+        They are computed from what has been recorded so far. The agent's belief here follows this
+        simulator, whatever branch is selected for the belief itself. A program knows its own
+        position and possessions from its bot. A program that continues from a `past` also hears
+        the utterances since then.
         """
         embodied, recording = self._embodied[path], self._recording
         key = recording.controller(path)
@@ -220,13 +221,14 @@ class Bodies:
     def changing(
         self, path: BeliefPath, unless: type[BaseException] | tuple[()] = ()
     ) -> Iterator[None]:
-        """What is recorded inside is kept as a whole.
+        """Record everything inside the block or nothing.
 
-        If it raises, nothing of it is kept, and the body is again as its timeline says.
+        If the block raises, the journal is as before, and the body gets the state of its timeline
+        again.
 
         Args:
-            path: The simulator.
-            unless: What is raised only where the body was not changed.
+            path: Path of the simulator.
+            unless: Exceptions that are raised only before the body was changed.
         """
         try:
             with self._recording.journal.together():
@@ -236,14 +238,14 @@ class Bodies:
         except BaseException:
             if path in self._embodied:
                 self._embodied[path].recorder.drop()
-            # What was read meanwhile, here or in what is based on it, has not happened.
+            # Forests may have folded entries that the journal has now dropped.
             self._recording.history.forget_all()
             self._embodying.look_again()
             self.restore(path)
             raise
 
     def restore(self, path: BeliefPath) -> None:
-        """Make a simulator's body, after a fault, what its timeline says."""
+        """Bring a simulator's body, after a fault, to the state at the head of its timeline."""
         self.forget_lost()
         key, embodied = self._recording.selected.get(path), self._embodied.get(path)
         if embodied is None:
@@ -254,12 +256,12 @@ class Bodies:
         try:
             embodied.body.set_state(self.recorded(key))
         except BodyError:
-            # Not even that; another one is made when it is needed.
+            # The body is of no use any more: close it, and open another one when it is needed.
             self.give_up(path)
 
     @contextmanager
     def without(self, path: BeliefPath) -> Iterator[None]:
-        """Give a simulator's body up, and make none for a branch that is only selected."""
+        """Close a simulator's body, and open none when a branch is selected inside the block."""
         self.give_up(path)
         self._bodiless.add(path)
         try:
@@ -269,7 +271,7 @@ class Bodies:
 
     @contextmanager
     def speculated(self, path: BeliefPath, speculation: Speculation) -> Iterator[None]:
-        """Let programs that have run already run as in this simulator's body."""
+        """Let the result of a speculation stand in for this simulator's body inside the block."""
         recording = self._recording
         self.give_up(path)
         recorder = self._recorder(recording.selected[path])
@@ -280,13 +282,13 @@ class Bodies:
             self.give_up(path)
 
     def further_worlds(self, count: int) -> Sequence[World]:
-        """That many worlds like this nest's own; each is started when it is first needed."""
+        """Return a number of worlds like this nest's own. Each starts when it is first needed."""
         while len(self.others) < count:
             self.others.append(self.world.another())
         return self.others[:count]
 
     def close(self) -> None:
-        """Give up all bodies and their worlds."""
+        """Close all bodies and their worlds."""
         self._embodied.clear()
         for world in (*self.others, self.world):
             world.close()

@@ -1,4 +1,4 @@
-"""People in Minecraft hear what the agents they play hear (semantics, section 3)."""
+"""Hearing of people in Minecraft: they hear what their agents hear (semantics, section 3)."""
 
 from collections.abc import Collection
 
@@ -12,12 +12,12 @@ __all__ = ["Earshot"]
 
 
 class Earshot:
-    """Tells the process that people have joined who of them hears what is said.
+    """Messenger that tells the people's world which of them hear an utterance.
 
     Args:
-        history: Works out who perceives what.
+        history: History that computes who perceives an event.
         people: Names of the agents that people play.
-        world: The people's world.
+        world: The world that people have joined.
     """
 
     def __init__(self, history: History, people: Collection[str], world: HostedWorld) -> None:
@@ -31,15 +31,21 @@ class Earshot:
         return self._history.context.options.hearing == "global"
 
     def begin(self) -> None:
-        """Say how people hear, to a process that has just begun."""
+        """Tell a process that has just begun how people hear."""
         self._world.hearing(everybody=self.is_global)
 
     def awaits(self, frame: Frame) -> bool:
-        """Return True if somebody has to be told of what is said in a frame."""
+        """Return True if the world waits to be told who hears the utterances of a frame."""
         return not self.is_global and any(map(_is_aloud, frame.events))
 
     def tell(self, key: TimelineKey, frame: Frame, entries: int) -> None:
-        """Say who hears what is said in a frame, the last of so many entries of the timeline."""
+        """Tell the world who hears the utterances of a frame.
+
+        Args:
+            key: The timeline.
+            frame: The frame, which is the last entry.
+            entries: Number of entries of the timeline, the frame included.
+        """
         heard: list[list[str]] = [[] for event in frame.events if _is_aloud(event)]
         for name in self._people:
             reading = self._history.reading(key, (name,), entries)

@@ -1,4 +1,4 @@
-"""Simulators that stand in Minecraft for people to visit, each kept as its simulator's state is.
+"""Simulators that stand in Minecraft for people to visit, kept equal to the simulators' states.
 
 This is process F-2 of the paper, "reflecting state in the simulator environment".
 """
@@ -30,14 +30,14 @@ _REALITY: BeliefPath = ()
 
 @dataclass
 class _Embodied:
-    """A simulator that is shown.
+    """Simulator that stands in Minecraft.
 
     Attributes:
-        plot: Where.
-        names: What its agents are called in Minecraft.
-        unknown: State of the block that unknown ones are shown as.
-        exhibit: What stands for it; None: nothing yet.
-        when: Timeline and entry that it was last brought up to.
+        plot: Its plot.
+        names: Names of its agents in Minecraft, by agent.
+        unknown: Block state that stands for unknown blocks.
+        exhibit: The exhibit in the world; None: it does not stand yet.
+        when: Timeline and entry up to which the exhibit was brought last.
     """
 
     plot: Plot
@@ -48,7 +48,7 @@ class _Embodied:
 
 
 class Embodying:
-    """What stands in Minecraft of a nest's beliefs."""
+    """Beliefs of a nest that stand in Minecraft."""
 
     def __init__(self, recording: Recording, world: World) -> None:
         self._recording = recording
@@ -61,23 +61,26 @@ class Embodying:
         return bool(self._standing)
 
     def begin(self, path: BeliefPath, unknown: str) -> None:
-        """Let a simulator stand in Minecraft; see `Simulator.embody`."""
+        """Show a simulator in Minecraft; see `Simulator.embody`."""
         state = self._recording.context.registry.state_id(unknown)
         if path == _REALITY:
-            raise InputError("the real world stands there already; nest.layout() says where")
+            raise InputError(
+                "the real world stands in Minecraft already, so it cannot be embodied; "
+                "nest.layout() says where it stands"
+            )
         world = self._realtime()
         self._show(world, path, state)
         if not world.shows_reality:
             self._show(world, _REALITY, AIR)
 
     def end(self, path: BeliefPath) -> None:
-        """Let a simulator stand in Minecraft no longer."""
+        """Remove a simulator from Minecraft."""
         self._close(path)
         if self._standing.keys() == {_REALITY}:
             self._close(_REALITY)
 
     def keep_up(self) -> None:
-        """Bring all that stands in Minecraft up to what is recorded by now."""
+        """Bring all embodied simulators up to what is recorded by now."""
         for path, standing in self._standing.items():
             info = self._recording.info(path)
             when = (info.key, info.entries)
@@ -91,12 +94,15 @@ class Embodying:
             standing.when = when
 
     def look_again(self) -> None:
-        """Take nothing for up to date: what was recorded meanwhile has not happened."""
+        """Compare all embodied simulators again, because entries were taken back."""
         for standing in self._standing.values():
             standing.when = None
 
     def plots(self) -> Mapping[BeliefPath, Plot]:
-        """Where reality and all that is embodied stand; nothing if reality stands nowhere."""
+        """Return the plots of the real world and all embodied simulators, by path.
+
+        Empty in a world without plots.
+        """
         world = realtime_of(self._world)
         if world is None:
             return {}
@@ -105,7 +111,7 @@ class Embodying:
         return {_REALITY: reality, **standing}
 
     def lags(self) -> Mapping[BeliefPath, int]:
-        """By how many ticks changes were shown later than they happened, at most, by simulator."""
+        """Return by path the greatest delay of shown changes, in ticks."""
         if not self._standing:
             return {}
         lags = self._realtime().lags()
@@ -149,7 +155,10 @@ class Embodying:
         return Plot(box, origin, (stand[0] + x, stand[1], stand[2] + z))
 
     def _stand(self, reading: NodeView) -> Position:
-        """The free place nearest to the middle of the agents, or of the box if nobody is known."""
+        """Return the free position nearest to the middle of the agents.
+
+        If no agent's position is known, it is the one nearest to the middle of the box.
+        """
         box = self._recording.box
         space = BodySpace(self._recording.context.registry, box, reading.blocks)
         places = [each.position for each in reading.agents.values() if each.position is not None]
@@ -165,7 +174,7 @@ class Embodying:
         return x, y, z
 
     def _shown(self, path: BeliefPath, standing: _Embodied) -> tuple[Shown, int]:
-        """What a simulator's state is to be shown as, and the tick of its latest change."""
+        """Return the contents of a simulator's exhibit, and the tick of its latest change."""
         reading, registry = self._recording.reading(path), self._recording.context.registry
         contents = {place: held.items for place, held in reading.containers.items()}
         blocks = with_chests(registry, self._recording.box, reading.blocks, contents)
@@ -197,8 +206,8 @@ class Embodying:
         world = realtime_of(self._world)
         if world is None:
             raise InputError(
-                "nobody can visit a belief in this world, whose time does not go on by itself; "
-                "open the nest with realtime=True, listen=25565, or on a server: "
+                "nobody can visit a belief in this world, because it does not run in real time; "
+                "open the nest with realtime=True, listen=25565, or on a server with "
                 'world="minecraft://HOST:PORT"'
             )
         return world

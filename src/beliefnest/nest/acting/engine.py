@@ -1,9 +1,10 @@
-"""What acts in a nest: forks and selections, programs, time, changes by hand.
+"""Engine of a nest: it forks and selects timelines, runs programs, lets time pass, and edits.
 
-A simulator is in control mode iff a timeline is selected for it; it then has a body in the world,
-whose frames are recorded on that timeline (semantics, sections 6 and 7). Each call happens as a
-whole or, if it raises, not at all. If the process behind the world ends under a call, the call is
-made again, but for programs, which end as `killed`.
+A simulator is in control mode if and only if a timeline is selected for it. It then has a body in
+the world, whose frames are recorded on that timeline (semantics, sections 6 and 7). A call that
+raises leaves no trace: everything that it recorded is taken back. If the process behind the world
+ends during a call, the call is repeated in a new process. Programs are the exception: they end as
+`killed`, and only steps of the script are repeated.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -45,7 +46,7 @@ R = TypeVar("R")
 def _surviving(
     method: Callable[Concatenate["Engine", P], R],
 ) -> Callable[Concatenate["Engine", P], R]:
-    """Let a method be called again if the process behind the world ends under it."""
+    """Repeat a method if the process behind the world ends while it runs."""
 
     @wraps(method)
     def again(self: "Engine", /, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -57,7 +58,7 @@ def _surviving(
 def _shown(
     method: Callable[Concatenate["Engine", P], R],
 ) -> Callable[Concatenate["Engine", P], R]:
-    """Let people who visit beliefs see what has come of a method."""
+    """Show the result of a method to people who visit beliefs."""
 
     @wraps(method)
     def visible(self: "Engine", /, *args: P.args, **kwargs: P.kwargs) -> R:
@@ -70,7 +71,7 @@ def _shown(
 
 @dataclass(frozen=True, slots=True)
 class _Request:
-    """Programs that are to run together; fields as the arguments of `Engine.run`."""
+    """Request to run programs together. The fields are those of `Engine.run`."""
 
     programs: Mapping[str, str]
     timeout_ticks: int
@@ -80,12 +81,12 @@ class _Request:
 
 
 class Engine:
-    """Acts in the world of one nest and records what happens.
+    """Engine that acts in the world of one nest and records what happens.
 
     Attributes:
-        recording: The nest's timelines.
-        world: Where bodies live; a body is made when it is first needed.
-        embodying: What people who visit beliefs are shown.
+        recording: The nest's timelines and states.
+        world: The world that has the bodies. A body is opened when it is first needed.
+        embodying: The beliefs that stand in Minecraft for people to visit.
         bodies: The bodies of simulators in control mode.
     """
 
@@ -98,7 +99,7 @@ class Engine:
         self.bodies = Bodies(recording, world, self.embodying, reader)
 
     def begin(self) -> Self:
-        """Start the real world's timeline and give it its body."""
+        """Start the real world's timeline and open its body."""
         journal, snapshot = self.recording.journal, self.recording.setting.snapshot
         key = self.recording.selected[()]
         with journal.together():
@@ -125,7 +126,7 @@ class Engine:
     @_shown
     @_surviving
     def select(self, key: TimelineKey) -> None:
-        """Put a simulator on a timeline it has, in the world too."""
+        """Select one of a simulator's timelines, and bring its body to the state at its head."""
         if self.recording.selected.get(key.path) != key:
             self.bodies.catch_up(key.path)
             with self.bodies.selecting(key, self.bodies.recorded(key)):
@@ -133,34 +134,40 @@ class Engine:
 
     @_shown
     def follow(self, path: BeliefPath) -> None:
-        """Put a simulator into follow mode; its body is given up."""
+        """Put a simulator into follow mode and close its body."""
         if path == ():
-            raise BranchError(f"the real world follows nothing; {FOLLOW!r} is for beliefs")
+            raise BranchError(
+                f"the real world '/' has no parent that it could follow; switch a belief to "
+                f"{FOLLOW!r} instead"
+            )
         if path in self.recording.selected:
             self.recording.records.select(path, FOLLOW)
             del self.recording.selected[path]
         self.bodies.give_up(path)
 
     def rename(self, key: TimelineKey, name: str) -> None:
-        """Give a branch another name; who is on it stays on it."""
+        """Rename a branch. A simulator that is on it stays on it."""
         self.recording.journal.rename(key, name)
-        # What is remembered of timelines based on it names it as well.
+        # Cached forests of timelines that were forked from it refer to the old name too.
         self.recording.history.forget_all()
         if self.recording.selected.get(key.path) == key:
             new = self.recording.selected[key.path] = TimelineKey(key.path, name)
             self.bodies.rename(new)
 
     def delete(self, keys: Sequence[TimelineKey]) -> None:
-        """Remove timelines, those based on others first, all of them or none.
+        """Delete timelines, all of them or none.
+
+        Args:
+            keys: The timelines; a fork comes before the timeline that it was forked from.
 
         Raises:
-            BranchError: A simulator is on one of them, or another one is based on it.
+            BranchError: A simulator is on one of them, or another timeline was forked from it.
         """
         for key in keys:
             if self.recording.selected.get(key.path) == key:
                 raise BranchError(
-                    f"{path_text(key.path)} is on branch {key.branch!r}; "
-                    "switch it to another one before deleting that"
+                    f"{path_text(key.path)} is on branch {key.branch!r}, so that cannot be "
+                    "deleted; switch it to another branch first"
                 )
         with self.recording.journal.together():
             for key in keys:
@@ -185,18 +192,18 @@ class Engine:
     ) -> Mapping[str, ProgramResult]:
         """Run programs in a body, record what happens, and note them with their results.
 
-        If the process behind the world ends under them, their results say so, and what they did
-        until then is not kept. A step of the script is then run again, since it does again what
-        it would have done.
+        If the process behind the world ends while they run, their results say so, and nothing that
+        they did is kept. A step of the script is then repeated: from the same state and seed it
+        does the same again.
 
         Args:
-            path: The simulator.
-            programs: Their texts by agent.
-            timeout_ticks: Ticks after which they are stopped.
-            step: Number of the script's step that they are; None: they are none.
-            senses: What they read.
-            past: Of agents whose programs go on where they were cut. None: none does, and results
-                do not say what a later one would have to know.
+            path: Path of the simulator.
+            programs: Texts of the programs by agent.
+            timeout_ticks: Ticks after which programs are stopped.
+            step: Number of the step of the script; None: the programs are not from the script.
+            senses: `world` or `percepts`: what programs can read.
+            past: Pasts of agents whose programs continue interrupted ones. None: none does, and
+                results carry no past for later programs.
         """
         rules = self._rules if past is None else replace(self._rules, remembers=True, past=past)
         request = _Request(programs, timeout_ticks, step, senses, rules)
@@ -224,8 +231,8 @@ class Engine:
                 results = {name: replace(each, placed=placed) for name, each in results.items()}
         except BodyLostError as lost:
             message = (
-                f"nothing of the program is kept, {path_text(path)} is at tick {before.head} as "
-                f"it was before, and what comes next runs in a new process: {lost}"
+                f"nothing that the program did is kept, {path_text(path)} is at tick "
+                f"{before.head} as before, and the next call runs in a new process: {lost}"
             )
             fault = Fault(message, KILLED)
             results = {agent: ProgramResult(agent, False, fault, 0) for agent in programs}
@@ -241,9 +248,9 @@ class Engine:
         timeout_ticks: int,
         processes: int,
     ) -> Mapping[int, Speculation]:
-        """Run programs as if in a simulator's body, each job in one of its own, unrecorded.
+        """Run jobs ahead of their turn, each in a copy of a simulator's body, without recording.
 
-        All begin at `base`; so many `processes` run at the same time. See `speculate`.
+        All begin at `base`, in up to `processes` processes at the same time. See `speculation`.
         """
         start = SpeculationStart(
             f"{path_text(path)} ahead",
@@ -261,7 +268,10 @@ class Engine:
         timeout_ticks: int,
         speculation: Speculation,
     ) -> Mapping[str, ProgramResult]:
-        """Run programs that have run already, in another body that was as this simulator's is."""
+        """Record programs that have run already, in a body equal to this simulator's.
+
+        See `speculation`.
+        """
         with self.bodies.speculated(path, speculation):
             return self.run(path, programs, timeout_ticks)
 
@@ -280,11 +290,11 @@ class Engine:
         blocks: Mapping[Position, Block],
         containers: Mapping[Position, Items],
     ) -> None:
-        """Record a change by hand; where there is a body, it becomes what is recorded then."""
+        """Record a change by hand, and apply it to the body if there is one."""
         self.bodies.catch_up(path)
         journal, info = self.recording.journal, self.recording.info(path)
         with self.bodies.changing(path):
-            # What goes on in the body goes on after an edit.
+            # An edit does not change the internal state: copy it to the moment after the edit.
             state = internal_state_at(journal, present(journal, info.key))
             journal.append(info.key, [Edit(info.head, path, blocks, containers)], info.head)
             note_internal_state(journal, present(journal, info.key), state)
@@ -296,7 +306,7 @@ class Engine:
         return RunRules(self.recording.setting.perception.speech_ticks)
 
     def close(self) -> None:
-        """Give up all bodies, the world and the journal; nothing in a forked child."""
+        """Close all bodies, the world and the journal. Do nothing in a forked child."""
         if not self.recording.turn.is_own:
             return
         try:
@@ -312,7 +322,7 @@ class Engine:
         *,
         kept: bool = True,
     ) -> None:
-        """Note programs that ran together on a timeline, which was as `before` when they began."""
+        """Note programs that ran together. `before` is their timeline as it was at their begin."""
         records = self.recording.records
         group = records.next_group()
         for agent, result in results.items():

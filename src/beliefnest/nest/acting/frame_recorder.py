@@ -1,4 +1,4 @@
-"""The recorder of one body: appends its frames to the timeline that the body is on."""
+"""Recorder of one body, which appends its frames to a timeline."""
 
 from collections.abc import Callable, Iterator
 
@@ -16,25 +16,27 @@ Utterance = tuple[int, str, str]
 """Tick, speaker, text."""
 
 ChatListener = Callable[[int, str, str], None]
-"""Takes tick, speaker and text of what was said, or whispered, in the real world."""
+"""Function of tick, speaker and text of an utterance or a whisper in the real world."""
 
 _BATCH = 256
 
 
 class FrameRecorder:
-    """Takes a body's frames and appends them to the timeline it is on.
+    """Recorder that appends a body's frames to its timeline.
 
-    Each frame is written at once, but while a call is under way, when `batched` is set.
+    Outside of calls each frame is written at once. During a call `batched` is set: frames are then
+    collected, and written together when the call ends, when there are `_BATCH` of them, or when
+    people or programs have to know them earlier.
 
     Args:
-        journal: Where it appends them.
-        history: What follows the journal.
+        journal: The journal of the timeline.
+        history: History that follows the journal.
         key: The timeline.
-        hearsay: Completes frames in which something is said; None: they are recorded as they are.
-        on_chat: Is called with what was said, once it is recorded; None: nobody is.
-        follower: What people are shown, kept up to date with every frame, also while a call is
-            under way; None: nothing is.
-        earshot: Tells people what the agents they play hear; None: nobody is told.
+        hearsay: Reader that adds claims to utterances; None: frames are recorded as they are.
+        on_chat: Function called with each utterance after it is recorded; None: none is called.
+        follower: Embodied beliefs, brought up to date with every frame, also during a call; None:
+            there are none.
+        earshot: Object that tells people what the agents they play hear; None: nobody is told.
     """
 
     def __init__(
@@ -60,7 +62,7 @@ class FrameRecorder:
         self._tick: int | None = None
 
     def __call__(self, frame: Frame) -> None:
-        """Take a frame."""
+        """Take a frame. Claims are read from it after everything before it is written."""
         if self._hearsay is not None and has_unread(frame):
             self.flush()
             frame = self._hearsay.completed(frame, self.key)
@@ -82,14 +84,17 @@ class FrameRecorder:
             self.earshot.tell(self.key, frame, self._journal.info(self.key).entries)
 
     def flush(self, tick: int | None = None) -> None:
-        """Write what was taken; `tick` is the body's tick by now."""
+        """Append the collected frames. `tick` is the body's tick; None: that of the last frame."""
         head = self._tick if tick is None else tick
         if head is not None:
             frames, self._frames, self._tick = self._frames, [], None
             self._journal.append(self.key, frames, head)
 
     def keep_up(self) -> None:
-        """Let the history follow what was written, once that is safe, and hand on what was said."""
+        """Let the history follow the written entries, and call `on_chat` with utterances.
+
+        Call this only when the entries cannot be taken back any more.
+        """
         self._history.note(self.key)
         said, self._said = self._said, []
         if self._on_chat is not None:
@@ -97,7 +102,7 @@ class FrameRecorder:
                 self._on_chat(*utterance)
 
     def drop(self) -> None:
-        """Forget what was taken, because nothing of it is kept."""
+        """Drop the collected frames, because the call failed."""
         self._frames, self._tick, self._said = [], None, []
 
 

@@ -1,7 +1,7 @@
-"""Claims read out of utterances that carry none, put into frames before these are recorded.
+"""Claims that a model reads out of utterances without claims, before frames are recorded.
 
-What was found stands in the utterance's event from then on, beside who found it
-(`claims_from`), so that whatever reads or replays a run asks nobody again.
+The claims are recorded in the event of the utterance, with the name of the reader (`claims_from`).
+Later readers and replays use the record and never ask the model again.
 """
 
 from collections.abc import Iterable, Mapping
@@ -26,20 +26,20 @@ __all__ = ["ClaimReader", "Hearsay", "has_unread", "recalled"]
 
 
 class ClaimReader(Protocol):
-    """Who reads claims out of text."""
+    """Reader of claims in text, for example a model."""
 
     @property
     def name(self) -> str:
-        """What is recorded beside the claims it finds."""
+        """The name that is recorded beside the claims it finds."""
 
     def read(
         self, path: BeliefPath, tick: int, text: str, speaker: str, nameable: Nameable
     ) -> Iterable[Claim]:
-        """What a text claims that was uttered in the simulator `path` at a tick."""
+        """Return the claims of a text that was uttered in the simulator `path` at a tick."""
 
 
 class Hearsay:
-    """Completes the frames of a nest."""
+    """Completion of frames: adds the claims that a reader finds in utterances."""
 
     def __init__(self, reader: ClaimReader, setting: Setting, history: History) -> None:
         self._reader = reader
@@ -47,12 +47,12 @@ class Hearsay:
         self._history = history
 
     def completed(self, frame: Frame, key: TimelineKey) -> Frame:
-        """Return the frame with what its utterances claim, where they do not say so themselves.
+        """Return the frame with claims added to its utterances that carry none.
 
-        All that happened before it has to be recorded: that decides what can be named.
+        Everything before the frame must be recorded already: it decides what claims can name.
 
         Raises:
-            InputError: What the reader gave is no claim, or does not fit the world.
+            InputError: The reader returned something that is not a claim or does not fit the world.
         """
         seen = self._history.reading(key, key.path)
         nameable = _nameable(self._setting, self._history, seen)
@@ -72,12 +72,12 @@ class Hearsay:
 
 
 def has_unread(frame: Frame) -> bool:
-    """Return True if something was said in a frame of which it is not known what it claims."""
+    """Return True if a frame has an utterance whose claims were not read yet."""
     return any(map(_is_unread, frame.events))
 
 
 def recalled(frame: Frame, recorded: Frame | None) -> Frame:
-    """Return a frame that came about again, with what was once read out of the same utterances."""
+    """Return a frame of a replay with the claims that were once read out of its utterances."""
     if recorded is None or not has_unread(frame):
         return frame
     known = [event for event in recorded.events if "claims_from" in event.detail]
@@ -95,7 +95,7 @@ def _is_unread(event: Event) -> bool:
 
 
 def _bare(event: Event) -> tuple[object, ...]:
-    """Return an utterance without what it claims."""
+    """Return an utterance without its claims, for comparison."""
     detail: Mapping[str, Any] = event.detail
     return event.kind, event.actor, detail["text"], detail.get("to")
 

@@ -1,9 +1,9 @@
-"""Imagination: a belief as a world of its own, tried out in this process and recorded nowhere.
+"""Imagination: a belief as a world of its own, which runs in this process and is not recorded.
 
-It is what a branch of a belief would be in the scripted world (semantics, section 6): what the
-believer believes is the case in it, and what it believes others to believe follows as it follows
-anything. A fork takes well under a millisecond, so that a planner can try hundreds of courses.
-Of whatever lies above the believer nothing is in it.
+It is what a branch of the belief would be in the scripted world (semantics, section 6). The
+believer's beliefs are the facts of this world, and the believed beliefs of others follow it as any
+beliefs follow a timeline. A fork takes well under a millisecond, so that a planner can try hundreds
+of courses. An imagination contains nothing from the simulators above the believer.
 """
 
 import math
@@ -36,26 +36,26 @@ _MOST_GROUNDS = 64
 
 @dataclass
 class _News:
-    """What has happened since a forest was forked."""
+    """Events since a forest was forked."""
 
     happened: list[tuple[int, Event]] = field(default_factory=list)
 
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
-        """Return all events since then."""
+        """Return all events since the fork."""
         return self.happened
 
     def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
-        """Nothing: what was heard before has had its effect."""
+        """Return no events: earlier events have had their effect on the forked beliefs."""
         return ()
 
 
 class Performer:
-    """An agent at calls, one after the other.
+    """Agent that makes calls of skills one after the other.
 
     Attributes:
-        calls: What is to be done yet, the call under way first.
-        failed: Whether the latest call could not be done.
-        doing: The call under way; None: none is.
+        calls: The remaining calls, the present one first.
+        failed: Whether the latest call failed.
+        doing: Generator of the present call, one step a tick; None: no call is under way.
     """
 
     def __init__(self, calls: Iterable[Call] = ()) -> None:
@@ -65,30 +65,33 @@ class Performer:
 
     @property
     def is_done(self) -> bool:
-        """True if nothing is left."""
+        """True if no call is left."""
         return not self.calls
 
     def again(self) -> "Performer":
-        """Return one that begins the call under way anew, as in a fork."""
+        """Return a performer for a fork, which begins the present call from its start."""
         return Performer(self.calls)
 
 
 class Imagination:
-    """A belief as a world of its own, and what is believed in it.
+    """Belief as a world of its own, with the beliefs in it.
 
     Args:
-        forest: The nodes, the believer's own first; nobody else's. None: beliefs are not followed.
-        root: The believer's path.
-        unknown: Blocks that are unknown to it, in which one can be and on which one can stand.
-        world: What is the case in it.
-        grounds: Where one can stand, by blocks; shared by forks.
-        news: Where the forest looks up what has happened.
-        speech_ticks: Ticks that it takes somebody in it to say something.
+        forest: The nodes, the believer's own first, used by this imagination alone. None: beliefs
+            in this world are not followed.
+        root: Path of the believer.
+        unknown: bool in the box's shape: blocks unknown to the believer. Agents can be in them and
+            stand on them.
+        world: The world with the believed state.
+        grounds: Cache of walkable ground by blocks, shared by forks.
+        news: Events for the forest.
+        speech_ticks: Ticks that an agent needs to say something.
 
     Attributes:
-        root: The believer's path.
-        world: What is the case in it.
-        happened: All that has happened in it and in what it was forked from: (tick, event).
+        root: Path of the believer.
+        world: The world with the believed state.
+        happened: All events in this imagination and in those from which it was forked: (tick,
+            event).
     """
 
     def __init__(
@@ -128,15 +131,15 @@ class Imagination:
         grounds: dict[bytes, Ground] | None = None,
         speech_ticks: int | None = None,
     ) -> "Imagination":
-        """What a node of a forest would be as a world of its own.
+        """Return a node of a forest as a world of its own.
 
         Args:
-            source: Holds the node and those below it.
-            root: The node.
-            depth: How deep below it beliefs are followed.
-            tick: The tick it is.
+            source: Forest with the node and the nodes below it.
+            root: Path of the node.
+            depth: Number of levels below the node at which beliefs are followed.
+            tick: Tick at which the imagination begins.
             grounds: As for the class.
-            speech_ticks: As for the class; None: as many as it takes in the world.
+            speech_ticks: As for the class; None: the number in the options of perception.
         """
         wanted = paths_below(root, depth, source.context.agents)
         news = _News()
@@ -161,9 +164,9 @@ class Imagination:
         return bool(self._unknown[index]) and int(self.world.blocks[index]) == 0
 
     def may_reach(self, agent: str, place: Position) -> bool:
-        """Whether an agent may get to where it can use the block at a position; False: it cannot.
+        """Return False if an agent certainly cannot get within reach of a block.
 
-        Nobody whose place is unknown can.
+        True means that it may; the test is coarse. It is False for an agent of unknown position.
         """
         state = self.world.agents.get(agent)
         if state is None:
@@ -172,31 +175,34 @@ class Imagination:
         return self._standing().may_lead((x, y, z), InReach(place, REACH))
 
     def knows(self, path: BeliefPath) -> bool:
-        """Return True if beliefs are followed as deep as a path below the root."""
+        """Return True if the beliefs of a path below the root are followed."""
         whole = normalised((*self.root, *path))
         return whole == self.root or (self._forest is not None and whole in self._forest)
 
     def view(self, path: BeliefPath = ()) -> NodeView:
-        """What a node holds; read it before time goes on.
+        """Return the view of a node. Read it before time passes.
 
         Args:
             path: Agents below the root.
 
         Raises:
-            PathError: Beliefs are not followed that deep.
+            PathError: The beliefs of the path are not followed.
         """
         whole = normalised((*self.root, *path))
         return NodeView(self._with(whole), whole)
 
     def print_of(self, agent: str, depth: int) -> tuple[object, ...] | None:
-        """What a plan of an agent in it could depend on; equal ones lead to equal plans.
+        """Return a key of everything that a plan of an agent depends on, for caches of plans.
+
+        Equal keys lead to equal plans.
 
         Args:
-            agent: The agent, whose belief it plans in.
-            depth: How deep below that belief it looks.
+            agent: Name of the agent, which plans in its own belief.
+            depth: Number of levels below that belief that the plan considers.
 
         Returns:
-            None: it depends on more, as on when somebody could last learn of something.
+            The key. None if the plan may depend on more, for example on the ticks at which agents
+            last watched a place (`testimony: informed`).
         """
         forest = self._fold()
         root = normalised((*self.root, agent))
@@ -206,7 +212,7 @@ class Imagination:
         return tuple(_print(NodeView(forest, node)) for node in nodes)
 
     def fork(self) -> "Imagination":
-        """Return the same once more, to go another way."""
+        """Return an independent copy, which can take another course."""
         forest, news = self._fold(), _News()
         if forest is not None:
             nodes = [path for path in forest.paths if path != self.root]
@@ -216,7 +222,7 @@ class Imagination:
         return self._again(forest, news)
 
     def bare(self) -> "Imagination":
-        """A fork in which beliefs are not followed: only what the believer takes for real."""
+        """Return a copy in which no beliefs are followed, only the world of the believer."""
         return self._again(None, _News())
 
     def _again(self, forest: Forest | None, news: _News) -> "Imagination":
@@ -233,10 +239,10 @@ class Imagination:
         return made
 
     def doubting(self, speakers: Collection[str]) -> tuple["Imagination", frozenset[Position]]:
-        """Return the same with what some have said of containers taken for lies.
+        """Return a copy in which claims of some speakers about containers count as lies.
 
         Returns:
-            That, and the containers without the things that were claimed to be in them.
+            The copy, and the positions of the containers that are empty in it for that reason.
         """
         made = self.fork()
         held = {place: dict(items) for place, items in made.world.containers.items()}
@@ -252,10 +258,10 @@ class Imagination:
         return made, doubted
 
     def below(self, agent: str, depth: int) -> "Imagination":
-        """What an agent in it believes, as a world of its own.
+        """Return the belief of an agent in this world, as a world of its own.
 
         Raises:
-            PathError: Beliefs are not followed that deep.
+            PathError: The beliefs of the agent are not followed.
         """
         root = normalised((*self.root, agent))
         return Imagination.of(
@@ -268,9 +274,18 @@ class Imagination:
         ticks: int,
         stop: Callable[[], bool] = lambda: False,
     ) -> int:
-        """Let agents act together, tick by tick, until `stop` says so; how many ticks passed.
+        """Let agents act together, tick by tick.
 
-        Performers whose agents are not in it, or whose call cannot be done, go on with the next.
+        A performer whose call fails goes on with its next call. One whose agent is not in this
+        world drops all its calls.
+
+        Args:
+            performers: Performers by agent.
+            ticks: Greatest number of ticks to pass.
+            stop: Function called before each tick; True ends the play.
+
+        Returns:
+            Number of ticks that passed.
         """
         passed = 0
         for name, performer in performers.items():
@@ -287,7 +302,7 @@ class Imagination:
         return passed
 
     def _begin(self, name: str, performer: Performer) -> None:
-        """Let an agent begin its next call that can be begun."""
+        """Let an agent begin its next call. Calls that fail at once are dropped."""
         while performer.doing is None and performer.calls:
             if name not in self.world.agents:
                 performer.calls.clear()
@@ -337,10 +352,13 @@ class Imagination:
             self._news.happened += events
 
     def _with(self, path: BeliefPath) -> Forest:
-        """Return the forest as of now, which has to hold a node."""
+        """Return the forest with everything folded; raise PathError if it has no such node."""
         forest = self._fold()
         if forest is None or path not in forest:
-            raise PathError(f"{path_text(path)} is deeper than this imagination goes")
+            raise PathError(
+                f"this imagination does not follow the beliefs of {path_text(path)}; make it with "
+                "a greater depth"
+            )
         return forest
 
     def _fold(self) -> Forest | None:
@@ -365,7 +383,7 @@ def _print(view: NodeView) -> tuple[object, ...]:
 
 
 def _advance(performer: Performer) -> bool:
-    """Return a tick of the call under way; whether it has ended."""
+    """Do one tick of the present call. Return True if the call has ended."""
     if performer.doing is None:
         return False
     try:

@@ -1,7 +1,7 @@
-"""How often the process behind a world may end under one call: the only retry there is.
+"""Retries of a call when the process behind a world ends: the only retry in the program.
 
-When it ends, all bodies in it are lost and the call under way has not happened. It is made again
-in a new process until its lives are used up.
+When the process ends, all its bodies are lost and the call has not happened. The call is then
+repeated in a new process, until its lives are used up.
 """
 
 from collections.abc import Callable
@@ -17,10 +17,10 @@ T = TypeVar("T")
 
 
 class Lives:
-    """The processes that one call may use up.
+    """Counter of the processes that one call may use up.
 
     Args:
-        forget_lost: Called before each attempt and after the last; drops the bodies that were lost.
+        forget_lost: Function that drops lost bodies; called before each attempt and after the last.
     """
 
     def __init__(self, forget_lost: Callable[[], None] = lambda: None) -> None:
@@ -28,15 +28,15 @@ class Lives:
         self._left = _LIVES
 
     def spend(self) -> bool:
-        """Give up one life, because a process ended; returns whether there is another."""
+        """Count one life as spent, because a process ended. Return True if one is left."""
         self._left -= 1
         return self._left > 0
 
     def call(self, act: Callable[[], T]) -> T:
-        """Make a call; if the process ends under it, make it again.
+        """Make a call, and repeat it if the process ends during it.
 
         Raises:
-            BodyError: It was started again and again, and each time it ended.
+            BodyError: The process ended at each attempt.
         """
         while True:
             self._forget_lost()
@@ -47,7 +47,7 @@ class Lives:
                     continue
                 self._forget_lost()
                 raise BodyError(
-                    f"the process behind the world ended {_LIVES} times under one call; nothing "
-                    "of it is kept. Run `beliefnest doctor`; if memory or time did not suffice, "
-                    f"give more with limits=ProcessLimits(...). The last time: {lost}"
+                    f"the process behind the world ended {_LIVES} times during one call, and "
+                    "nothing of the call is kept. Run `beliefnest doctor`; if memory or time ran "
+                    f"out, allow more with limits=ProcessLimits(...). The last time: {lost}"
                 ) from lost

@@ -1,9 +1,10 @@
-"""Where a body begins with agents that cannot be where they are believed to be.
+"""Placement of agents in a body that cannot be where they are believed to be.
 
-A belief may be physically impossible: an agent in a doorway that is now believed shut, two agents
-in one place, a floor that is not known (semantics, section 7). Everything here is a pure function
-of the believed blocks, -1 unknown, and the believed agents. A place is the middle of an agent's
-feet; an agent takes up 0.6 by 1.8 by 0.6 blocks. Unknown blocks are in nobody's way.
+A belief may be physically impossible: an agent in a doorway whose door is now believed shut, two
+agents in one place, a floor that is unknown (semantics, section 7). Every function here is a pure
+function of the believed blocks, -1 unknown, and the believed agents, so that a body opened again is
+the same. A place is the middle of an agent's feet. An agent takes up 0.6 by 1.8 by 0.6 blocks.
+Unknown blocks stop nobody.
 """
 
 import math
@@ -19,14 +20,14 @@ from beliefnest.world.values import HALF_WIDTH, AgentState, Box, Point, Position
 __all__ = ["FARTHEST", "BodySpace", "Placed", "moved_agents", "placed", "unknown_floors"]
 
 Placed = Mapping[str, tuple[Point, Point]]
-"""Agent to where it is believed to be and where its body begins."""
+"""Believed place and first place in the body, by agent."""
 
 FARTHEST = 3.0
-"""How far an agent is moved at most, in blocks."""
+"""Greatest distance by which an agent is moved, in blocks."""
 
 _HEIGHT = 1.8
 _TOUCH = 1e-3
-# A floor so little below the feet is settled on, not fallen to.
+# Greatest height above a floor, in blocks, from which an agent settles on it without a fall.
 _SETTLES = 0.5
 _JUMP = 1.25
 _DROP = 3.0
@@ -39,7 +40,7 @@ _HARMFUL = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class BodySpace:
-    """The believed blocks of a box, as what agents stand on and are stopped by."""
+    """Believed blocks of a box, as obstacles and floors of agents."""
 
     registry: Registry
     box: Box
@@ -52,7 +53,7 @@ class BodySpace:
     def boxes_at(self, cell: Position) -> Iterator[BoxBounds]:
         """Yield the collision boxes of the block at a cell, in the coordinates of the box.
 
-        Invisible walls stand beside the box.
+        Cells beside the box are invisible walls.
         """
         state = self.state(cell)
         x, y, z = cell
@@ -67,7 +68,7 @@ class BodySpace:
         """Yield the collision boxes that reach into a room by more than a touch."""
         x0, y0, z0, x1, y1, z1 = room
         xs, zs = _span(x0, x1), _span(z0, z1)
-        # A shape may reach half a block out of its own cell, upwards.
+        # A shape may reach half a block out of its cell upwards, so test one more level below.
         for x, y, z in product(xs, _span(y0 - 1, y1), zs):
             for box in self.boxes_at((x, y, z)):
                 sides = zip(box[:3], room[3:], box[3:], room[:3], strict=True)
@@ -75,7 +76,10 @@ class BodySpace:
                     yield box
 
     def is_free(self, *places: Point) -> bool:
-        """Whether an agent can be at a place or, given two on a level, go straight between them."""
+        """Return True if no known block stops an agent at a place.
+
+        Given two places at one height: if none stops it on the straight way between them.
+        """
         return not any(True for _ in self.hits(_body(*places)))
 
     def has_floor(self, place: Point) -> bool:
@@ -85,7 +89,7 @@ class BodySpace:
         return any(True for _ in self.hits((*low, x + HALF_WIDTH, y, z + HALF_WIDTH)))
 
     def unknown_floor(self, place: Point) -> Position | None:
-        """The unknown block that an agent would fall into; None if it stands or falls on others."""
+        """Return the unknown block into which an agent would fall; None if known blocks stop it."""
         if self.has_floor(place):
             return None
         x, y, z = (math.floor(value) for value in place)
@@ -98,7 +102,10 @@ class BodySpace:
         return None
 
     def heights(self, cell: Position) -> list[float]:
-        """Where in a cell the feet of one in its middle can be, lowest first, on known floors."""
+        """Return the heights in a cell at which an agent can stand in its middle on known floors.
+
+        The lowest comes first.
+        """
         x, y, z = cell
         column = (x + 0.5 - HALF_WIDTH, y - 1.0, z + 0.5 - HALF_WIDTH)
         room = (*column, x + 0.5 + HALF_WIDTH, y + 1.0, z + 0.5 + HALF_WIDTH)
@@ -112,7 +119,7 @@ class BodySpace:
         return named and is_open(self.registry, state) is False
 
     def is_clear(self, place: Point) -> bool:
-        """Whether nothing stands or burns beside an agent, in the blocks of its body or below."""
+        """Return True if nothing harmful or in the way is in an agent's cells or the one below."""
         x, y, z = (math.floor(value) for value in place)
         cells = [(x, y + up, z) for up in (-1, 0, 1)]
         names = {self.registry.name(s) for cell in cells if (s := self.state(cell)) >= 0}
@@ -126,19 +133,22 @@ def placed(
     seen_at: Mapping[str, int | None],
     seen_now: Collection[str] = (),
 ) -> Placed:
-    """Who cannot be where it is believed to be, and where its body begins instead.
+    """Return the agents that cannot be where they are believed to be, with their new places.
 
-    That is the nearest place within 3 blocks where it can stand, among those from which it can
-    walk to the block where it was last seen, if there are any. Where there is no place at all the
-    agent is left where it is. Of two in one place the one stays that was seen in it last; two who
-    were seen in it at the same tick did stand so, and stay.
+    The new place is the nearest one within 3 blocks where the agent can stand. Places from which it
+    can walk to the block where it was last seen are preferred, then places with a known floor. If
+    there is no place at all the agent stays. Of two agents in one place, the one that was seen
+    there last stays. If both were seen there at the same tick they did stand so, and both stay.
 
     Args:
         space: The believed blocks.
         agents: The believed agents.
-        seen_at: When each was last seen; None: never.
-        seen_now: Who is seen in this tick. One can stand beside the leaf of a shut door, in its
-            block; who was only last seen there was in an open doorway.
+        seen_at: Tick at which each agent was last seen; None: never.
+        seen_now: Agents that are seen in this tick. These may stand in the block of a shut door,
+            beside its leaf. Any other agent last seen in a doorway was there while it was open.
+
+    Returns:
+        Moves by agent, in order of names.
     """
     last = {name: -1 if tick is None else tick for name, tick in seen_at.items()}
     moved: dict[str, tuple[Point, Point]] = {}
@@ -158,14 +168,14 @@ def placed(
 
 
 def moved_agents(agents: Mapping[str, AgentState], moves: Placed) -> dict[str, AgentState]:
-    """Return the agents that are moved, where they begin."""
+    """Return the states of the moved agents at their new places."""
     return {
         name: replace(agents[name], position=to, on_ground=True) for name, (_, to) in moves.items()
     }
 
 
 def unknown_floors(space: BodySpace, agents: Mapping[str, AgentState]) -> frozenset[Position]:
-    """Unknown blocks that agents would fall into: in a body they have to be solid."""
+    """Return the unknown blocks into which agents would fall. A body makes them solid."""
     floors = (space.unknown_floor(agent.position) for agent in agents.values())
     return frozenset(floor for floor in floors if floor is not None)
 
@@ -179,7 +189,7 @@ def _can_be(space: BodySpace, agent: AgentState) -> bool:
 
 
 def _is_taken(place: Point, taken: Sequence[Point]) -> bool:
-    """Return True if somebody's feet are in the same block."""
+    """Return True if another agent's feet are in the same block."""
     return _cell(place) in map(_cell, taken)
 
 
@@ -194,9 +204,9 @@ def _nearest(space: BodySpace, place: Point, taken: Sequence[Point]) -> Point | 
 
 
 def _places(space: BodySpace, place: Point) -> Iterator[Point]:
-    """Where an agent can stand near a place, unknown floors included."""
+    """Yield the places near a place where an agent can stand, also on unknown floors."""
     for x, y, z in _cells_near(_cell(place)):
-        # Who stands on the topmost blocks has its feet above them.
+        # An agent on the topmost blocks has its feet one cell above the box.
         if (x, min(y, space.box.high[1]), z) in space.box:
             for height in _levels(space, (x, y, z)):
                 yield (x + 0.5, height, z + 0.5)
@@ -212,7 +222,12 @@ def _levels(space: BodySpace, cell: Position) -> list[float]:
 
 
 def _walkable(space: BodySpace, goal: Position) -> set[Position]:
-    """Return cells from whose middle one can walk to the middle of a cell, itself included."""
+    """Return the cells near a goal from whose middle an agent can walk to the goal.
+
+    This is a search backwards from the goal, cell by cell. A step is possible if the agent need not
+    jump higher than `_JUMP` or drop deeper than `_DROP`, and if nothing stops it on the straight
+    way at the higher of the two levels. The goal itself is included.
+    """
     near = set(_cells_near(goal))
     waiting = [(goal, height) for height in _levels(space, goal)]
     seen = set(waiting)

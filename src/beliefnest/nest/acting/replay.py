@@ -1,4 +1,4 @@
-"""Replays: recorded programs run again, each timeline in a fresh body, and frames compared."""
+"""Replay of recorded programs, each timeline in a fresh body, with a comparison of frames."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,11 +25,11 @@ __all__ = ["ReplayedTimeline", "replay"]
 
 @dataclass(frozen=True, slots=True)
 class ReplayedTimeline:
-    """What became of one timeline when it was run again.
+    """Result of the replay of one timeline.
 
     Attributes:
         key: The timeline.
-        programs: How many programs were run.
+        programs: Number of programs that were run.
         difference: The first difference; None if there is none.
     """
 
@@ -40,7 +40,7 @@ class ReplayedTimeline:
 
 @dataclass(frozen=True, slots=True)
 class _RecordedCall:
-    """Programs that ran together: at a tick, after some entries of the timeline, for some ticks."""
+    """Programs that ran together in one call, with the tick, entries and ticks of the call."""
 
     tick: int
     entries: int
@@ -51,26 +51,30 @@ class _RecordedCall:
     past: Mapping[str, ProgramPast]
 
     def made(self, entry: Entry) -> bool:
-        """Return True if an entry lies in its time."""
+        """Return True if an entry was recorded during the call."""
         return self.tick < entry.tick <= self.tick + self.ticks
 
 
 @dataclass(frozen=True, slots=True)
 class _RecordedTimeline:
-    """One timeline as it was recorded."""
+    """Timeline as it was recorded."""
 
     journal: Journal
     history: History
     info: TimelineInfo
 
     def after(self, entries: int, tick: int, world: World) -> Snapshot:
-        """What its body was like after some of its entries, in a world of that kind."""
+        """Return the snapshot of its body after some entries, in a world of the given kind."""
         moment = ForkPoint(self.info.key, entries, tick)
         path, physics = self.info.key.path, world.has_physics
         return start_of(self.journal, self.history, path, moment, has_physics=physics).snapshot
 
     def senses(self, call: _RecordedCall, body: Body) -> Mapping[str, Sense]:
-        """What its agents knew when, as recorded: a difference before that is reported anyway."""
+        """Return the recorded percepts of the agents of a call.
+
+        Recorded percepts serve as well as new ones: if an earlier frame differs, that is reported
+        in any case.
+        """
         if call.senses == "world":
             return {}
         return {agent: self._sense(call, body, agent) for agent in call.programs}
@@ -79,16 +83,16 @@ class _RecordedTimeline:
         key = self.info.key
 
         def entries() -> int:
-            # Edits between two calls lie before the later one.
+            # An edit between two calls belongs to the time before the later one.
             return max(call.entries, self.journal.entries_until(key, body.tick))
 
         return Sensing(self.history, key, agent, entries)
 
     def wait_until(self, body: Body, tick: int) -> None:
-        """Let time pass in a body, in the calls in which it passed.
+        """Let time pass in a body until a tick, divided into calls as it was recorded.
 
-        A call that only let time pass is not noted. Where one ends with nothing under way it makes
-        no difference; where something is, that was kept.
+        Calls that only let time pass are not noted. Their ends matter only where the body had an
+        internal state, which was stored then; these are the stops.
         """
         for stop in range(body.tick + 1, tick + 1):
             if stop == tick or self._is_stop(stop):
@@ -106,14 +110,20 @@ def replay(
     world: World,
     seed: int,
 ) -> Iterator[ReplayedTimeline]:
-    """Run every timeline of a run again, in order of creation.
+    """Run every timeline of a run again, in order of creation, and yield the results.
 
-    Each begins in the state that was recorded for its first tick, so that one that differs does not
-    make those based on it differ. What a user did in a scripted world is done again as recorded.
-    `world` is a fresh one of the kind that the run was in.
+    Each timeline begins in the state recorded for its first tick, so that a difference in one does
+    not cause differences in its forks. A user's acts in a scripted world are repeated as recorded.
+
+    Args:
+        setting: Setting of the run.
+        journal: Journal of the run.
+        programs: Notes of its programs.
+        world: A fresh world of the kind that the run used.
+        seed: Seed of the run.
 
     Raises:
-        BodyError: The Minecraft side died.
+        BodyError: The process behind the world ended.
     """
     history = History(journal, setting)
     rules = RunRules(setting.perception.speech_ticks)
@@ -152,7 +162,7 @@ def _run_again(
     rules: RunRules,
 ) -> list[Entry]:
     info = recorded.info
-    # Where agents begin who could not be where they were believed to be is no body's doing.
+    # The frame that moves agents at a fork is not made by the body, so it is not compared.
     moved = placing_frame(recorded.journal, info)
     found: list[Entry] = [] if moved is None else [moved]
 
@@ -160,7 +170,7 @@ def _run_again(
 
     def take(frame: Frame) -> None:
         if not frame.is_empty:
-            # What was read out of words was recorded, and nobody is asked again.
+            # Claims that a model read out of utterances are taken from the record.
             found.append(recalled(frame, once.get(frame.tick)))
 
     name = path_text(info.key.path)

@@ -1,4 +1,4 @@
-"""The scenario's script: what happens in the real world, step by step."""
+"""Script of a scenario, played in the real world step by step."""
 
 from collections.abc import Callable, Iterable
 
@@ -12,7 +12,7 @@ from beliefnest.timeline.records import ProgramRecord
 __all__ = ["Progress", "play_script", "steps_played"]
 
 Progress = Callable[[str, int, int], None]
-"""Takes what is being done, how many parts of it are done, and of how many."""
+"""Function of a description of the present step, the number of steps done, and of all steps."""
 
 
 def play_script(engine: Engine, on_progress: Progress | None = None) -> None:
@@ -20,7 +20,8 @@ def play_script(engine: Engine, on_progress: Progress | None = None) -> None:
 
     Raises:
         ProgramError: A program failed.
-        BodyError: The Minecraft side died again and again under a step, or a bot failed by itself.
+        BodyError: The process behind the world ended at every attempt of a step, or a bot failed
+            without a fault of its program.
     """
     recording = engine.recording
     script = recording.setting.script
@@ -36,9 +37,10 @@ def play_script(engine: Engine, on_progress: Progress | None = None) -> None:
 
 
 def steps_played(journal: Journal, key: TimelineKey, programs: Iterable[ProgramRecord]) -> int:
-    """How many steps of the script lie in the past of a timeline's head.
+    """Return the number of steps of the script that lie in the past of a timeline's head.
 
-    A step whose program failed counts: it has happened. One of which nothing was kept does not.
+    A step counts if its program failed, because it has happened. It does not count if nothing of it
+    was kept.
     """
     ends = [
         (TimelineKey(program.path, program.branch), program.tick + program.ticks, program.step + 1)
@@ -65,5 +67,5 @@ def _play_step(engine: Engine, number: int, step: Step) -> None:
 
 
 def _is_of_bot(result: ProgramResult) -> bool:
-    """Return whether not the program was at fault, but its bot, as by a lost connection."""
+    """Return True if a program failed because of its bot, for example by a lost connection."""
     return result.error is not None and result.error.kind == "bot"

@@ -1,4 +1,4 @@
-"""What an agent knows of the world that it acts in, tick by tick, for its program."""
+"""Percepts and memories of an agent, tick by tick, for its program."""
 
 import math
 from collections.abc import Callable
@@ -16,23 +16,23 @@ __all__ = ["Sensing", "believer_of"]
 
 
 def believer_of(path: BeliefPath, agent: str) -> BeliefPath:
-    """Return the node that an agent of a simulator reads from.
+    """Return the node that an agent of a simulator reads.
 
-    In its own belief that is the simulator itself: all there is is what it believes.
+    Inside its own belief an agent reads the simulator itself.
     """
     return path if path[-1:] == (agent,) else (*path, agent)
 
 
 class Sensing:
-    """A `Sense`: the belief of an agent, as of what has been recorded.
+    """`Sense` that reads an agent's belief from what has been recorded so far.
 
     Args:
-        history: States of timelines.
-        key: The timeline that it acts in.
-        agent: Who it is.
-        entries: How many entries of that timeline are over by now.
-        since: The first call gives what was heard after so many entries; None: nothing that was
-            heard before.
+        history: History that computes states.
+        key: The timeline on which the agent acts.
+        agent: Name of the agent.
+        entries: Function that returns the number of entries of that timeline by now.
+        since: Number of entries after which the first call reports utterances; None: it reports
+            none.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Sensing:
         self._last: Sensed | None = None
 
     def __call__(self) -> Sensed:
-        """What it knows by now; the same object as long as nothing has been recorded."""
+        """Return the agent's percepts. The object is the same while nothing has been recorded."""
         entries = self._entries()
         if self._last is None or entries != self._read:
             self._read = entries
@@ -60,15 +60,15 @@ class Sensing:
         return self._last
 
     def _reading(self, entries: int) -> NodeView:
-        """Return the agent's belief after so many entries."""
+        """Return the agent's belief after a number of entries."""
         believer = believer_of(self._key.path, self._agent)
         return self._history.reading(self._key, believer, entries)
 
     def _blocks(self, seen: NodeView, entries: int) -> BlockGrid:
-        """What the agent knows of blocks.
+        """Return the blocks that the agent knows.
 
-        Where it believes contents that its believed block cannot hold, it reads the chest that
-        the body has put there, as it could not open it otherwise.
+        If it believes contents that its believed block cannot hold, it reads the chest that the
+        body has put there. Otherwise its program could not open it.
         """
         if not self._key.path or not seen.containers:
             return seen.blocks

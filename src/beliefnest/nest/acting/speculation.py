@@ -1,7 +1,8 @@
 """Speculation: programs run ahead of their turn, in several processes at once.
 
-What a program does depends on the snapshot, the seed and the tick it begins with, and on nothing
-else. So it can run in any body filled with them, and be recorded when its turn comes.
+The effect of a program depends only on the snapshot, the seed and the tick with which its body
+begins. So it can run early, in any body that begins with them, and its frames can be recorded when
+its turn comes: the record is the same as if it had run then.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,7 +22,7 @@ __all__ = ["SpeculatedBody", "Speculation", "SpeculationStart", "speculate"]
 
 @dataclass(frozen=True, slots=True)
 class SpeculationStart:
-    """What a body begins with that a program runs in; no other body in its world has its name."""
+    """Initial state of the bodies in which programs run. `name` is unique in their worlds."""
 
     name: str
     seed: str
@@ -31,14 +32,14 @@ class SpeculationStart:
 
 @dataclass(slots=True)
 class Speculation:
-    """What became of programs in a body of their own.
+    """Result of programs that ran in a body of their own.
 
     Attributes:
-        tick: The body's tick in the end.
-        internal_state: What went on in it in the end.
-        frames: Its frames, in order.
+        tick: The body's last tick.
+        internal_state: The body's internal state at the end.
+        frames: The body's frames, in order.
         results: Results by agent; empty if the call raised.
-        error: What it raised.
+        error: The error that the call raised; None: it raised none.
     """
 
     tick: int
@@ -49,7 +50,7 @@ class Speculation:
 
 
 class SpeculatedBody:
-    """A body in which programs have run already; it can do nothing but run them, once."""
+    """Body that stands for one in which programs have run already. Its only act is to run them."""
 
     def __init__(self, speculation: Speculation, sink: Sink) -> None:
         self._speculation = speculation
@@ -58,7 +59,7 @@ class SpeculatedBody:
 
     @property
     def lost(self) -> bool:
-        """True if the process ended in which they ran."""
+        """True if the process in which the programs ran has ended."""
         return self._ran and isinstance(self._speculation.error, BodyLostError)
 
     @property
@@ -73,7 +74,7 @@ class SpeculatedBody:
 
     @property
     def internal_state(self) -> bytes:
-        """What goes on in it and nobody can perceive."""
+        """The internal state of the body, which nobody can perceive."""
         return self._speculation.internal_state
 
     def snapshot(self) -> Snapshot:
@@ -87,7 +88,7 @@ class SpeculatedBody:
         senses: Mapping[str, Sense] | None = None,
         rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
-        """Hand out the frames of the programs, which have run already."""
+        """Hand the frames of the programs to the sink, and return or raise their outcome."""
         self._ran = True
         for frame in self._speculation.frames:
             self._sink(frame)
@@ -104,7 +105,7 @@ class SpeculatedBody:
         raise _gone()
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Do nothing: no process is held open."""
 
 
 def speculate(
@@ -113,16 +114,16 @@ def speculate(
     jobs: Mapping[int, Mapping[str, str]],
     timeout_ticks: int,
 ) -> Mapping[int, Speculation]:
-    """Run programs, each job in a body as it is at the start, in several worlds at the same time.
+    """Run jobs in several worlds at the same time, each in a body with the same initial state.
 
     Args:
-        worlds: Where; each does one job after the other.
-        start: What each body begins with.
-        jobs: Programs by agent, by the caller's number.
+        worlds: Worlds to use; each runs one job after the other.
+        start: Initial state of each body.
+        jobs: Programs by agent, by number of the job.
         timeout_ticks: Ticks after which programs are stopped.
 
     Returns:
-        Speculations by number; those for which no body could be made are left out.
+        Speculations by number of the job. Jobs for which no body could be opened are left out.
     """
     waiting: SimpleQueue[int] = SimpleQueue()
     for number in jobs:
@@ -146,7 +147,7 @@ def speculate(
         try:
             list(pool.map(work, worlds))
         except BaseException:
-            # Nobody waits for what still runs.
+            # The results of running jobs are of no use any more: interrupt their worlds.
             stopped.set()
             for world in worlds:
                 world.interrupt()
@@ -155,7 +156,7 @@ def speculate(
 
 
 class _Workplace:
-    """Where one job after the other is run in a world, in a body that begins each as the first."""
+    """World that runs one job after the other, with its body reset before each job."""
 
     def __init__(self, world: World, start: SpeculationStart, stopped: Event) -> None:
         self._world, self._start, self._stopped = world, start, stopped
@@ -163,7 +164,7 @@ class _Workplace:
         self._frames: list[Frame] = []
 
     def run(self, programs: Mapping[str, str], timeout_ticks: int) -> Speculation | None:
-        """What becomes of programs; None: no body can be made for them."""
+        """Return the result of programs; None: no body can be opened for them."""
         speculation = Speculation(self._start.snapshot.tick)
         self._frames = speculation.frames
         body = self._begun()
@@ -178,18 +179,18 @@ class _Workplace:
         return speculation
 
     def close(self) -> None:
-        """Give the body up."""
+        """Close the body."""
         if self._body is not None:
             self._body.close()
             self._body = None
 
     def _begun(self) -> Body | None:
-        """Return the body, as it is at the start; None: none can be made."""
+        """Return a body in the initial state; None: none can be opened."""
         if self._body is not None:
             try:
                 self._body.set_state(self._start.snapshot)
             except BodyError:
-                # Another one is made in its place.
+                # The body cannot be reset: open another one below.
                 self.close()
         if self._body is None:
             self._body = _opened(self._world, self._start, self._take, self._stopped)
@@ -212,4 +213,4 @@ def _opened(world: World, start: SpeculationStart, sink: Sink, stopped: Event) -
 
 
 def _gone() -> BodyError:
-    return BodyError("the body in which the programs ran is gone; another one has to be made")
+    return BodyError("the body in which the programs ran is closed; open another one")

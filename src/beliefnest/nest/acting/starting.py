@@ -1,4 +1,4 @@
-"""What bodies are filled with: what a timeline says, made possible where it is a belief's."""
+"""Initial states of bodies: states of timelines, adapted where a belief is impossible."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -20,17 +20,17 @@ from beliefnest.world.values import AgentState, Position
 __all__ = ["BodyStart", "start_of"]
 
 _FLOOR = "barrier"
-"""What stands in a body for a floor that is unknown and holds somebody up."""
+"""Block that a body puts for an unknown floor below a believed agent."""
 
 
 @dataclass(frozen=True, slots=True)
 class BodyStart:
-    """What a body begins with, and what is to be recorded of that.
+    """Initial state of a body, and the frame to record for it.
 
     Attributes:
-        snapshot: What the body is filled with.
-        frame: Where it begins with agents that cannot be where they are believed to be; None if
-            there are none.
+        snapshot: Snapshot with which the body is filled.
+        frame: Poses of the agents that cannot be where they are believed to be; None if there are
+            none.
     """
 
     snapshot: Snapshot
@@ -40,13 +40,14 @@ class BodyStart:
 def start_of(
     journal: Journal, history: History, path: BeliefPath, moment: ForkPoint, *, has_physics: bool
 ) -> BodyStart:
-    """What a body of the node `path`, the timeline's own or one below it, begins with.
+    """Return the initial state of a body of a node (semantics, section 7).
 
     Args:
-        journal: The timelines.
-        history: Their states.
-        path: The node.
-        moment: Of a timeline; if it is not the node's own, the node is about to be forked.
+        journal: Journal of the timelines.
+        history: History that computes their states.
+        path: Path of the node: the timeline's own simulator or one below it.
+        moment: Moment of a timeline. If the timeline is not the node's own, the node is about to be
+            forked from it.
         has_physics: Whether agents in the body stand, fall and are stopped by blocks.
     """
     reading = history.reading(moment.timeline, path, moment.entries, moment.tick)
@@ -61,7 +62,8 @@ def start_of(
     fork = fork_of_belief(journal, moment.timeline)
     if fork is None:
         return BodyStart(snapshot)
-    # Floors stay where they were when the body began, for as long as nothing is known of them.
+    # A body keeps the floors that it was given at its fork, while the blocks there are unknown.
+    # They are computed again from the state at the fork, so they need not be recorded.
     if not (blocks < 0).any():
         return BodyStart(snapshot)
     _, base = fork
@@ -73,7 +75,7 @@ def start_of(
 
 
 def _filled(reading: NodeView, history: History) -> tuple[Snapshot, BlockGrid]:
-    """What a body of a state can be filled with, and its blocks, -1 unknown."""
+    """Return the snapshot with which a body can be filled, and its blocks, -1 unknown."""
     snapshot, blocks = reading.snapshot(), reading.blocks
     if not reading.path:
         return snapshot, blocks
@@ -85,7 +87,7 @@ def _filled(reading: NodeView, history: History) -> tuple[Snapshot, BlockGrid]:
 def _begun(
     snapshot: Snapshot, blocks: BlockGrid, believed: NodeView, history: History
 ) -> BodyStart:
-    """A body of a belief, with agents where they can be and unknown floors that hold them."""
+    """Return the start of a body of a belief, with agents moved and unknown floors made solid."""
     space = BodySpace(history.context.registry, snapshot.box, blocks)
     seen_at = {}
     for name in snapshot.agents:
