@@ -7,7 +7,8 @@ from tests.pictures.measuring import faults, texts
 
 import beliefnest as bn
 from beliefnest.pictures.marks import Rectangle
-from beliefnest.pictures.plot import Band, NotedAct, NotedClaim, PlotRow, belief_plot
+from beliefnest.pictures.plot import Band, NotedClaim, PlotRow, belief_plot
+from beliefnest.pictures.time_axis import NotedAct
 
 CHEST = (3, 1, 3)
 PLOT = "beliefnest.nest.face.plotting.belief_plot"

@@ -16,8 +16,10 @@ from beliefnest.minds.model import MindModel
 from beliefnest.minds.tracking import Step, Tracker
 from beliefnest.world.values import Position
 
-if TYPE_CHECKING:  # Few results become tables.
+if TYPE_CHECKING:  # Few results become tables or figures.
     import pandas as pd
+
+    from beliefnest.pictures.figure import Figure
 
 __all__ = ["Change", "Impossible", "Inference", "SampledPath", "reported_credence"]
 
@@ -62,11 +64,13 @@ class Change:
         text: The evidence in words.
         bits: By factor, the divergence of its marginal after the step from that before
             (Kullback and Leibler), in bits.
+        is_movement: Whether the agent did something, or stayed.
     """
 
     tick: int
     text: str
     bits: Mapping[str, float]
+    is_movement: bool = False
 
     def __str__(self) -> str:
         told = sorted(self.bits.items(), key=lambda pair: -pair[1])
@@ -252,7 +256,7 @@ class Inference:
             after = {name: self._marginal_of(name, number) for name in names}
             if tick is None or step.tick == tick:
                 bits = {name: _divergence(after[name], before[name]) for name in names}
-                changes.append(Change(step.tick, step.text, bits))
+                changes.append(Change(step.tick, step.text, bits, step.is_movement))
             before = after
         return changes
 
@@ -317,6 +321,23 @@ class Inference:
             cells = sampled_cells(tracker, a, (b, u, w), random)
             paths.append(SampledPath(self._told(posterior, number), cells))
         return paths
+
+    def plot(self, *factors: str) -> "Figure":
+        """Return a figure of the posterior over time, with the movements that told most.
+
+        Utilities and credences are shown by their means. A single factor, as `utility.soup`, is
+        shown by the probabilities of its values.
+
+        Args:
+            factors: Kinds (`utility`, `credence`, `credence_now`, `actual`, `rationality`) or
+                single factors, each in a panel; none: all kinds that the model leaves open.
+
+        Raises:
+            InputError: There is no such factor, or it is `cell`.
+        """
+        from beliefnest.minds.charts import plot_of
+
+        return plot_of(self, factors)
 
     def at(self, tick: int) -> "Inference":
         """Return the inference as it was at a tick: nothing after it counts."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from beliefnest.errors import InputError
+from beliefnest.pictures.bars import BarChart, draw_bars
 from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import XY, Drawing, scaled
 from beliefnest.pictures.marks import Mark as Drawn
@@ -120,12 +121,18 @@ class Figure:
         return scaled(drawing, 1 / max(factor, drawing.height / height))
 
 
-def figure_of(scenes: Sequence[Scene]) -> Figure:
-    """Return simulators side by side, as many in a row as there is room for."""
+def figure_of(scenes: Sequence[Scene], chart: BarChart | None = None) -> Figure:
+    """Return simulators side by side, as many in a row as there is room for.
+
+    Args:
+        scenes: At least one.
+        chart: A posterior, drawn after them; None: there is none.
+    """
     paths = ", ".join(scene.path for scene in scenes)
     about = f"{paths} at tick {scenes[0].tick}"
-    width = _COLUMNS["one column" if len(scenes) == 1 else "two columns"]
-    return Figure(lambda points: _side_by_side(scenes, points, about), width, about)
+    panels: list[Scene | BarChart] = [*scenes, *([] if chart is None else [chart])]
+    width = _COLUMNS["one column" if len(panels) == 1 else "two columns"]
+    return Figure(lambda points: _side_by_side(panels, points, about), width, about)
 
 
 def columns_for(count: int, width: float, least: float) -> int:
@@ -135,20 +142,28 @@ def columns_for(count: int, width: float, least: float) -> int:
     return -(-count // rows)
 
 
-def _side_by_side(scenes: Sequence[Scene], width: float, about: str) -> Drawing:
+def _side_by_side(panels: Sequence[Scene | BarChart], width: float, about: str) -> Drawing:
+    scenes = [each for each in panels if isinstance(each, Scene)]
     looks = agent_looks(scenes[0].agents)
-    columns = columns_for(len(scenes), width - 2 * MARGIN, _PANEL)
+    columns = columns_for(len(panels), width - 2 * MARGIN, _PANEL)
     wide = (width - 2 * MARGIN - _GAP * (columns - 1)) / columns
     marks: list[Drawn] = []
     kinds: set[str] = set()
     bottom = MARGIN
-    for start in range(0, len(scenes), columns):
-        row = scenes[start : start + columns]
+    for start in range(0, len(panels), columns):
+        row = panels[start : start + columns]
         top = bottom + (_GAP if start else 0)
-        heads = [draw_title(scene, (MARGIN, top), wide, TEXT_SIZE).bottom for scene in row]
-        for number, scene in enumerate(row):
+        heads = [
+            draw_title(each, (MARGIN, top), wide, TEXT_SIZE).bottom
+            for each in row
+            if isinstance(each, Scene)
+        ]
+        for number, each in enumerate(row):
             at: XY = (MARGIN + number * (wide + _GAP), top)
-            panel = draw_panel(scene, looks, at, wide, TEXT_SIZE, max(heads) + 1.5)
+            if isinstance(each, Scene):
+                panel = draw_panel(each, looks, at, wide, TEXT_SIZE, max(heads) + 1.5)
+            else:
+                panel = draw_bars(each, at, wide, TEXT_SIZE)
             marks += panel.marks
             kinds |= panel.kinds
             bottom = max(bottom, panel.bottom)

@@ -8,7 +8,7 @@ from beliefnest.pictures.marks import XY, Circle, Lines, Polygon, Rectangle, Tex
 from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, mix
 from beliefnest.pictures.panel import Block
-from beliefnest.pictures.plan import hatching
+from beliefnest.pictures.plan import hatching, heat_colour
 from beliefnest.pictures.scene import Device, Store
 
 __all__ = ["draw_legend"]
@@ -47,7 +47,7 @@ def draw_legend(
 
 
 _Sign = Callable[[XY, float, float], list[Drawn]]
-_KINDS = ("sight", "remembered", "told", "false", "unknown blocks", "container", "trail")
+_KINDS = ("heat", "sight", "remembered", "told", "false", "unknown blocks", "container", "trail")
 
 
 def _order(kind: str) -> tuple[int, str]:
@@ -59,6 +59,8 @@ def _entry(kind: str, looks: Mapping[str, AgentLook]) -> tuple[_Sign, str]:
     if kind.startswith("sight"):
         _, number, name = kind.split()
         return _sight_sign(int(number), looks[name].colour), f"seen by {name}"
+    if kind.startswith("heat "):
+        return _heat, f"{kind.removeprefix('heat ')}: 1, 10, 50, 100 %"
     if kind in _SIGNS:
         return _SIGNS[kind]
     return _device_sign(kind), kind.replace("_", " ")
@@ -76,6 +78,15 @@ def _sight_sign(number: int, colour: str) -> _Sign:
         ]
 
     return drawn
+
+
+def _heat(at: XY, wide: float, high: float) -> list[Drawn]:
+    x, y = at
+    part = wide / 4
+    return [
+        Rectangle(x + part * number, y, part, high, heat_colour(share))
+        for number, share in enumerate((0.01, 0.1, 0.5, 1.0))
+    ]
 
 
 def _device_sign(kind: str) -> _Sign:

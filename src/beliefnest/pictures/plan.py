@@ -17,12 +17,16 @@ from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, S
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
 
-__all__ = ["DrawnPlan", "draw_plan", "hatching"]
+__all__ = ["LEAST_HEAT", "DrawnPlan", "draw_plan", "hatching", "heat_colour"]
+
+LEAST_HEAT = 0.005
+"""Least probability that is drawn."""
 
 _NOWHERE = "#dfdbd2"
 _GROUND = "#f0ece3"
 _GRID = "#e4dfd4"
 _WALL = "#706c6a"
+_HEAT = "#4a1486"
 _HATCH = 4.2
 _SMALLEST = 3.9
 """Least radius of an agent, in points, at which its letters can be read."""
@@ -36,6 +40,11 @@ _KINDS: Mapping[str, str] = {
     "planks": "#bc9868",
     "log": "#96744c",
     "sand": "#e0d2a0",
+    "gold_block": "#dcae1c",
+    "emerald_block": "#1f9e4c",
+    "diamond_block": "#35b8c4",
+    "redstone_block": "#a8261c",
+    "lapis_block": "#2f4fa2",
 }
 _DYES: Mapping[str, str] = {
     "white": "#e6e4df",
@@ -101,12 +110,18 @@ def draw_plan(
     sheet = _Sheet(scene, looks, (left, at[1]), cell, size)
     sheet.ground()
     sheet.sights()
+    sheet.heat()
     sheet.walls()
     sheet.trails(trails or {})
     sheet.things()
     sheet.names()
     edge = Rectangle(left, at[1], cell * across, cell * down, None, mix(INK, PAPER, 0.6), 0.5)
     return DrawnPlan([*sheet.marks, edge], at[1] + cell * down, sheet.unnamed, sheet.kinds)
+
+
+def heat_colour(share: float) -> str:
+    """Return the tint of a probability: its root, so that small ones can be seen."""
+    return mix(_GROUND, _HEAT, math.sqrt(min(1.0, share)) * 0.85)
 
 
 def hatching(bounds: Bounds, number: int, step: float = _HATCH) -> tuple[tuple[XY, XY], ...]:
@@ -218,6 +233,16 @@ class _Sheet:
             if segments:
                 self.marks.append(Lines(tuple(segments), mix(_GROUND, colour, 0.8), 0.5))
             self.kinds.add(f"sight {number} {sight.name}")
+
+    def heat(self) -> None:
+        """Add a tint over columns, by their probability."""
+        low_x, low_z = self._scene.low
+        for (x, z), share in sorted(self._scene.heat.items()):
+            if share >= LEAST_HEAT and self._holds((x + 0.5, z + 0.5)):
+                x0, y0, x1, y1 = self._square(x - low_x, z - low_z)
+                self.marks.append(Rectangle(x0, y0, x1 - x0, y1 - y0, heat_colour(share)))
+        if self._scene.heat:
+            self.kinds.add(f"heat {self._scene.heat_words}")
 
     def walls(self) -> None:
         """What stands at this height, what is unknown there, and what of it is false."""

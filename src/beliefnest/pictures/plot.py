@@ -1,6 +1,5 @@
 """Beliefs over time: a row for each simulator, a band for each value it held."""
 
-import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,12 +12,12 @@ from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, Mark, colours_of, mix
 from beliefnest.pictures.panel import Block, paragraph
 from beliefnest.pictures.plan import hatching
+from beliefnest.pictures.time_axis import NotedAct, TimeAxis
 
 __all__ = ["Band", "NotedAct", "NotedClaim", "PlotRow", "belief_plot"]
 
 _HIGH = 15.0
 _STEP = 21.0
-_ACT = TEXT_SIZE * 0.95
 _BALLOON = 2.1
 _SHADES = (0.45, 0.2, 0.7)
 _ABOVE = 5.5
@@ -70,19 +69,6 @@ class NotedClaim:
     believed: bool
 
 
-@dataclass(frozen=True, slots=True)
-class NotedAct:
-    """A deed that mattered.
-
-    Attributes:
-        tick: When.
-        words: Who did what.
-    """
-
-    tick: int
-    words: str
-
-
 def belief_plot(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str) -> Figure:
     """Return the figure of beliefs over time."""
     return Figure(lambda width: _draw(rows, acts, title, width), 174.0, title)
@@ -97,7 +83,7 @@ def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: 
     left = MARGIN + (widest + 6 if beside else 0)
     chart = _Chart(rows, (left, width - MARGIN - 8))
     marks: list[Drawn] = list(head.marks)
-    top = _acts(chart, acts, head.bottom + 3, marks)
+    top = chart.axis.note(acts, head.bottom + 3, marks)
     first = top
     bands: list[Drawn] = []
     tops: list[float] = []
@@ -122,7 +108,7 @@ def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: 
     marks += [mark for row, at in zip(rows, tops, strict=True) for mark in _told(chart, row, at)]
     # Words stay readable where a line goes through them.
     marks += [mark for mark in bands if isinstance(mark, Text)]
-    bottom = _axis(chart, top - 3, marks)
+    bottom = chart.axis.draw(top - 3, marks)
     bottom = _legend(chart, (MARGIN, bottom + 4), width - 2 * MARGIN, marks)
     return Drawing(width, bottom + MARGIN, tuple(marks), title)
 
@@ -131,9 +117,9 @@ class _Chart:
     """From ticks to places, from values to colours."""
 
     def __init__(self, rows: Sequence[PlotRow], span: XY) -> None:
-        self.start = min(row.bands[0].start for row in rows)
-        self.end = max(self.start + 1, *(row.bands[-1].end for row in rows))
-        self._span = span
+        start = min(row.bands[0].start for row in rows)
+        end = max(start + 1, *(row.bands[-1].end for row in rows))
+        self.axis = TimeAxis(start, end, span)
         words = dict.fromkeys(band.words for row in rows for band in row.bands if band.words)
         self.fills = _fills(words)
         self.false = any(band.false for row in rows for band in row.bands)
@@ -141,9 +127,8 @@ class _Chart:
         self.unknown = any(not band.words for row in rows for band in row.bands)
 
     def x(self, tick: int) -> float:
-        """Where a tick is."""
-        low, high = self._span
-        return low + (high - low) * (tick - self.start) / (self.end - self.start)
+        """Return the place of a tick."""
+        return self.axis.x(tick)
 
 
 def _fills(words: Iterable[str]) -> Mapping[str, str]:
@@ -154,22 +139,6 @@ def _fills(words: Iterable[str]) -> Mapping[str, str]:
         fills[value] = mix(PAPER, colour, _SHADES[before[colour] % len(_SHADES)])
         before[colour] += 1
     return fills
-
-
-def _acts(chart: _Chart, acts: Sequence[NotedAct], top: float, marks: list[Drawn]) -> float:
-    """Return the words of deeds, each in the first line in which it touches no other."""
-    ends: list[float] = []
-    low, high = chart.x(chart.start), chart.x(chart.end)
-    for act in acts:
-        words = ellipsis(act.words, _ACT, high - low)
-        wide = text_width(words, _ACT)
-        x = max(low, min(high - wide, chart.x(act.tick) - wide / 2))
-        lane = next((n for n, end in enumerate(ends) if end + 3 <= x), len(ends))
-        if lane == len(ends):
-            ends.append(0.0)
-        ends[lane] = x + wide
-        marks.append(Text(x, top + lane * _ACT * 1.3 + _ACT * ASCENT, words, _ACT, QUIET))
-    return top + len(ends) * _ACT * 1.3 + 3
 
 
 def _bands(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
@@ -210,28 +179,6 @@ def _swatch(chart: _Chart, words: str, at: XY, wide: float, high: float) -> list
     lines = hatching((x, y, x + wide, y + high), 1, 3.0)
     area: list[Drawn] = [Rectangle(x, y, wide, high, PAPER, mix(PAPER, INK, 0.5), 0.3)]
     return [*area, Lines(lines, mix(PAPER, INK, 0.2), 0.4)] if lines else area
-
-
-def _axis(chart: _Chart, top: float, marks: list[Drawn]) -> float:
-    low, high = chart.x(chart.start), chart.x(chart.end)
-    widest = text_width(str(chart.end), TEXT_SIZE)
-    step = _round_step((chart.end - chart.start) / max(1.0, (high - low) / (widest * 2.2)))
-    ticks = list(range(-(-chart.start // step) * step, chart.end + 1, step))
-    strokes = (
-        ((low, top), (high, top)),
-        *(((chart.x(t), top), (chart.x(t), top + 2)) for t in ticks),
-    )
-    marks.append(Lines(tuple(strokes), INK, 0.4))
-    base = top + 3.5 + TEXT_SIZE * ASCENT
-    marks += [Text(chart.x(t), base, str(t), TEXT_SIZE, QUIET, anchor="middle") for t in ticks]
-    marks.append(Text(high, base + TEXT_SIZE * 1.2, "tick", TEXT_SIZE, QUIET, anchor="end"))
-    return base + TEXT_SIZE * 1.5
-
-
-def _round_step(least: float) -> int:
-    """Return the least of 1, 2, 5, 10, 20, ... that is not below a number."""
-    power = 10 ** max(0, math.floor(math.log10(max(least, 1.0))))
-    return next(int(power * n) for n in (1, 2, 5, 10) if power * n >= least or n == 10)
 
 
 def _legend(chart: _Chart, at: XY, width: float, marks: list[Drawn]) -> float:

@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -210,6 +210,8 @@ class Scene:
         wrong: How many things are false.
         against: The path it is compared with.
         note: Further words for the title, as its branch.
+        heat: Probability by x and z of a column, drawn as a tint.
+        heat_words: The question that it answers, for the legend.
     """
 
     path: str
@@ -227,6 +229,8 @@ class Scene:
     wrong: int
     against: str
     note: str = ""
+    heat: Mapping[tuple[int, int], float] = field(default_factory=dict)
+    heat_words: str = ""
 
     @property
     def size(self) -> tuple[int, int]:

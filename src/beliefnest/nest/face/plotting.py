@@ -19,7 +19,8 @@ from beliefnest.nest.face.matters import (
 )
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure
-from beliefnest.pictures.plot import Band, NotedAct, NotedClaim, PlotRow, belief_plot
+from beliefnest.pictures.plot import Band, NotedClaim, PlotRow, belief_plot
+from beliefnest.pictures.time_axis import NotedAct
 from beliefnest.pictures.words import place_words
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.paths import BeliefPath, parse_path, path_text

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -214,12 +215,13 @@ class ShownSimulator(ABC):
         *,
         sight: Sequence[str] | None = None,
         height: int | None = None,
+        inference: "Inference | None" = None,
+        steps: int = 5,
     ) -> "Figure":
         """The simulator, drawn from what it holds itself; as `Nest.figure`."""
-        from beliefnest.pictures.figure import figure_of
-
         with self._recording.turn:
-            return figure_of(_scenes(self._recording, [self], against, sight, height))
+            scenes = _scenes(self._recording, [self], against, sight, height)
+            return _figure(scenes, inference, steps, self._tick)
 
     def __repr__(self) -> str:
         recording = self._recording
@@ -294,6 +296,8 @@ class ShownNest:
         *,
         sight: Sequence[str] | None = None,
         height: int | None = None,
+        inference: "Inference | None" = None,
+        steps: int = 5,
     ) -> "Figure":
         """Simulators side by side, each drawn from what it holds itself.
 
@@ -304,14 +308,16 @@ class ShownNest:
             sight: Agents whose sight is shown in each; None: that of the belief's owner.
             height: The storey, y of what stands on its floor; None: that of most containers, or
                 of most agents.
+            inference: A posterior, drawn as bars beside the plans, at the tick of the figure; the
+                cells of the plans are tinted by the probability that the agent will be there.
+            steps: After how many actions it will be there.
 
         Raises:
-            TickError: The tick is in the future or before the start.
-            InputError: There is no path, or the height lies outside the box.
+            TickError: The tick is in the future or before the start, of the nest or the inference.
+            InputError: There is no path, the height lies outside the box, or steps is below 1.
         """
-        from beliefnest.pictures.figure import figure_of
-
-        return figure_of(self.scenes(paths, tick, against, sight=sight, height=height))
+        scenes = self.scenes(paths, tick, against, sight=sight, height=height)
+        return _figure(scenes, inference, steps, self._tick if tick is None else tick)
 
     def scenes(
         self,
@@ -437,6 +443,24 @@ class Past(ShownNest):
     def __getitem__(self, path: str) -> PastSimulator:
         """The simulator of a belief path as it was."""
         return PastSimulator(self._recording, parse_path(path, self._recording.agents), self._tick)
+
+
+def _figure(
+    scenes: "tuple[Scene, ...]", inference: "Inference | None", steps: int, tick: int | None
+) -> "Figure":
+    """Return a figure of scenes, with a posterior at their tick or, before that, at its last."""
+    from beliefnest.pictures.figure import figure_of
+
+    if inference is None:
+        return figure_of(scenes)
+    from beliefnest.minds.charts import bars_of, heat_of
+
+    then = None if tick is None or tick >= inference.until else tick
+    heat = heat_of(inference, steps, then)
+    actions = "1 action" if steps == 1 else f"{steps} actions"
+    words = f"where {inference.model.agent} will be after {actions}"
+    tinted = [replace(scene, heat=heat, heat_words=words) for scene in scenes]
+    return figure_of(tinted, bars_of(inference, then))
 
 
 def _scenes(

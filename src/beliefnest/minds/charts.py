@@ -1,0 +1,127 @@
+"""Posteriors as values that `pictures` draws."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from beliefnest.errors import InputError
+from beliefnest.pictures.bars import BarChart, BarGroup
+from beliefnest.pictures.figure import Figure
+from beliefnest.pictures.posterior import PosteriorPanel, posterior_plot
+from beliefnest.pictures.time_axis import NotedAct
+
+if TYPE_CHECKING:
+    from beliefnest.minds.inference import Inference
+
+__all__ = ["bars_of", "heat_of", "plot_of", "titles"]
+
+_MOST_NOTES = 3
+_LEAST_BITS = 0.3
+_TITLES: Mapping[str, str] = {
+    "utility": "wants: mean utility, in steps",
+    "credence": "believed at first: mean credence",
+    "credence_now": "believes now: mean credence",
+    "actual": "is the case: probability",
+    "rationality": "rationality: probability",
+}
+
+
+def titles(inference: "Inference") -> dict[str, str]:
+    """Return headings by kind of factor, of those kinds that a model leaves open."""
+    model = inference.model
+    weights = model.actual_weights
+    is_open = {
+        "utility": True,
+        "credence": len(model.credence_rows) > 1,
+        "credence_now": model.doubt is not None,
+        "actual": model.doubt is not None and weights is not None and 1 not in weights.values(),
+        "rationality": len(model.rationalities) > 1,
+    }
+    return {kind: title for kind, title in _TITLES.items() if is_open[kind]}
+
+
+def plot_of(inference: "Inference", factors: Sequence[str]) -> Figure:
+    """Return the figure of a posterior over time.
+
+    Args:
+        inference: The posterior.
+        factors: Kinds of factors, or single factors; none: all kinds that the model leaves open.
+
+    Raises:
+        InputError: There is no such factor, or it is `cell`.
+    """
+    panels = [_panel(inference, name) for name in factors or titles(inference)]
+    title = f"what {inference.model.agent} wants and believes, inferred from what it did"
+    return posterior_plot(panels, inference.until + 1, _notes(inference), title)
+
+
+def bars_of(inference: "Inference", tick: int | None) -> BarChart:
+    """Return the posterior at a tick as bars; None: at the last one."""
+    groups = []
+    for kind, title in titles(inference).items():
+        if kind == "rationality":
+            shares = inference.marginal(kind, tick).items()
+            bars = {f"{value:g}": share for value, share in shares}
+        else:
+            bars = {
+                factor.partition(".")[2]: inference.mean(factor, tick)
+                for factor in inference.factors
+                if factor.partition(".")[0] == kind
+            }
+        low, high = _utility_scale(inference) if kind == "utility" else (0.0, 1.0)
+        groups.append(BarGroup(title, low, high, bars, is_share=kind != "utility"))
+    last = inference.until if tick is None else tick
+    return BarChart(inference.model.agent, f"inferred from ticks to {last}", tuple(groups))
+
+
+def heat_of(inference: "Inference", steps: int, tick: int | None) -> dict[tuple[int, int], float]:
+    """Return by column where the agent will be after some actions, by the posterior at a tick."""
+    heat: dict[tuple[int, int], float] = {}
+    for (x, _, z), share in inference.predict(steps, tick)[-1].items():
+        heat[x, z] = heat.get((x, z), 0.0) + share
+    return heat
+
+
+def _utility_scale(inference: "Inference") -> tuple[float, float]:
+    """Return the ends of the scale of utilities; 0 is on it."""
+    rows = inference.model.utility_rows
+    low, high = min(0.0, float(rows.min())), max(0.0, float(rows.max()))
+    return low, high if high > low else low + 1
+
+
+def _panel(inference: "Inference", name: str) -> PosteriorPanel:
+    kinds = {factor.partition(".")[0] for factor in inference.factors} - {"cell"}
+    if name not in kinds and (name not in inference.factors or name == "cell"):
+        known = ", ".join([*sorted(kinds), *inference.factors[:-1]])
+        raise InputError(f"{name!r} cannot be plotted; there are {known}")
+    ticks = inference.ticks
+    if name not in kinds or name == "rationality":
+        shares = [inference.marginal(name, tick) for tick in ticks]
+        values = sorted({value for share in shares for value in share})
+        series = {f"{v:.3g}": tuple(share.get(v, 0.0) for share in shares) for v in values}
+        return PosteriorPanel(f"{name}: probability of its values", 0, 1, ticks, series, True, True)
+    names = [factor for factor in inference.factors if factor.partition(".")[0] == name]
+    series = {
+        factor.partition(".")[2]: tuple(inference.mean(factor, tick) for tick in ticks)
+        for factor in names
+    }
+    if name != "utility":
+        return PosteriorPanel(_TITLES[name], 0, 1, ticks, series, stacked=True)
+    low, high = _utility_scale(inference)
+    return PosteriorPanel(_TITLES[name], low, high, ticks, series)
+
+
+def _notes(inference: "Inference") -> list[NotedAct]:
+    """Return the movements that told most, and the one that nothing explains."""
+    told = [
+        (max(bits.values()), change)
+        for change in inference.explain()
+        if change.is_movement
+        and (bits := {k: v for k, v in change.bits.items() if not k.startswith("actual.")})
+    ]
+    most = sorted((each for each in told if each[0] >= _LEAST_BITS), key=lambda each: -each[0])
+    changes = sorted((change for _, change in most[:_MOST_NOTES]), key=lambda each: each.tick)
+    notes = [NotedAct(change.tick, f"{change.tick}: {change.text}") for change in changes]
+    if (failed := inference.impossible) is not None:
+        words = f"{failed.tick}: {failed.text}, which no hypothesis explains"
+        notes.append(NotedAct(failed.tick, words))
+    return notes

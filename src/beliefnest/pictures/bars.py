@@ -1,0 +1,88 @@
+"""Bars of a posterior at one tick."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width
+from beliefnest.pictures.marks import XY, Lines, Rectangle, Text
+from beliefnest.pictures.palette import INK, PAPER, QUIET, colours_of, mix
+from beliefnest.pictures.panel import Block, paragraph
+
+__all__ = ["BarChart", "BarGroup", "draw_bars", "number_text"]
+
+
+@dataclass(frozen=True)
+class BarGroup:
+    """Bars on one scale.
+
+    Attributes:
+        title: The question that they answer.
+        low: Lower end of the scale.
+        high: Upper end of the scale.
+        bars: Value by name.
+        is_share: Whether the values are probabilities.
+    """
+
+    title: str
+    low: float
+    high: float
+    bars: Mapping[str, float]
+    is_share: bool = False
+
+
+@dataclass(frozen=True)
+class BarChart:
+    """A posterior at one tick.
+
+    Attributes:
+        title: The agent.
+        note: The tick, in words.
+        groups: From the top downwards.
+    """
+
+    title: str
+    note: str
+    groups: tuple[BarGroup, ...]
+
+
+def number_text(value: float, digits: int = 2) -> str:
+    """Return a number with at most some digits after the point; never a negative zero."""
+    return f"{round(value, digits) + 0.0:g}"
+
+
+def draw_bars(chart: BarChart, at: XY, width: float, size: float) -> Block:
+    """Return the bars of a posterior: names to the left, values to the right of each bar.
+
+    Args:
+        chart: The posterior.
+        at: Left upper corner, in points.
+        width: In points.
+        size: Of texts, in points.
+    """
+    left, top = at
+    block = Block(bottom=top)
+    paragraph(block, chart.title, left, width, size * 1.15, bold=True)
+    paragraph(block, chart.note, left, width, size * 0.95, QUIET)
+    names = [name for group in chart.groups for name in group.bars]
+    colours = colours_of(dict.fromkeys(names))
+    inset = min(width * 0.4, max(text_width(name, size) for name in names)) + 3
+    room = text_width("100 %", size) + 3
+    span = (left + inset, left + width - room)
+    for group in chart.groups:
+        block.bottom += size * 0.5
+        paragraph(block, group.title, left, width, size, QUIET)
+        first = block.bottom
+        scale = (span[1] - span[0]) / (group.high - group.low)
+        zero = span[0] + (0 - group.low) * scale
+        for name, value in group.bars.items():
+            base = block.bottom + size * 0.6 + size * ASCENT * 0.48
+            block.marks.append(Text(left, base, ellipsis(name, size, inset - 3), size, INK))
+            end = zero + value * scale
+            box = (min(zero, end), block.bottom + size * 0.15, abs(end - zero), size * 0.9)
+            edge = mix(colours[name], INK, 0.4)
+            block.marks.append(Rectangle(*box, mix(PAPER, colours[name], 0.72), edge, 0.4))
+            words = f"{100 * value:.0f} %" if group.is_share else number_text(value, digits=0)
+            block.marks.append(Text(left + width, base, words, size, INK, anchor="end"))
+            block.bottom += size * 1.3
+        block.marks.append(Lines((((zero, first), (zero, block.bottom)),), INK, 0.4))
+    return block
