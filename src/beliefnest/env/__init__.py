@@ -1,4 +1,4 @@
-"""Scenarios as environments of several agents (PettingZoo, the extra `pettingzoo`)."""
+"""Scenarios as multi-agent environments of PettingZoo (extra `pettingzoo`)."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Literal
@@ -35,38 +35,43 @@ def parallel_env(
     senses: "Senses" = "world",
     seed: int = 0,
 ) -> "BeliefEnv":
-    """Return a scenario as a parallel environment of PettingZoo's.
+    """Return a scenario as a PettingZoo parallel environment.
 
-    An agent's observation is its own belief. See docs/pettingzoo.md for the layout of arrays.
+    The observation of an agent is its own belief. See docs/pettingzoo.md for the layout of the
+    arrays.
 
     Args:
-        scenario: Name of a built-in scenario, path of a file, or a scenario.
-        condition: Number of a condition, where `scenario` is a name; None: as written.
+        scenario: Name of a built-in scenario, path of a scenario file, or a scenario.
+        condition: Number of a condition, if `scenario` is a name or a path; None for the
+            scenario as written.
         world: `scripted`, without physics, or `embedded`, Minecraft.
         actions: `skills`, calls of skills in a structured space, or `programs`, JavaScript.
         observations: `arrays` of a fixed layout, or a `dict` of plain data.
-        agents: Who acts; None: everybody.
-        nested: Beliefs about beliefs that infos hold, under `beliefs`: paths such as
-            `/anne/sally`, or all of them down to a depth.
-        phrases: What can be said, each with the claims that it makes if it is a mapping.
-        items: Names of items that nobody has at the start and somebody may have later.
-        reward: Given the nest and an agent, its reward after a step; None: always 0.
-        ends: Given the nest, whether the episode has come to its end; None: it never has.
-        max_steps: Joint steps after which an episode is cut off.
-        step_ticks: Ticks of a joint step, in which skills go on into the next steps; None: a step
-            lasts until all that was begun has ended. For skills in the scripted world.
-        timeout_ticks: Ticks after which what an action began is ended, if `step_ticks` is None.
-        plays_script: Whether episodes begin after the scenario's script, not before it.
-        senses: `percepts`: skills look for ways by what their agent knows, and programs read no
-            more than that; `world`: by what is the case. See docs/programs.md.
-        seed: Of the first episode that is begun without one.
+        agents: Agents that act; None for all.
+        nested: Beliefs about beliefs, which the infos hold under `beliefs`: paths such as
+            `/anne/sally`, or the greatest depth of all such paths.
+        phrases: Utterances to choose from; a mapping gives the claims of each.
+        items: Names of items that may appear later but that no agent or container has at the
+            start.
+        reward: Function of the nest and an agent that returns its reward after a step; None for
+            0.
+        ends: Function of the nest that returns True if the episode is over; None: it never is.
+        max_steps: Number of joint steps after which an episode is truncated.
+        step_ticks: Ticks of a joint step; skills then continue in later steps. None: a step
+            lasts until all actions have ended. Only for skills in the scripted world.
+        timeout_ticks: Ticks after which an unfinished action is stopped, if `step_ticks` is
+            None.
+        plays_script: True to begin episodes after the scenario's script, False before it.
+        senses: `percepts`: skills plan and programs read with the knowledge of their agent only;
+            `world`: with the actual world. See docs/programs.md.
+        seed: Seed of the first episode, if `reset` gets none.
 
     Raises:
         MissingExtraError: PettingZoo is not installed.
         UnknownNameError: There is no such scenario, world or item.
-        ScenarioError: The scenario is wrong.
+        ScenarioError: The scenario is invalid.
         PathError: There is no such agent or belief.
-        InputError: An argument is of no use.
+        InputError: Another argument is invalid.
     """
     made, described = _classes()
     options = described(
@@ -90,7 +95,7 @@ def parallel_env(
 
 
 def _classes() -> "tuple[type[BeliefEnv], type[Options]]":
-    """What needs PettingZoo: the environment, and how it is."""
+    """Import the classes that need PettingZoo."""
     try:
         from beliefnest.env.environment import BeliefEnv, Options
     except ModuleNotFoundError as error:

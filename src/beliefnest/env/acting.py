@@ -1,4 +1,4 @@
-"""How the actions of a step come about: skills tick by tick, or programs in any world."""
+"""Execution of the actions of a step: skills tick by tick, or programs in any world."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,11 +23,11 @@ __all__ = ["Acting", "Deed", "JointStep", "ProgramActing", "SkillActing"]
 
 @dataclass(frozen=True, slots=True)
 class Deed:
-    """What has become of an agent's latest action.
+    """State of an agent's latest action.
 
     Attributes:
-        error: Why it failed; empty if it did not.
-        busy: Whether it goes on.
+        error: Error message; empty if there is no error.
+        busy: True if the action continues in the next step.
     """
 
     error: str = ""
@@ -36,11 +36,11 @@ class Deed:
 
 @dataclass(frozen=True, slots=True)
 class JointStep:
-    """What happened in a joint step.
+    """Result of a joint step.
 
     Attributes:
-        deeds: By agent.
-        spoken: Whether anybody said anything.
+        deeds: State of each agent's action.
+        spoken: True if any agent said something.
     """
 
     deeds: Mapping[str, Deed]
@@ -48,18 +48,18 @@ class JointStep:
 
 
 class Acting(Protocol):
-    """Brings about what agents do together."""
+    """Executor of joint actions."""
 
     def act(self, actions: Mapping[str, Call | str]) -> JointStep:
-        """Begin the actions, and let time pass."""
+        """Begin the actions and let time pass."""
 
 
 class ProgramActing:
-    """Runs actions as programs, together, until the last has ended; in any world.
+    """Executor that runs actions as programs until the last has ended, in any world.
 
     Args:
         nest: The nest.
-        timeout_ticks: Ticks after which programs are ended.
+        timeout_ticks: Ticks after which programs are stopped.
         senses: What programs can read of the world.
     """
 
@@ -69,7 +69,7 @@ class ProgramActing:
         self._senses = senses
 
     def act(self, actions: Mapping[str, Call | str]) -> JointStep:
-        """Run what is no empty program; one tick passes if there is none.
+        """Run all programs that are not empty; let one tick pass if there are none.
 
         Raises:
             BodyError: The Minecraft side failed.
@@ -91,15 +91,15 @@ class ProgramActing:
 
 
 class SkillActing:
-    """Does skills of the scripted world itself, without a JavaScript engine.
+    """Executor that performs skills in the scripted world without a JavaScript engine.
 
-    Agents act in the order of their names. A new action ends what its agent was doing.
+    Agents act in the order of their names. A new action stops the agent's current one.
 
     Args:
         nest: The nest, in the scripted world.
-        ticks: How many ticks a step takes; None: until nobody is doing anything.
-        timeout_ticks: Ticks after which what goes on is ended, where `ticks` is None.
-        senses: What is known when a way, a container or somebody else is looked for.
+        ticks: Ticks of a step; None: a step lasts until all actions have ended.
+        timeout_ticks: Ticks after which actions are stopped, if `ticks` is None.
+        senses: Knowledge with which skills look for ways, containers and other agents.
     """
 
     def __init__(self, nest: Nest, ticks: int | None, timeout_ticks: int, senses: Senses) -> None:
@@ -115,7 +115,7 @@ class SkillActing:
         world.listen(self._hear)
 
     def act(self, actions: Mapping[str, Call | str]) -> JointStep:
-        """Begin the actions, and let at least one tick pass."""
+        """Begin the actions and let at least one tick pass."""
         self._spoken = False
         errors: dict[str, str] = {}
         for agent, call in sorted(actions.items()):
@@ -149,7 +149,7 @@ class SkillActing:
             ground=self._real_ground,
         )
         self._doing[agent] = _near(hand, skill(hand, *call.args), call)
-        # Up to its first tick nothing is done, and what cannot be done is told.
+        # Run the skill up to its first tick: it checks its arguments and has no effect yet.
         self._advance(agent, errors)
 
     def _advance(self, agent: str, errors: dict[str, str]) -> None:
@@ -170,7 +170,7 @@ class SkillActing:
         return self._ground("", self._world.blocks)
 
     def _ground(self, whose: str, grid: BlockGrid) -> Ground:
-        """Return the ground of a grid, made anew where that has changed."""
+        """Return the ground of a grid, computed again only if the grid has changed."""
         known = self._grounds.get(whose)
         if known is None or not (known[0] is grid or np.array_equal(known[0], grid)):
             ground = Ground(Registry.load(), self._world.box, grid)
@@ -182,7 +182,7 @@ class SkillActing:
         if self._senses == "world":
             return agents
         seen = self._nest[path_text((agent,))].state.agents
-        # Who is perceived now is where it is perceived.
+        # An agent that is perceived now is believed to be where it really is.
         return {name: each for name, each in agents.items() if seen[name].current or name == agent}
 
     def _signs(self, agent: str) -> Mapping[Position, str]:
@@ -196,7 +196,7 @@ class SkillActing:
 
 
 def _near(hand: Hand, doing: Doing, call: Call) -> Doing:
-    """Go near a container before it is opened, as its program does."""
+    """Walk to a container before opening it, as the skill's program does."""
     if call.skill == "openContainer":
         yield from SKILLS["goToPosition"](hand, call.args[0], 2)
     yield from doing

@@ -1,4 +1,4 @@
-"""Actions: calls of skills in a structured space."""
+"""Actions in a structured space, which stand for calls of skills."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,10 +13,10 @@ from beliefnest.world.values import Position
 __all__ = ["MOST_ITEMS", "Call", "Calls"]
 
 _LONGEST = 200
-"""Characters of an action in a message."""
+"""Greatest number of characters of an action in a message."""
 
 MOST_ITEMS = 64
-"""Most items of one kind that one call moves."""
+"""Greatest number of items of one kind that one call moves."""
 
 _NEEDS: Mapping[str, tuple[str, ...]] = {
     "doNothing": (),
@@ -31,7 +31,7 @@ _NEEDS: Mapping[str, tuple[str, ...]] = {
     "say": ("phrase",),
     "whisper": ("agent", "phrase"),
 }
-"""By skill, the parts of an action that it reads; all others play no part."""
+"""Parts of an action that each skill reads; it ignores the others."""
 
 _KINDS = {
     "container": "containers",
@@ -41,19 +41,20 @@ _KINDS = {
     "agent": "agents",
     "phrase": "phrases",
 }
-"""By part of an action, what in the layout it numbers."""
+"""List of the layout that each part of an action indexes."""
 
 
 class Calls:
-    """From actions to calls and back.
+    """Conversion of actions to calls and of names to actions.
 
     Args:
-        layout: The order of everything.
-        phrases: What can be said, with claims.
+        layout: Order of agents, items and other things.
+        phrases: Utterances with their claims.
 
     Attributes:
-        skills: Names of the skills that make sense here; an action's `skill` numbers them.
-        parts: Part of an action to how many values it has; `position` has three numbers.
+        skills: Names of the skills that are possible here; an action's `skill` is an index into
+            them.
+        parts: Number of values of each part of an action; `position` has three numbers instead.
     """
 
     def __init__(self, layout: ObservationLayout, phrases: Phrases) -> None:
@@ -61,7 +62,7 @@ class Calls:
         self._phrases = phrases
         sizes: dict[str, int] = {part: len(getattr(layout, kind)) for part, kind in _KINDS.items()}
         sizes |= {"position": 1, "count": MOST_ITEMS}
-        # Nobody gives or whispers to himself.
+        # An agent cannot give or whisper to itself.
         sizes["agent"] = len(layout.agents) if len(layout.agents) > 1 else 0
         self.skills = tuple(
             name for name, needs in _NEEDS.items() if all(sizes[part] for part in needs)
@@ -70,19 +71,21 @@ class Calls:
         self.parts = {part: size for part, size in sizes.items() if part in used}
 
     def action(self, skill: str, given: Mapping[str, object]) -> dict[str, Any]:
-        """Return an action of the space, from names and positions.
+        """Return an action of the space from names and positions.
 
         Args:
             skill: Name of the skill.
-            given: `position`, `container`, `door`, `sign` as block positions, `item`, `agent`,
-                `phrase` as they are called, `count` (1 if it is not given).
+            given: `position`, `container`, `door` and `sign` as block positions; `item`, `agent`
+                and `phrase` as names or texts; `count` (default 1).
 
         Raises:
             UnknownNameError: There is no such skill, or no such thing.
-            InputError: A part is missing or of no use to the skill, or is none.
+            InputError: A part is missing, invalid or not used by the skill.
         """
         if skill not in self.skills:
-            raise UnknownNameError(f"there is no skill {skill!r} here; {', '.join(self.skills)}")
+            raise UnknownNameError(
+                f"there is no skill {skill!r} here; skills are {', '.join(self.skills)}"
+            )
         needs = _NEEDS[skill]
         parts = {"count": 1, **given} if "count" in needs else dict(given)
         if parts.keys() != set(needs):
@@ -113,17 +116,17 @@ class Calls:
         return np.int64(self._layout.number(_KINDS[part], value))
 
     def read(self, action: Mapping[str, Any]) -> Call:
-        """Return the call that an action means.
+        """Return the call that an action stands for.
 
         Raises:
-            InputError: It is no action of the space.
+            InputError: The action is not in the space.
         """
         try:
             skill = self.skills[_index(action["skill"])]
             return Call(skill, self._args(skill, action))
         except (KeyError, IndexError, TypeError, ValueError, OverflowError) as error:
             raise InputError(
-                f"{repr(action)[:_LONGEST]} is no action here ({error!r}); "
+                f"{repr(action)[:_LONGEST]} is not in the action space ({error!r}); "
                 "sample action_space() or use action()"
             ) from None
 

@@ -1,4 +1,4 @@
-"""A scenario as an environment of several agents, by PettingZoo's parallel interface."""
+"""Scenario as a multi-agent environment with PettingZoo's parallel interface."""
 
 import functools
 import itertools
@@ -29,12 +29,12 @@ _LONGEST_PROGRAM = 10_000
 _LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
 
 Told = dict[str, Any]
-"""What is told about one agent."""
+"""Info dictionary of one agent."""
 
 
 @dataclass(frozen=True)
 class Options:
-    """How an environment is; the arguments of `parallel_env`, with the same names."""
+    """Options of an environment; the arguments of `parallel_env`, with the same names."""
 
     world: str = "scripted"
     actions: Literal["skills", "programs"] = "skills"
@@ -76,7 +76,7 @@ class Options:
 
     @property
     def said(self) -> Phrases:
-        """What can be said, with claims."""
+        """Utterances with their claims."""
         if isinstance(self.phrases, Mapping):
             return self.phrases
         return dict.fromkeys(self.phrases, ())
@@ -88,33 +88,33 @@ def _check_count(name: str, number: object, wanted: str) -> None:
 
 
 class BeliefSpace(spaces.Space[dict[str, Any]]):
-    """Beliefs as plain data: the objects of `beliefnest show --json`, with what they rest on."""
+    """Space of beliefs as plain data: the objects of `beliefnest show --json`, with their bases."""
 
     def contains(self, x: Any) -> bool:
-        """Return True if it is such an object."""
+        """Return True if a value is such an object."""
         return isinstance(x, dict) and {"containers", "agents", "chat"} <= x.keys()
 
     def sample(self, mask: Any = None, probability: Any = None) -> dict[str, Any]:
-        """Return the belief of somebody who knows nothing."""
+        """Return the belief of an agent that knows nothing."""
         return {"containers": {}, "agents": {}, "chat": [], "addressees": [], "thoughts": []}
 
     @property
     def is_np_flattenable(self) -> bool:
-        """False: it has no fixed size."""
+        """False: the space has no fixed size."""
         return False
 
 
 class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no type information
-    """A scenario, acted in by agents that get their own beliefs as observations.
+    """A scenario in which agents act and get their own beliefs as observations.
 
-    `beliefnest.env.parallel_env` makes one and tells of its arguments.
+    Create one with `beliefnest.env.parallel_env`, which explains the arguments.
 
     Attributes:
-        possible_agents: Who acts, sorted.
-        agents: Who still acts in this episode.
-        layout: What the numbers in arrays and actions stand for.
-        skills: Names of the skills that an action's `skill` numbers.
-        nest: The nest of this episode; everything of it can be looked at.
+        possible_agents: Agents that can act, sorted.
+        agents: Agents that still act in this episode.
+        layout: Meaning of the indices in arrays and actions.
+        skills: Names of the skills; an action's `skill` is an index into them.
+        nest: Nest of this episode, for any further query.
     """
 
     metadata = {"name": "beliefnest_v0", "render_modes": [], "is_parallelizable": True}  # noqa: RUF012 - as PettingZoo declares it
@@ -129,7 +129,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         for name in self.possible_agents:
             if name not in scenario.setting.snapshot.agents:
                 there = ", ".join(sorted(scenario.setting.snapshot.agents))
-                raise PathError(f"{name!r} cannot act from the start; there are {there}")
+                raise PathError(f"no agent {name!r} at the start; agents are {there}")
         self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
         self.agents: list[str] = []
         self._seed = options.seed - 1
@@ -141,10 +141,10 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     @property
     def nest(self) -> Nest:
-        """The nest of this episode.
+        """Nest of this episode.
 
         Raises:
-            InputError: None has begun.
+            InputError: No episode has begun.
         """
         if self._nest is None:
             raise InputError("no episode has begun; call reset() first")
@@ -152,12 +152,12 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     @property
     def unwrapped(self) -> "BeliefEnv":
-        """Itself."""
+        """The environment itself."""
         return self
 
     @functools.cache  # noqa: B019 - the interface wants the same space for an agent each time
     def observation_space(self, agent: str) -> spaces.Space[Any]:
-        """Return the space of an agent's observations; the same object each time."""
+        """Return the space of an agent's observations; the same object on each call."""
         if self._options.observations == "dict":
             return BeliefSpace()
         return spaces.Dict(
@@ -169,7 +169,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     @functools.cache  # noqa: B019 - as above
     def action_space(self, agent: str) -> spaces.Space[Any]:
-        """Return the space of an agent's actions; the same object each time."""
+        """Return the space of an agent's actions; the same object on each call."""
         if self._options.actions == "programs":
             return spaces.Text(_LONGEST_PROGRAM, min_length=0, charset=_LETTERS)
         parts: dict[str, spaces.Space[Any]] = {"skill": spaces.Discrete(len(self.skills))}
@@ -183,16 +183,16 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         return spaces.Dict(parts)
 
     def action(self, skill: str, **parts: object) -> dict[str, Any]:
-        """Return an action of the structured space, from names and positions.
+        """Return an action of the structured space from names and positions.
 
         Args:
             skill: Name of a skill.
-            parts: What it takes: `position`, `container`, `door`, `sign` as block positions,
-                `item`, `agent`, `phrase` as they are called, `count`.
+            parts: Its arguments: `position`, `container`, `door` and `sign` as block positions;
+                `item`, `agent` and `phrase` as names or texts; `count`.
 
         Raises:
             UnknownNameError: There is no such skill, or no such thing.
-            InputError: A part is missing, or of no use to the skill.
+            InputError: A part is missing, invalid or not used by the skill.
         """
         return self._calls.action(skill, parts)
 
@@ -202,11 +202,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """Begin an episode.
 
         Args:
-            seed: Drives every random number; None: one more than the last.
-            options: Play no part.
+            seed: Seed of every random number; None for the last seed plus one.
+            options: Ignored.
 
         Raises:
-            InputError: The seed is no whole number of 64 bits; the episode goes on.
+            InputError: The seed is not a whole number of 64 bits; the current episode continues.
             BodyError: The world could not be started.
             ProgramError: The script cannot be played.
         """
@@ -231,10 +231,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
     def step(
         self, actions: Mapping[str, Any]
     ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Told]]:
-        """Let agents act together; who is given no action begins nothing.
+        """Let agents act together; agents without an action begin nothing.
 
         Raises:
-            InputError: An action is none of the space, or its agent does not act; nothing was done.
+            InputError: An action is not in the space, or its agent does not act; nothing was
+                done.
             BodyError: The Minecraft side failed.
         """
         if self._acting is None:
@@ -265,14 +266,14 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         return observations, rewards, terminations, truncations, infos
 
     def render(self) -> None:
-        """Nothing; `nest.figure()` draws any belief."""
+        """Do nothing; `nest.figure()` draws any belief."""
 
     def state(self) -> Any:
-        """Return the real world, in the form of an observation of nobody's."""
+        """Return the real world in the form of an observation."""
         return self._form(self.nest["/"].state, ())
 
     def close(self) -> None:
-        """End the episode and the world."""
+        """End the episode and close the world."""
         self._end_episode()
         if self._worlds is not None:
             self._worlds.__exit__(None, None, None)
@@ -296,11 +297,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
     def _told(
         self, deeds: Mapping[str, Deed], *, spoken: bool
     ) -> tuple[dict[str, Any], dict[str, Told]]:
-        """Observations and infos of all agents."""
+        """Return the observations and infos of all agents."""
         infos: dict[str, Told] = {
             agent: {"error": deeds[agent].error, "busy": deeds[agent].busy} for agent in self.agents
         }
-        # The deepest first: a belief brings those above it along.
+        # Deepest paths first: computing a belief also computes those above it.
         for path in self._nested:
             agent = path[0]
             if agent in infos:
@@ -327,7 +328,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 def _nested(
     nested: int | Sequence[str], acting: Sequence[str], agents: Sequence[str]
 ) -> tuple[tuple[str, ...], ...]:
-    """Return the paths of the beliefs to tell in infos, the deepest first."""
+    """Return the paths of the beliefs for the infos, the deepest first."""
     if isinstance(nested, int):
         found = {
             (first, *rest)
@@ -341,7 +342,7 @@ def _nested(
         for path in found:
             if len(path) < 2 or path[0] not in acting:
                 raise PathError(
-                    f"{path_text(path)!r} is no belief of an acting agent about another's; "
+                    f"{path_text(path)!r} is not a belief of an acting agent about another's; "
                     f"name one such as /{acting[0]}/{agents[-1]}"
                 )
     return tuple(sorted(found, key=lambda path: (-len(path), path)))

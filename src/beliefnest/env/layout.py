@@ -1,4 +1,4 @@
-"""What arrays of observations and actions stand for: the order of everything in a scenario."""
+"""Layout of the arrays of observations and actions: the order of everything in a scenario."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,24 +19,24 @@ from beliefnest.world.values import Box, Position
 __all__ = ["Arrays", "ObservationLayout", "Phrases"]
 
 Arrays = dict[str, npt.NDArray[Any]]
-"""An observation, or a belief, as arrays by name."""
+"""An observation or a belief as arrays by name."""
 
 Phrases = Mapping[str, Sequence[Claim]]
-"""What agents can say, each with the claims that it makes."""
+"""Utterances that agents can choose, with the claims of each."""
 
 
 @dataclass(frozen=True)
 class ObservationLayout:
-    """The fixed order of what arrays tell of.
+    """Fixed order of the things that arrays describe.
 
     Attributes:
-        box: The part of space; `blocks` has its shape.
+        box: Region of the scenario; `blocks` has its shape.
         agents: Names, sorted.
         items: Names of items, sorted.
         containers: Positions, in order.
-        doors: Positions of what opens and shuts, of doors the lower half, in order.
+        doors: Positions of doors (lower half), trapdoors and gates, in order.
         signs: Positions of signs, in order.
-        phrases: What can be said, and written on signs.
+        phrases: Texts that can be said and written on signs.
     """
 
     box: Box
@@ -51,16 +51,16 @@ class ObservationLayout:
     def of(
         cls, setting: Setting, phrases: Phrases, items: Sequence[str] = ()
     ) -> "ObservationLayout":
-        """Return the layout of what a scenario starts from.
+        """Return the layout for the start of a scenario.
 
         Args:
-            setting: The start.
-            phrases: What can be said.
-            items: Names of further items, which nobody has and no container holds at the start.
+            setting: Setting of the scenario.
+            phrases: Utterances with their claims.
+            items: Names of further items, which no agent or container has at the start.
 
         Raises:
             UnknownNameError: There is no such item.
-            InputError: A claim speaks of what is not there.
+            InputError: A claim is about a place outside the box or about an unknown agent.
         """
         snapshot = setting.snapshot
         registry = Registry.load()
@@ -84,11 +84,11 @@ class ObservationLayout:
         )
 
     def number(self, kind: str, value: object) -> int:
-        """Return the number of something in its order.
+        """Return the index of a thing in its order.
 
         Args:
             kind: `agents`, `items`, `containers`, `doors`, `signs` or `phrases`.
-            value: What is looked for.
+            value: The thing.
 
         Raises:
             UnknownNameError: There is no such thing.
@@ -96,11 +96,13 @@ class ObservationLayout:
         known = getattr(self, kind)
         if value not in known:
             there = ", ".join(map(str, known)) or "none"
-            raise UnknownNameError(f"{value!r} is none of the {kind} of the environment: {there}")
+            raise UnknownNameError(
+                f"{value!r} is not among the {kind} of the environment, which are {there}"
+            )
         return int(known.index(value))
 
     def shapes(self) -> dict[str, tuple[tuple[int, ...], type[np.generic], float, float]]:
-        """By name of an array: shape, type, least and greatest value."""
+        """Return shape, type, least and greatest value of each array by name."""
         agents, items, containers = len(self.agents), len(self.items), len(self.containers)
         most = float(np.iinfo(np.int32).max)
         shapes: dict[str, tuple[tuple[int, ...], type[np.generic], float, float]] = {
@@ -122,11 +124,11 @@ class ObservationLayout:
         return shapes
 
     def arrays(self, state: State, lines: Sequence[tuple[int, str, str]] = ()) -> Arrays:
-        """Return a belief as arrays; docs/pettingzoo.md tells what is in each.
+        """Return a belief as arrays; docs/pettingzoo.md describes each.
 
         Args:
-            state: What is believed.
-            lines: What was heard since the observation before: tick, speaker, text.
+            state: The belief.
+            lines: Utterances heard since the previous observation: tick, speaker, text.
         """
         found: Arrays = {
             name: np.zeros(shape, dtype) for name, (shape, dtype, _, _) in self.shapes().items()
@@ -167,7 +169,10 @@ class ObservationLayout:
                 self._count(found["containers"][row], known.items)
 
     def _written(self, text: str | None) -> int:
-        """-1: unknown, 0: nothing, from 1 on the phrase, after the last one another text."""
+        """Return the code of a sign's text.
+
+        -1: unknown; 0: no text; 1 to n: the phrases; n + 1: another text.
+        """
         if not text:
             return -1 if text is None else 0
         known = text in self.phrases
@@ -177,8 +182,8 @@ class ObservationLayout:
         for name, count in items.items():
             if name not in self.items:
                 raise InputError(
-                    f"there is {name} now, which nobody had at the start; name it in `items` "
-                    "of the environment"
+                    f"item {name!r} is new: no agent or container had it at the start; name it "
+                    "in `items` of the environment"
                 )
             row[self.items.index(name)] = count
 
@@ -186,7 +191,7 @@ class ObservationLayout:
 def _doors(setting: Setting, registry: Registry) -> list[Position]:
     snapshot = setting.snapshot
     states = [s for s in np.unique(snapshot.blocks).tolist() if is_door(registry.name(s))]
-    # Of a door the upper half is moved with the lower one.
+    # Leave upper halves of doors out: they move together with the lower ones.
     lower = [s for s in states if registry.properties(s).get("half") != "upper"]
     return _places(setting, lower)
 
@@ -197,7 +202,7 @@ def _signs(setting: Setting, registry: Registry) -> list[Position]:
 
 
 def _places(setting: Setting, states: Sequence[int]) -> list[Position]:
-    """Where one of some block states is, in order."""
+    """Return the positions of blocks with one of some states, in order."""
     snapshot = setting.snapshot
     x, y, z = snapshot.box.low
     cells = np.argwhere(np.isin(snapshot.blocks, states)).tolist()

@@ -1,1 +1,1 @@
-"""Pictures of what simulators hold: pure functions from values to marks, and files of these."""
+"""Pictures of simulators: pure functions from values to drawings, and writers of files."""

@@ -1,4 +1,4 @@
-"""Figures one after the other, as a file that moves."""
+"""Animations: sequences of figures in one file."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,10 +15,10 @@ _FORMS: Mapping[str, str] = {".gif": "GIF", ".webp": "WEBP"}
 
 
 def check_animated(path: Path) -> str:
-    """Return the form that a file's ending names.
+    """Return the image format for a file's suffix.
 
     Raises:
-        InputError: It names none.
+        InputError: The suffix is unknown.
     """
     form = _FORMS.get(path.suffix.lower())
     if form is None:
@@ -36,17 +36,17 @@ def save_animation(
     size: Size | None = None,
     dpi: float = 110,
 ) -> None:
-    """Write figures that are shown one after the other, again and again.
+    """Write figures as an animation that repeats forever.
 
     Args:
-        figures: What is shown.
-        milliseconds: How long each is shown.
-        path: A `.gif` or `.webp` file; it is replaced.
+        figures: The figures, in order.
+        milliseconds: Duration of each figure.
+        path: A `.gif` or `.webp` file; an existing file is replaced.
         size: As for `Figure.drawing`.
-        dpi: Pixels to an inch.
+        dpi: Pixels per inch.
 
     Raises:
-        InputError: There is no such ending, or the file cannot be written.
+        InputError: The suffix is unknown, or the file cannot be written.
     """
     form = check_animated(path)
     images = [figure.image(size, dpi) for figure in figures]
@@ -55,7 +55,7 @@ def save_animation(
     for page, image in zip(pages, images, strict=True):
         page.paste(image, (0, 0))
     if form == "GIF":
-        # One set of colours for all, so that nothing flickers.
+        # Use one palette for all frames, so that colours do not flicker.
         colours = pages[-1].quantize(128, dither=Image.Dither.NONE)
         pages = [page.quantize(palette=colours, dither=Image.Dither.NONE) for page in pages]
     first, *others = pages

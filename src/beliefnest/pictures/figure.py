@@ -1,4 +1,4 @@
-"""Figures: drawings for a width, saved in the form that the file's ending names."""
+"""Figures: drawings that can be laid out for any width and saved in several formats."""
 
 import io
 from collections.abc import Callable, Mapping, Sequence
@@ -21,12 +21,12 @@ if TYPE_CHECKING:  # Most figures are drawn without it.
 __all__ = ["MARGIN", "TEXT_SIZE", "Figure", "Size", "columns_for", "figure_of"]
 
 Size = float | tuple[float, float] | Literal["one column", "two columns"]
-"""Width, or greatest width and height, in millimetres; or columns of a paper."""
+"""Width, or greatest width and height, in millimetres; or the column width of a paper."""
 
 TEXT_SIZE = 7.0
-"""Of texts in figures, in points."""
+"""Size of texts in figures, in points."""
 MARGIN = 5.0
-"""Around figures, in points."""
+"""Margin around figures, in points."""
 
 _POINTS = 72 / 25.4
 _COLUMNS: Mapping[str, float] = {"one column": 84.0, "two columns": 174.0}
@@ -41,9 +41,9 @@ class Figure:
     """A figure that can be laid out for any width.
 
     Args:
-        layout: Drawing for a width in points.
-        width: Width in millimetres where none is asked for.
-        about: What it shows, in a few words.
+        layout: Function that returns the drawing for a width in points.
+        width: Default width in millimetres.
+        about: Short description of the content.
     """
 
     def __init__(self, layout: Callable[[float], Drawing], width: float, about: str) -> None:
@@ -61,11 +61,12 @@ class Figure:
         """Return the marks of the figure.
 
         Args:
-            size: Width in millimetres; or width and greatest height, and it is made smaller to fit;
-                or `one column` (84 mm) or `two columns` (174 mm) of a paper; None: its own width.
+            size: Width in millimetres; or width and greatest height, to which the figure is
+                scaled down; or `one column` (84 mm) or `two columns` (174 mm) of a paper; None
+                for the default width.
 
         Raises:
-            InputError: There is no such size.
+            InputError: The size is invalid.
         """
         if isinstance(size, tuple):
             width, height = (_length(part) for part in size)
@@ -73,7 +74,7 @@ class Figure:
         if isinstance(size, str):
             if size not in _COLUMNS:
                 names = " or ".join(repr(name) for name in _COLUMNS)
-                raise InputError(f"there is no size {size!r}; give millimetres, {names}")
+                raise InputError(f"unknown size {size!r}; give millimetres, {names}")
             return self._layout(_COLUMNS[size] * _POINTS)
         return self._layout(_length(self._width if size is None else size) * _POINTS)
 
@@ -84,17 +85,17 @@ class Figure:
         return raster(self.drawing(size), dpi)
 
     def save(self, path: str | Path, size: Size | None = None, dpi: float = 200) -> None:
-        """Write the figure as SVG, PDF or PNG, by the ending of the file's name.
+        """Write the figure as SVG, PDF or PNG, by the suffix of the file's name.
 
-        The same figure gives the same bytes. Texts of SVG and PDF can be selected.
+        The same figure gives the same bytes. Texts in SVG and PDF can be selected.
 
         Args:
-            path: The file; it is replaced.
+            path: Output file; an existing file is replaced.
             size: As for `drawing`.
-            dpi: Pixels to an inch, of PNG.
+            dpi: Pixels per inch of a PNG file.
 
         Raises:
-            InputError: There is no such ending or size, or the file cannot be written.
+            InputError: The suffix or the size is invalid, or the file cannot be written.
         """
         file = Path(path)
         ending = file.suffix.lower()
@@ -112,7 +113,7 @@ class Figure:
             ) from None
 
     def _fitting(self, width: float, height: float) -> Drawing:
-        """Laid out wider until it is no higher than there is room for, and made smaller."""
+        """Lay the figure out at growing widths until its proportions fit, then scale it down."""
         factor = 1.0
         drawing = self._layout(width)
         while drawing.height > height * factor and factor < 8:
@@ -122,12 +123,7 @@ class Figure:
 
 
 def figure_of(scenes: Sequence[Scene], chart: BarChart | None = None) -> Figure:
-    """Return simulators side by side, as many in a row as there is room for.
-
-    Args:
-        scenes: At least one.
-        chart: A posterior, drawn after them; None: there is none.
-    """
+    """Return a figure of simulators side by side, as many in a row as fit."""
     paths = ", ".join(scene.path for scene in scenes)
     about = f"{paths} at tick {scenes[0].tick}"
     panels: list[Scene | BarChart] = [*scenes, *([] if chart is None else [chart])]
@@ -136,7 +132,7 @@ def figure_of(scenes: Sequence[Scene], chart: BarChart | None = None) -> Figure:
 
 
 def columns_for(count: int, width: float, least: float) -> int:
-    """How many of `count` equal columns stand side by side, none much shorter than others."""
+    """Return how many of `count` equal columns to put in a row, so that rows are balanced."""
     most = max(1, int((width + _GAP) // (least + _GAP)))
     rows = -(-count // min(most, count))
     return -(-count // rows)
@@ -175,7 +171,8 @@ def _length(value: object) -> float:
     if isinstance(value, int | float) and _NARROWEST <= value <= _WIDEST:
         return float(value)
     raise InputError(
-        f"{value!r} is no length of a figure; give {_NARROWEST:g} to {_WIDEST:g} millimetres"
+        f"{value!r} is not a valid length of a figure; give {_NARROWEST:g} to {_WIDEST:g} "
+        "millimetres"
     )
 
 

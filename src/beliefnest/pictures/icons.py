@@ -1,4 +1,4 @@
-"""Small drawings: agents, containers, items, doors, levers."""
+"""Icons: agents, containers, items, doors, levers."""
 
 import math
 import zlib
@@ -25,21 +25,21 @@ _GEMS: Mapping[str, str] = {
 
 
 def letters(at: XY, text: str, room: float, colour: str, *, halo: str | None = None) -> Text:
-    """Letters in the middle of an icon, as large as fit into `room`."""
+    """Return letters in the middle of an icon, as large as fit into `room`."""
     size = min(room * 0.8, room * 0.88 / max(text_width(text, 1.0, bold=True), 0.1))
     x, y = at
     return Text(x, y + size * ASCENT * 0.48, text, size, colour, True, "middle", halo, "part")
 
 
 def agent(at: XY, radius: float, look: AgentLook, yaw: float | None, mark: Mark) -> list[Drawn]:
-    """Return a disc with a nose towards where the agent looks; a dashed one for a memory.
+    """Return a disc with a nose in the direction of the look; dashed for a memory.
 
     Args:
-        at: Its middle.
-        radius: Of the disc.
-        look: The agent's.
-        yaw: Where it looks, 0 up, pi/2 left; None: not shown.
-        mark: What can be said of its place.
+        at: Middle of the disc.
+        radius: Radius of the disc.
+        look: Look of the agent.
+        yaw: Direction of its look, 0 up, pi/2 left; None to leave the nose out.
+        mark: Mark for its position.
     """
     x, y = at
     drawn: list[Drawn] = []
@@ -69,7 +69,7 @@ def agent(at: XY, radius: float, look: AgentLook, yaw: float | None, mark: Mark)
 
 
 def false_sign(at: XY, radius: float) -> list[Drawn]:
-    """Return a cross on a diamond: this is false."""
+    """Return a cross on a diamond, the sign for a false entry."""
     x, y = at
     colour = MARKS[Mark.FALSE].colour
     r, c = radius * 1.35, radius * 0.42
@@ -82,12 +82,12 @@ def false_sign(at: XY, radius: float) -> list[Drawn]:
 
 
 def hearsay(at: XY, radius: float, *, believed: bool = True) -> list[Drawn]:
-    """Return a balloon with two strokes, as somebody's words have: this was only told.
+    """Return a balloon with two strokes, like a line of speech, the sign for hearsay.
 
     Args:
-        at: Its middle.
+        at: Middle of the balloon.
         radius: About half its height.
-        believed: Whether the words were; those that were not are struck out.
+        believed: True if the words were believed; otherwise the balloon is struck out.
     """
     x, y = at
     wide, high = radius * 2.3, radius * 1.5
@@ -111,7 +111,7 @@ def hearsay(at: XY, radius: float, *, believed: bool = True) -> list[Drawn]:
 
 
 def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:
-    """Return a tick, or a cross, on a disc; what is false has its cross on a diamond."""
+    """Return a tick or a cross on a disc; the sign for false entries has a diamond instead."""
     x, y = at
     if not good:
         c = radius * 0.42
@@ -129,10 +129,10 @@ def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:
 
 
 def container(at: XY, size: float, store: Store) -> list[Drawn]:
-    """Return a container with what is known to be in it.
+    """Return a container with its known items.
 
-    Items stand on it; it is open if it is known to be empty; `?` says that nothing is known, `+?`
-    that there may be more.
+    The items stand on it. It is open if it is known to be empty. `?` means unknown contents,
+    `+?` means that there may be more.
     """
     x, y = at
     half = size / 2
@@ -184,7 +184,7 @@ def container(at: XY, size: float, store: Store) -> list[Drawn]:
 
 
 def item(at: XY, size: float, name: str) -> list[Drawn]:
-    """Return an item: a cut stone in its colour."""
+    """Return an item: a cut stone in the item's colour."""
     x, y = at
     r = size / 2
     colour = _item_colour(name)
@@ -199,12 +199,12 @@ def item(at: XY, size: float, name: str) -> list[Drawn]:
 
 
 def device(at: XY, cell: float, shown: Device) -> list[Drawn]:
-    """Return a door as wide as it stands, a lever, a button, a plate, a sign, a table to work at.
+    """Return the icon of a door, lever, button, plate, sign or workbench.
 
     Args:
-        at: Left upper corner of its column.
+        at: Upper left corner of its column.
         cell: Width of a column.
-        shown: What is drawn.
+        shown: The device.
     """
     x, y = at
     middle = (x + cell / 2, y + cell / 2)
@@ -252,7 +252,7 @@ def device(at: XY, cell: float, shown: Device) -> list[Drawn]:
 
 
 def _door(at: XY, cell: float, shown: Device) -> list[Drawn]:
-    """A shut door fills its frame; an open one stands aside, and an arc tells how it turned."""
+    """Draw a door: shut, it fills its frame; open, it stands aside with an arc of its turn."""
     x, y = at
     frame = Rectangle(
         x,
@@ -296,7 +296,7 @@ def _item_colour(name: str) -> str:
     for part, colour in _GEMS.items():
         if part in name:
             return colour
-    # Not Python's own hash, which differs from process to process.
+    # Python's own hash is no use here: it differs from process to process.
     digest = zlib.crc32(name.encode())
     parts = (90 + digest % 130, 90 + digest // 256 % 130, 90 + digest // 65536 % 130)
     return "#" + bytes(parts).hex()

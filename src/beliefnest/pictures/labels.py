@@ -1,4 +1,4 @@
-"""Where names stand on a plan: at what they belong to, or with a line that leads there."""
+"""Placement of names on a plan: beside their icons, or elsewhere with a line to the icon."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,20 +10,20 @@ from beliefnest.pictures.room import Room
 __all__ = ["LINE", "Label", "Put", "leader", "put_labels"]
 
 LINE = ASCENT + DESCENT
-"""From line to line of a label, to the size of its text."""
+"""Distance between the lines of a label, relative to the text size."""
 _MANY = 1000
 _TRIES = 4
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A name, and what else stands below it, before it has its place.
+    """A name with further lines, before it has a place.
 
     Attributes:
-        icon: What it belongs to.
-        lines: Texts, and whether they are bold.
-        sizes: Of the lines, in points.
-        size: Width and height of all of it.
+        icon: Bounds of the icon that it belongs to.
+        lines: Texts, with True for bold ones.
+        sizes: Sizes of the lines, in points.
+        size: Width and height of the whole label.
     """
 
     icon: Bounds
@@ -34,12 +34,12 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Put:
-    """A label that has its place.
+    """A placed label.
 
     Attributes:
         label: The label.
-        at: Its left upper corner; None: there is no room for it.
-        beside: Whether that is beside its icon.
+        at: Upper left corner; None if there is no room for it.
+        beside: True if it is beside its icon.
     """
 
     label: Label
@@ -48,10 +48,11 @@ class Put:
 
 
 def put_labels(labels: Sequence[Label], room: Room) -> list[Put]:
-    """Labels with their places.
+    """Place labels, as many as possible beside their icons.
 
-    One for which there is no room at its icon stands where there is some; those that came off so
-    badly choose before the others in the next try.
+    A label without room at its icon goes to the nearest free place. The search is greedy and
+    runs several times: labels that found no room beside their icons are placed first in the next
+    try. The best try wins.
     """
     best: list[Put] = []
     first: list[Label] = []
@@ -67,7 +68,7 @@ def put_labels(labels: Sequence[Label], room: Room) -> list[Put]:
 
 
 def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> list[Put]:
-    """Return names with their places; then whoever has the least choice chooses first."""
+    """Place labels greedily: first those of `first`, then always the one with the fewest places."""
     room = free.copy()
     waiting = [*first, *(label for label in labels if label not in first)]
     put: list[Put] = []
@@ -91,7 +92,7 @@ def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> li
 
 
 def leader(put: Put) -> tuple[XY, XY]:
-    """Return a line from an icon to its label."""
+    """Return the line from an icon to its label."""
     assert put.at is not None
     (x0, y0, x1, y1), at, size = put.label.icon, put.at, put.label.size
     end = (

@@ -1,4 +1,4 @@
-"""What the signs of a figure mean: only those that are in it."""
+"""Legend of a figure, with only the signs that the figure contains."""
 
 from collections.abc import Callable, Iterable, Mapping
 
@@ -19,14 +19,14 @@ _GROUND = "#f0ece3"
 def draw_legend(
     kinds: Iterable[str], looks: Mapping[str, AgentLook], at: XY, width: float, size: float
 ) -> Block:
-    """Signs and words, as many in a line as there is room for.
+    """Draw signs with their meanings, as many in a line as fit.
 
     Args:
-        kinds: What is to be explained.
-        looks: Of all agents.
-        at: Left upper corner, in points.
-        width: In points.
-        size: Of the words, in points.
+        kinds: Signs to explain.
+        looks: Looks of all agents.
+        at: Upper left corner, in points.
+        width: Width in points.
+        size: Size of the text in points.
     """
     left, top = at
     block = Block(bottom=top)

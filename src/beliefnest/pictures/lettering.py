@@ -1,7 +1,7 @@
-"""Widths and lines of texts, measured with the font that is drawn.
+"""Text measurement and line breaking, with the font of the drawings.
 
-The font is Liberation Sans, whose widths are those of Arial and Helvetica: a text that a viewer
-of an SVG file draws with one of these takes the room that was measured for it.
+The font is Liberation Sans, which has the widths of Arial and Helvetica. If a viewer of an SVG
+file uses one of those fonts, texts have the measured widths.
 """
 
 import io
@@ -26,7 +26,7 @@ __all__ = [
 ]
 
 ASCENT, DESCENT = 0.74, 0.22
-"""How far letters reach above and below the base line, in sizes of the text."""
+"""Height of letters above and depth below the base line, relative to the text size."""
 
 FAMILIES = "'Liberation Sans', Arial, Helvetica, sans-serif"
 
@@ -43,7 +43,7 @@ def font_bytes(*, bold: bool) -> bytes:
 
 @cache
 def font(size: float, *, bold: bool) -> ImageFont.FreeTypeFont:
-    """Return the font, with `size` pixels to a size of the text."""
+    """Return the font at a text size of `size` pixels."""
     stream = io.BytesIO(font_bytes(bold=bold))
     return ImageFont.truetype(stream, size, layout_engine=ImageFont.Layout.BASIC)
 
@@ -54,11 +54,11 @@ _LIKE = str.maketrans(
         **dict.fromkeys("\u2715\u2716\u2717\u2718\u274c", "\u00d7"),
     }
 )
-"""Signs that the font lacks, and those most like them that it has."""
+"""Replacements for characters that the font lacks by similar ones."""
 
 
 def lettered(text: str) -> str:
-    """Return a text as it is drawn where no other font can help out."""
+    """Replace characters that the font lacks, for formats without fallback fonts."""
     return text.translate(_LIKE)
 
 
@@ -68,14 +68,15 @@ def _unit_width(text: str, *, bold: bool) -> float:
 
 
 def text_width(text: str, size: float, *, bold: bool = False) -> float:
-    """Return the width of a line of text, in the unit of its size."""
+    """Return the width of a line of text, in the unit of `size`."""
     return _unit_width(text, bold=bold) * size
 
 
 def wrap(text: str, size: float, width: float, *, bold: bool = False) -> list[str]:
-    """Return a text in lines that are no wider than `width`; a word that is wider is broken.
+    """Break a text into lines that are no wider than `width`; wider words are broken.
 
-    What controls or turns text is written out, as wherever texts of others are shown.
+    Control characters and marks of text direction are escaped, as in all output of foreign
+    texts.
     """
     lines: list[str] = []
     for word in on_one_line(text).split():
@@ -93,7 +94,7 @@ def wrap(text: str, size: float, width: float, *, bold: bool = False) -> list[st
 
 
 def ellipsis(text: str, size: float, width: float, *, bold: bool = False) -> str:
-    """A text on one line, or as much of its beginning as there is room for with a sign of more."""
+    """Return a text on one line; cut it and add an ellipsis if it is too wide."""
     text = on_one_line(text)
     if text_width(text, size, bold=bold) <= width:
         return text
@@ -102,7 +103,7 @@ def ellipsis(text: str, size: float, width: float, *, bold: bool = False) -> str
 
 
 def _fitting(text: str, size: float, width: float, *, bold: bool) -> int:
-    """How many letters of a text fit; at least one."""
+    """Return the number of leading characters that fit; at least one."""
     count = len(text)
     while count > 1 and text_width(text[:count], size, bold=bold) > width:
         count -= 1

@@ -1,8 +1,8 @@
-"""A drawing: a list of marks, each of them of one simple shape, in points, y downwards.
+"""Drawings: lists of marks of simple shapes, in points, with y pointing down.
 
-Marks know where they end, so that what a drawing holds can be measured as well as looked at.
-What a mark is for is its `role`: texts and icons must not touch one another, cards must not be
-empty, and lines and areas lie where they lie.
+Marks have bounds, so that a drawing can be checked by measurement. The `role` of a mark tells
+its purpose: texts and icons must not touch one another, cards must not be empty; lines and areas
+may lie anywhere.
 """
 
 from collections.abc import Iterator
@@ -30,12 +30,13 @@ Bounds = tuple[float, float, float, float]
 """Left, top, right, bottom."""
 
 Role = Literal["area", "line", "icon", "part", "text", "card"]
-"""`part` is a piece of an icon; `text` stands for itself, a letter inside an icon is a `part`."""
+"""Purpose of a mark. `part` is a piece of an icon, including letters inside it; `text` stands
+alone."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
-    """A rectangle with its left upper corner at `x`, `y`."""
+    """A rectangle with its upper left corner at `x`, `y`."""
 
     x: float
     y: float
@@ -50,7 +51,7 @@ class Rectangle:
 
     @property
     def bounds(self) -> Bounds:
-        """Where it ends."""
+        """Bounding box."""
         return self.x, self.y, self.x + self.width, self.y + self.height
 
 
@@ -69,14 +70,14 @@ class Circle:
 
     @property
     def bounds(self) -> Bounds:
-        """Where it ends."""
+        """Bounding box."""
         r = self.radius
         return self.x - r, self.y - r, self.x + r, self.y + r
 
 
 @dataclass(frozen=True, slots=True)
 class Polygon:
-    """A filled polygon, or with `closed` unset a line through points."""
+    """A filled polygon, or a line through points if `closed` is False."""
 
     points: tuple[XY, ...]
     fill: str | None = None
@@ -88,14 +89,14 @@ class Polygon:
 
     @property
     def bounds(self) -> Bounds:
-        """Where it ends."""
+        """Bounding box."""
         xs, ys = zip(*self.points, strict=True)
         return min(xs), min(ys), max(xs), max(ys)
 
 
 @dataclass(frozen=True, slots=True)
 class Lines:
-    """Many straight lines of one look: each from a point to a point."""
+    """Many straight segments of one style."""
 
     segments: tuple[tuple[XY, XY], ...]
     stroke: str
@@ -104,7 +105,7 @@ class Lines:
 
     @property
     def bounds(self) -> Bounds:
-        """Where they end."""
+        """Bounding box."""
         xs, ys = zip(*(point for ends in self.segments for point in ends), strict=True)
         return min(xs), min(ys), max(xs), max(ys)
 
@@ -125,18 +126,18 @@ class Text:
 
     @property
     def width(self) -> float:
-        """How long it is."""
+        """Width of the text."""
         return text_width(self.text, self.size, bold=self.bold)
 
     @property
     def left(self) -> float:
-        """Where it begins."""
+        """Left end of the text."""
         share = {"start": 0.0, "middle": 0.5, "end": 1.0}[self.anchor]
         return self.x - share * self.width
 
     @property
     def bounds(self) -> Bounds:
-        """Where its letters end."""
+        """Bounding box of the letters."""
         top, bottom = self.y - ASCENT * self.size, self.y + DESCENT * self.size
         return self.left, top, self.left + self.width, bottom
 
@@ -146,13 +147,13 @@ Mark = Rectangle | Circle | Polygon | Lines | Text
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """Marks on a page, the first lowest.
+    """Marks on a page, the lowest first.
 
     Attributes:
-        width: Of the page, in points.
-        height: Of the page, in points.
-        marks: What is drawn.
-        title: What it shows, for those who do not see it.
+        width: Width of the page in points.
+        height: Height of the page in points.
+        marks: The marks.
+        title: Description of the content, for readers that cannot see it.
     """
 
     width: float
@@ -161,12 +162,12 @@ class Drawing:
     title: str = ""
 
     def having(self, *roles: Role) -> Iterator[Mark]:
-        """Yield the marks of some roles."""
+        """Yield the marks with some roles."""
         return (mark for mark in self.marks if mark.role in roles)
 
 
 def scaled(drawing: Drawing, factor: float) -> Drawing:
-    """Return a drawing of another size, its texts included."""
+    """Return a drawing scaled by a factor, texts included."""
     return replace(
         drawing,
         width=drawing.width * factor,

@@ -1,4 +1,4 @@
-"""The picture of a run: for each condition the plan of the world, what is believed, what came."""
+"""Picture of a run: for each condition the plan of the world, beliefs, and predictions."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ _GAP = 12.0
 _LEAST = 148.0
 """Least width of a condition, in points."""
 _BESIDE = 380.0
-"""Width, in points, from which on a single condition has its cards beside the plan."""
+"""Width, in points, from which a single condition has its cards beside the plan."""
 _INSET = 5.0
 _BETWEEN = 4.0
 
@@ -29,8 +29,8 @@ class Note:
     """A line of a card.
 
     Attributes:
-        text: What it says.
-        false: Whether that is held and is not so.
+        text: Text of the line.
+        false: True if it is a false belief.
     """
 
     text: str
@@ -39,15 +39,15 @@ class Note:
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """What one simulator holds, or what was predicted from it.
+    """Belief of one simulator, or a prediction from it.
 
     Attributes:
-        title: What it is.
+        title: Title of the card.
         path: Belief path.
-        ok: Whether it is as expected; None: nothing was expected.
-        stores: Containers as it knows them.
-        notes: What else there is to say.
-        prediction: Whether it is a prediction.
+        ok: True if the content is as expected; None if nothing was expected.
+        stores: Containers as the simulator knows them.
+        notes: Further lines.
+        prediction: True if the card is a prediction.
     """
 
     title: str
@@ -60,15 +60,15 @@ class Card:
 
 @dataclass(frozen=True)
 class ConditionPicture:
-    """One condition of a run.
+    """Content of the picture of one condition.
 
     Attributes:
-        title: What it is.
-        about: What is special about it.
-        scene: The real world when the script has ended.
-        trails: Where agents have been: x and z, oldest first.
-        cards: What simulators held then, and what was predicted from them.
-        story: What has happened, in order.
+        title: Name of the condition.
+        about: Description of the condition.
+        scene: Real world at the end of the script.
+        trails: Ways that agents have gone: x and z, oldest first.
+        cards: Beliefs at that time, and predictions from them.
+        story: Events, in order.
     """
 
     title: str
@@ -80,7 +80,7 @@ class ConditionPicture:
 
 
 def overview(conditions: Sequence[ConditionPicture], title: str) -> Figure:
-    """Return the figure of a run; conditions stand side by side, and the same beliefs are level."""
+    """Return the figure of a run: conditions side by side, with equal beliefs at equal height."""
     count = len(conditions)
     width = 180.0 if count == 1 else min(85.0 * count, 255.0)
     return Figure(lambda points: _draw(conditions, title, points), width, title)
@@ -88,7 +88,7 @@ def overview(conditions: Sequence[ConditionPicture], title: str) -> Figure:
 
 @dataclass
 class _Page:
-    """A page under way."""
+    """A page under construction."""
 
     looks: Mapping[str, AgentLook]
     marks: list[Drawn]
@@ -122,7 +122,7 @@ def _draw(conditions: Sequence[ConditionPicture], title: str, width: float) -> D
 def _row(
     page: _Page, row: Sequence[ConditionPicture], top: float, inner: float, columns: int
 ) -> float:
-    """Return conditions side by side; returns where they end."""
+    """Draw conditions side by side; return their lower end."""
     wide = (inner - _GAP * (columns - 1)) / columns
     lefts = [MARGIN + number * (wide + _GAP) for number in range(len(row))]
     heads = [_head(each, (left, top), wide) for each, left in zip(row, lefts, strict=True)]
@@ -146,7 +146,7 @@ def _row(
 
 
 def _levels(columns: Sequence[Sequence[Card]]) -> list[tuple[Card | None, ...]]:
-    """Return cards of all conditions by level: those of the same belief or probe are on one."""
+    """Return rows of cards; cards about the same belief or probe are in one row."""
     named = [_named(cards) for cards in columns]
     order: list[tuple[object, ...]] = []
     for cards in named:
@@ -155,16 +155,16 @@ def _levels(columns: Sequence[Sequence[Card]]) -> list[tuple[Card | None, ...]]:
             if name in order:
                 at = order.index(name) + 1
             else:
-                # After the one that comes before it in its own condition.
+                # Insert a new row after the previous card of the same condition.
                 order.insert(at, name)
                 at += 1
-    # What is predicted stands below all that is believed.
+    # Put predictions below all beliefs; the sort is stable.
     order.sort(key=lambda name: bool(name[0]))
     return [tuple(cards.get(name) for cards in named) for name in order]
 
 
 def _named(cards: Sequence[Card]) -> dict[tuple[object, ...], Card]:
-    """Cards by what they are about; of two that are about the same the second is another one."""
+    """Return cards by subject; a number tells cards about the same subject apart."""
     found: dict[tuple[object, ...], Card] = {}
     for card in cards:
         key = (card.prediction, card.title, card.path)
@@ -174,7 +174,7 @@ def _named(cards: Sequence[Card]) -> dict[tuple[object, ...], Card]:
 
 
 def _beside(page: _Page, condition: ConditionPicture, at: XY, inner: float) -> float:
-    """Return one condition, its cards to the right of the plan; returns where it ends."""
+    """Draw one condition with its cards to the right of the plan; return its lower end."""
     left, top = at
     head = _head(condition, at, inner)
     page.add(head)
@@ -206,7 +206,7 @@ def _head(condition: ConditionPicture, at: XY, width: float) -> Block:
 
 
 def _cards(page: _Page, cards: Sequence[tuple[Card, float]], top: float, width: float) -> float:
-    """Return cards of one kind side by side, all as high as the highest; returns where they end."""
+    """Draw cards side by side, all as high as the highest; return their lower end."""
     blocks = [_card(card, (left, top), width) for card, left in cards]
     bottom = max(block.bottom for block in blocks) + _INSET - 1
     for (card, left), block in zip(cards, blocks, strict=True):
@@ -255,7 +255,7 @@ def _note(block: Block, note: Note, left: float, width: float) -> None:
 def _store(block: Block, store: Store, left: float, width: float) -> None:
     icon = TEXT_SIZE * 1.2
     false = store.mark is Mark.FALSE
-    # The sign stands before the words, as for all that is false in a card.
+    # Put the sign before the words, as with all false entries of a card.
     shown = replace(store, mark=Mark.STALE) if false else store
     block.marks += icons.container((left + icon / 2, block.bottom + icon / 2), icon, shown)
     block.kinds |= {"container", "told"} if store.teller else {"container"}

@@ -1,8 +1,8 @@
-"""The look of agents and of what is false, stale or unknown: one for all that is looked at.
+"""Colours and signs of agents and of false, stale or unknown entries, for all views.
 
-Pictures, the page, the terminal and plots take their colours, letters and words from here.
-Colours are those of Okabe and Ito ("Color Universal Design", 2008), which eyes of every kind
-tell apart; none of them is ever the only mark.
+Pictures, the page, the terminal and plots take colours, letters and words from here. The colours
+are those of Okabe and Ito ("Color Universal Design", 2008), which colour-blind readers can tell
+apart. Colour is never the only distinction.
 """
 
 import re
@@ -33,7 +33,8 @@ PAPER = "#fcfbf8"
 QUIET = "#6a6870"
 
 AGENT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#F0E442", "#4D4D4D")
-"""Blue, orange, bluish green, purple, sky blue, yellow, grey. Vermillion is left for falsehood."""
+"""Blue, orange, bluish green, purple, sky blue, yellow, grey. Vermillion is reserved for false
+entries."""
 
 _DARK = frozenset({"#0072B2", "#009E73", "#4D4D4D", "#1A1A1A", "#8C510A", "#9E1B32"})
 _NAMED: Mapping[str, str] = {
@@ -55,21 +56,22 @@ _NAMED: Mapping[str, str] = {
     "white": "#FFFFFF",
     "yellow": "#F0E442",
 }
-"""Colours by their words, two words before one; where there is one, a colour of `AGENT_COLOURS`."""
+"""Colours by colour words, longer phrases first; from `AGENT_COLOURS` where possible."""
 
 _COLOUR_WORD = re.compile(rf"\b({'|'.join(_NAMED)})\b")
 
 
 @dataclass(frozen=True, slots=True)
 class AgentLook:
-    """How one agent looks, wherever it is shown.
+    """Look of one agent in all views.
 
     Attributes:
-        name: The agent.
+        name: Name of the agent.
         colour: `#RRGGBB`.
-        ink: The colour of letters on `colour`.
-        badge: The shortest beginning of its name that no other agent has, capitalised.
-        rings: Rings around its disc, which tell agents of one colour apart; none for the first.
+        ink: Colour of letters on `colour`.
+        badge: Shortest beginning of its name that no other agent has, capitalised.
+        rings: Number of rings around its disc, which tell agents of one colour apart; 0 for the
+            first.
     """
 
     name: str
@@ -80,7 +82,7 @@ class AgentLook:
 
 
 class Mark(StrEnum):
-    """What can be said of a thing in a belief."""
+    """State of an entry of a belief."""
 
     CURRENT = "current"
     STALE = "stale"
@@ -92,13 +94,13 @@ class Mark(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class MarkLook:
-    """How a mark looks.
+    """Look of a mark.
 
     Attributes:
         colour: `#RRGGBB`.
-        sign: The sign that stands for it; empty: it needs none.
-        style: How lines around it are drawn: `solid`, `dashed`, `dotted` or `double`.
-        words: What it says, for legends and labels that are read aloud.
+        sign: Sign of the mark; empty if it needs none.
+        style: Style of outlines: `solid`, `dashed`, `dotted` or `double`.
+        words: Meaning, for legends and for labels that are read aloud.
     """
 
     colour: str
@@ -118,7 +120,10 @@ MARKS: Mapping[Mark, MarkLook] = {
 
 
 def agent_looks(agents: Iterable[str]) -> dict[str, AgentLook]:
-    """Agent to look; give all agents of the run, so that a look is the same in all of it."""
+    """Return the looks of agents by name.
+
+    Give all agents of a run, so that their looks are the same everywhere.
+    """
     names = sorted(set(agents))
     colours, before = colours_of(names), Counter[str]()
     looks = {}
@@ -136,10 +141,10 @@ def agent_looks(agents: Iterable[str]) -> dict[str, AgentLook]:
 
 
 def colours_of(names: Iterable[str]) -> dict[str, str]:
-    """Return a colour for each name, which contradicts no colour word in any of them.
+    """Return a colour for each name that agrees with the colour words of the names.
 
-    A name with one colour word, as "the blue box", gets that colour. The others get colours of
-    `AGENT_COLOURS` in turn that no name calls for.
+    A name with one colour word, such as "the blue box", gets that colour. The others get, in
+    turn, colours of `AGENT_COLOURS` that no name mentions.
     """
     wanted = {name: _named_colour(name) for name in names}
     free = [colour for colour in AGENT_COLOURS if colour not in wanted.values()]
@@ -148,23 +153,23 @@ def colours_of(names: Iterable[str]) -> dict[str, str]:
 
 
 def _named_colour(name: str) -> str | None:
-    """Return the colour that a name speaks of; None: it speaks of none, or of several."""
+    """Return the colour that a name mentions; None if it mentions none, or several."""
     words = " ".join(re.findall("[a-z]+", name.lower()))
     found = {_NAMED[word] for word in _COLOUR_WORD.findall(words)}
     return found.pop() if len(found) == 1 else None
 
 
 def age_text(ticks: int) -> str:
-    """How old a memory is, for people."""
+    """Return the age of a memory in words."""
     return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
 
 
 def told_text(teller: str, ticks: int) -> str:
-    """Who told of it and how long ago, for people; a memory's age where nobody did.
+    """Return the source and the age of hearsay in words, or the age of a memory.
 
     Args:
-        teller: Who said so; empty: it was perceived.
-        ticks: Its age.
+        teller: The speaker; empty if it is not hearsay.
+        ticks: The age.
     """
     if not teller:
         return age_text(ticks)
@@ -172,13 +177,13 @@ def told_text(teller: str, ticks: int) -> str:
 
 
 def mix(first: str, second: str, share: float) -> str:
-    """Return the colour `share` of the way from one `#RRGGBB` to another."""
+    """Return the colour at a given share of the way from one `#RRGGBB` to another."""
     one, other = bytes.fromhex(first[1:]), bytes.fromhex(second[1:])
     return "#" + bytes(round(a + (b - a) * share) for a, b in zip(one, other, strict=True)).hex()
 
 
 def _badge(name: str, names: list[str]) -> str:
-    """At most three letters: longer beginnings end with a number among those that share it."""
+    """Return a badge of at most three letters; a number tells longer equal beginnings apart."""
     for length in (1, 2, 3):
         beginning = name[:length].lower()
         if sum(other[:length].lower() == beginning for other in names) == 1:

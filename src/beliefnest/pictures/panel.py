@@ -1,4 +1,4 @@
-"""A panel of a figure: title, plan, and in the margin what a plan cannot show."""
+"""Panel of a figure: title, plan, and in the margin everything that the plan cannot show."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,17 +15,17 @@ __all__ = ["Block", "belief_words", "draw_panel", "draw_title", "paragraph"]
 
 _LINE = 1.32
 _MOST = 12
-"""Containers that are listed; more are counted."""
+"""Number of containers that are listed; further ones are only counted."""
 
 
 @dataclass
 class Block:
-    """A part of a page under way, from the top downwards.
+    """Part of a page under construction, from the top downwards.
 
     Attributes:
-        marks: What is drawn.
-        bottom: Where it ends.
-        kinds: What of the legend it needs.
+        marks: Marks so far.
+        bottom: Lower end so far.
+        kinds: Signs that the legend has to explain.
     """
 
     marks: list[Drawn] = field(default_factory=list)
@@ -34,7 +34,7 @@ class Block:
 
 
 def belief_words(path: str) -> str:
-    """What a simulator is, in words."""
+    """Describe a simulator in words."""
     names = [name for name in path.split("/") if name]
     return " that ".join(f"{name} believes" for name in names) or "reality"
 
@@ -49,7 +49,7 @@ def paragraph(
     *,
     bold: bool = False,
 ) -> None:
-    """Lines of text at the end of a block."""
+    """Append lines of text to a block."""
     for line in wrap(text, size, width, bold=bold):
         block.marks.append(Text(left, block.bottom + ASCENT * size, line, size, colour, bold))
         block.bottom += size * _LINE
@@ -64,16 +64,16 @@ def draw_panel(
     plan_at: float = 0.0,
     trails: Mapping[str, tuple[XY, ...]] | None = None,
 ) -> Block:
-    """Return a panel of a scene.
+    """Draw the panel of a scene.
 
     Args:
-        scene: What is drawn.
-        looks: Of all agents.
-        at: Left upper corner, in points.
-        width: In points.
-        size: Of texts, in points.
-        plan_at: Where the plan begins at the earliest, so that those of a row are level.
-        trails: Where agents have been.
+        scene: The scene.
+        looks: Looks of all agents.
+        at: Upper left corner, in points.
+        width: Width in points.
+        size: Size of texts in points.
+        plan_at: Least y of the plan; it aligns the plans of a row.
+        trails: Ways that agents have gone.
     """
     left, _ = at
     block = draw_title(scene, at, width, size)
@@ -89,7 +89,7 @@ def draw_panel(
 
 
 def draw_title(scene: Scene, at: XY, width: float, size: float) -> Block:
-    """Return the head of a panel: path, what that is, tick."""
+    """Draw the head of a panel: path, meaning of the path, tick."""
     left, top = at
     block = Block(bottom=top)
     paragraph(block, scene.path, left, width, size * 1.15, bold=True)
@@ -131,7 +131,7 @@ def _margin(
 def _store_line(
     block: Block, store: Store, against: str, left: float, width: float, size: float
 ) -> None:
-    """An icon, the container's name, what is known of it, and how it is elsewhere."""
+    """Draw a container: icon, name, known contents, and the contents elsewhere."""
     icon = size * 1.15
     block.marks += icons.container((left + icon / 2, block.bottom + icon / 2), icon, store)
     block.kinds |= {"container", "told"} if store.teller else {"container"}
@@ -149,7 +149,7 @@ def _store_line(
 def _device_line(
     block: Block, shown: Device, against: str, line: tuple[float, float, float]
 ) -> None:
-    """A device that is false: what is held of it, who said so, and how it is elsewhere."""
+    """Draw a false device: its believed state, the speaker, and its state elsewhere."""
     assert shown.false is not None
     left, width, size = line
     icon = size * 1.15
@@ -170,14 +170,14 @@ def _person_line(
     against: str,
     line: tuple[float, float, float],
 ) -> None:
-    """A disc, what is held of the agent, and how that is elsewhere.
+    """Draw an agent with a false entry: a disc, the belief, and the fact elsewhere.
 
     Args:
-        block: Where it is drawn.
-        look: The agent's.
-        wrong: What is held; how it is.
-        against: Where it is so.
-        line: Where it begins, how wide it is, size of the text.
+        block: Block to draw into.
+        look: Look of the agent.
+        wrong: The believed and the other value.
+        against: Path of the simulator with the other value.
+        line: Left end, width, size of the text.
     """
     left, width, size = line
     radius = size * 0.6
@@ -207,7 +207,7 @@ def _lost_line(
     width: float,
     size: float,
 ) -> None:
-    """Discs and names of those whose place is unknown, as many in a line as there is room for."""
+    """Draw discs and names of the agents whose position is unknown, as many in a line as fit."""
     paragraph(block, "place not known:", left, width, size, QUIET)
     radius, x = size * 0.6, left
     step = max(size * _LINE, 2 * radius + 1.6)

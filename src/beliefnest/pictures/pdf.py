@@ -1,4 +1,4 @@
-"""A drawing as PDF, with its font inside."""
+"""PDF writer, with an embedded font."""
 
 import io
 from typing import Any
@@ -13,7 +13,7 @@ _NAMES = {False: "LiberationSans", True: "LiberationSans-Bold"}
 
 
 def pdf_bytes(drawing: Drawing) -> bytes:
-    """Return the PDF of a drawing: one page of its size; the same drawing gives the same bytes."""
+    """Return the PDF of a drawing, one page of its size; equal drawings give equal bytes."""
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont
     from reportlab.pdfgen.canvas import Canvas
@@ -33,7 +33,7 @@ def pdf_bytes(drawing: Drawing) -> bytes:
 
 
 def _draw(canvas: Any, height: float, mark: Mark) -> None:
-    """Put a mark on a canvas of reportlab, whose y goes up."""
+    """Draw a mark on a reportlab canvas, whose y axis points up."""
     match mark:
         case Text():
             _text(canvas, height, mark)
@@ -65,7 +65,7 @@ def _draw(canvas: Any, height: float, mark: Mark) -> None:
 def _look(
     canvas: Any, fill: str | None, stroke: str | None, thick: float, dash: float
 ) -> tuple[int, int]:
-    """Set colours and lines; whether there is a fill and a stroke."""
+    """Set colours and line style; return 1 or 0 for fill and for stroke."""
     from reportlab.lib.colors import HexColor
 
     if fill is not None:
@@ -83,7 +83,7 @@ def _text(canvas: Any, height: float, mark: Text) -> None:
     for colour, mode in ((mark.halo, 2), (mark.colour, 0)):
         if colour is None:
             continue
-        # How letters are drawn stays as it is set, from text to text.
+        # The rendering mode of texts is part of the canvas state, so set it for each text.
         canvas.saveState()
         text = canvas.beginText(mark.left, height - mark.y)
         text.setFont(_NAMES[mark.bold], mark.size)

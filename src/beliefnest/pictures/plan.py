@@ -1,4 +1,4 @@
-"""The plan of a scene: ground, walls, sight, containers, devices, agents, and their names."""
+"""Plan of a scene: ground, walls, sight, containers, devices, agents, and their names."""
 
 import math
 import zlib
@@ -71,13 +71,13 @@ _STORES = ("chest", "barrel", "furnace", "smoker")
 
 @dataclass
 class DrawnPlan:
-    """A plan that was drawn.
+    """A finished plan.
 
     Attributes:
-        marks: What was drawn.
-        bottom: Where it ends.
-        unnamed: Names for which there was no room.
-        kinds: What of the legend it needs.
+        marks: Marks of the plan.
+        bottom: Lower end, in points.
+        unnamed: Names that had no room.
+        kinds: Signs that the legend has to explain.
     """
 
     marks: list[Drawn]
@@ -94,15 +94,15 @@ def draw_plan(
     size: float,
     trails: Mapping[str, tuple[XY, ...]] | None = None,
 ) -> DrawnPlan:
-    """Return the plan of a scene.
+    """Draw the plan of a scene.
 
     Args:
-        scene: What is drawn.
-        looks: Of all agents.
-        at: Left upper corner, in points.
-        width: In points; a plan that is higher than wide is made narrower.
-        size: Of the names, in points.
-        trails: Where agents have been: x and z, oldest first.
+        scene: The scene.
+        looks: Looks of all agents.
+        at: Upper left corner, in points.
+        width: Width in points; a plan with more rows than columns is made narrower.
+        size: Size of the names, in points.
+        trails: Ways that agents have gone: x and z, oldest first.
     """
     across, down = scene.size
     cell = min(width / across, width * 1.1 / down)
@@ -125,14 +125,17 @@ def heat_colour(share: float) -> str:
 
 
 def hatching(bounds: Bounds, number: int, step: float = _HATCH) -> tuple[tuple[XY, XY], ...]:
-    """Return lines across a rectangle that go on in its neighbours; `number` says which way."""
+    """Return the segments of a hatching of a rectangle; `number` selects the direction.
+
+    The lines have fixed offsets on the page, so that they continue in neighbouring rectangles.
+    """
     x0, y0, x1, y1 = bounds
     sign = 1 if number % 2 else -1
     ends = [x0 + sign * y0, x0 + sign * y1, x1 + sign * y0, x1 + sign * y1]
     segments = []
     offset = -(-min(ends) // step) * step
     while offset < max(ends):
-        # Points of the rectangle on the line x + sign * y = offset.
+        # Intersections of the line x + sign * y = offset with the edges of the rectangle.
         crossings = sorted(
             {
                 (round(max(x0, min(x1, offset - sign * y)), 3), round(y, 3))
@@ -149,7 +152,7 @@ def hatching(bounds: Bounds, number: int, step: float = _HATCH) -> tuple[tuple[X
 
 
 class _Sheet:
-    """A plan under way."""
+    """A plan under construction."""
 
     def __init__(
         self, scene: Scene, looks: Mapping[str, AgentLook], at: XY, cell: float, size: float
@@ -184,7 +187,7 @@ class _Sheet:
         return x, y, x + wide * self._cell, y + self._cell
 
     def _runs(self, of: Mapping[tuple[int, int], object]) -> Iterator[tuple[int, int, int]]:
-        """Yield rows of equal neighbours: first column, row, and how many."""
+        """Yield runs of equal neighbours in a row: first column, row, length."""
         across, down = self._scene.size
         for k in range(down):
             start = 0
@@ -200,7 +203,7 @@ class _Sheet:
                 yield i, k, cell
 
     def ground(self) -> None:
-        """The floor, what is not known of it, and thin lines between columns."""
+        """Draw the floor, its unknown parts, and thin lines between columns."""
         fills = {(i, k): _ground_colour(cell) for i, k, cell in self._cells()}
         for i, k, count in self._runs(fills):
             x0, y0, x1, y1 = self._square(i, k, count)
@@ -217,7 +220,7 @@ class _Sheet:
         self.marks.append(Lines(tuple(lines), _GRID, 0.25))
 
     def sights(self) -> None:
-        """A tint over what the first agent sees, hatching for the others."""
+        """Draw a tint over the blocks that the first agent sees, hatching for other agents."""
         for number, sight in enumerate(self._scene.sights):
             colour = self._looks[sight.name].colour
             seen = {(int(i), int(k)): True for i, k in zip(*sight.seen.nonzero(), strict=True)}
@@ -245,7 +248,7 @@ class _Sheet:
             self.kinds.add(f"heat {self._scene.heat_words}")
 
     def walls(self) -> None:
-        """What stands at this height, what is unknown there, and what of it is false."""
+        """Draw blocks at this height, unknown blocks, and marks on false blocks."""
         dots: list[tuple[XY, XY]] = []
         fills: dict[tuple[int, int], str] = {}
         for i, k, cell in self._cells():
@@ -276,7 +279,7 @@ class _Sheet:
     def _false_blocks(self) -> None:
         look = MARKS[Mark.FALSE]
         low_x, low_z = self._scene.low
-        # A false device has its sign at its corner.
+        # Devices are left out here: a false device has a sign at its corner.
         signed = {
             (shown.position[0] - low_x, shown.position[2] - low_z)
             for shown in self._scene.devices
@@ -297,7 +300,7 @@ class _Sheet:
             self.kinds.add("false")
 
     def trails(self, trails: Mapping[str, tuple[XY, ...]]) -> None:
-        """The ways that agents have gone."""
+        """Draw the ways that agents have gone."""
         for name, points in sorted(trails.items()):
             if len(set(points)) > 1:
                 line = tuple(self._place(*point) for point in points)
@@ -306,7 +309,7 @@ class _Sheet:
                 self.kinds.add("trail")
 
     def things(self) -> None:
-        """Devices, containers, dropped items, places and agents."""
+        """Draw devices, containers, dropped items, places and agents."""
         for shown in self._scene.devices:
             x, _, z = shown.position
             if not any(store.position == shown.position for store in self._scene.stores):
@@ -340,7 +343,7 @@ class _Sheet:
                 self._mark_place(label, (x, z))
 
     def _marks_of(self, column: Bounds, shown: Device) -> None:
-        """At the corners of a device, that it is false, or only told."""
+        """Draw signs at the corners of a device if it is false, or known from hearsay."""
         x0, y0, x1, _ = column
         radius = max(self._cell * 0.21, 1.6)
         corners = (x0 + radius * 0.4, y0 + radius * 0.4), (x1, y0)
@@ -359,7 +362,7 @@ class _Sheet:
         return low_x <= point[0] <= low_x + across and low_z <= point[1] <= low_z + down
 
     def _icon(self, point: XY, size: float) -> XY | None:
-        """Room for an icon at a point, or near it with a line that leads there."""
+        """Return room for an icon at a point, or near it with a line that leads there."""
         at = self._place(*point)
         spot = self._room.spot(at, size, size)
         if spot is not None and spot != at:
@@ -389,7 +392,7 @@ class _Sheet:
             return
         yaw = person.yaw if person.mark is Mark.CURRENT else None
         look = self._looks[person.name]
-        # A false place is a remembered one, unless somebody sees what is not there.
+        # False positions are usually remembered ones and have no look direction then.
         self.marks += icons.agent(spot, radius, look, yaw, person.mark)
         if yaw is not None:
             x, y = spot[0] - math.sin(yaw) * radius * 1.3, spot[1] - math.cos(yaw) * radius * 1.3
@@ -412,14 +415,14 @@ class _Sheet:
         self._label(spot, size, tuple(lines))
 
     def _mark_place(self, label: str, place: tuple[int, int]) -> None:
-        """A place that people have a name for: its letters on a dotted square."""
+        """Draw a named place: its name on a dotted square."""
         x0, y0 = self._place(place[0], place[1])
         square = Rectangle(x0, y0, self._cell, self._cell, None, INK, 0.6, dash=1.2)
         self.marks.append(square)
         self._label((x0 + self._cell / 2, y0 + self._cell / 2), self._cell, ((label, True),))
 
     def _quote(self, says: str, corner: XY) -> None:
-        """What is written on a sign, as much as fits beside it."""
+        """Add the text of a sign as a label, shortened if it is long."""
         short = says if len(says) <= _MOST_QUOTED else f"{says[: _MOST_QUOTED - 1]}…"
         middle = (corner[0] + self._cell / 2, corner[1] + self._cell / 2)
         self._label(middle, self._cell, ((f"“{short}”", False),))
@@ -435,7 +438,7 @@ class _Sheet:
         self._labels.append(Label(icon, lines, sizes, (width, sum(sizes) * LINE)))
 
     def names(self) -> None:
-        """The names, when all icons have their places."""
+        """Draw the names, after all icons have their places."""
         for board in self._boards:
             self._room.take(board)
         for each in put_labels(self._labels, self._room):
@@ -456,7 +459,7 @@ class _Sheet:
 
 
 def _with_height(name: str, above: int) -> str:
-    """Return a name, with how far from the storey what it names is."""
+    """Return a name with the distance of its bearer from the storey."""
     if not above:
         return name
     return f"{name}, {abs(above)} {'up' if above > 0 else 'down'}"
@@ -474,7 +477,7 @@ def _ground_colour(cell: PlanColumn) -> str:
 
 @cache
 def _standing(text: str) -> tuple[tuple[float, float, float, float], ...]:
-    """What a block takes of its column: left, top, right, bottom of each part, from 0 to 1."""
+    """Return the boxes of a block in its column: left, top, right, bottom, from 0 to 1."""
     name = text.partition("[")[0]
     if name in {"air", "cave_air", "void_air"}:
         return ()
@@ -482,7 +485,7 @@ def _standing(text: str) -> tuple[tuple[float, float, float, float], ...]:
         return ()
     registry = Registry.load()
     boxes = registry.boxes(registry.state_id(text))
-    # What can be walked through is there all the same.
+    # A block without a collision box is drawn as well.
     return tuple((b[0], b[2], b[3], b[5]) for b in boxes) or ((0.3, 0.3, 0.7, 0.7),)
 
 
@@ -495,6 +498,6 @@ def _colour(text: str, default: str) -> str:
     for part, colour in _KINDS.items():
         if part in name:
             return colour
-    # Blocks of different names differ a little, always in the same way.
+    # Vary the colour a little with the block's name; the same name has always the same colour.
     shade = (zlib.crc32(name.encode()) % 17 - 8) / 100
     return mix(default, INK if shade > 0 else PAPER, abs(shade))

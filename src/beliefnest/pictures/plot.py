@@ -1,4 +1,4 @@
-"""Beliefs over time: a row for each simulator, a band for each value it held."""
+"""Plot of beliefs over time: a row for each simulator, a band for each value it held."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,18 +21,18 @@ _STEP = 21.0
 _BALLOON = 2.1
 _SHADES = (0.45, 0.2, 0.7)
 _ABOVE = 5.5
-"""Room for balloons above a row."""
+"""Room above a row for balloons, in points."""
 
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """A value that was held for a while.
+    """A value that was held for some time.
 
     Attributes:
         start: First tick.
-        end: First tick at which it was held no more; for the last one the end of the plot.
-        words: The value; empty: nothing was known.
-        false: Whether reality was otherwise.
+        end: First tick at which it was no longer held; for the last band the end of the plot.
+        words: Value in words; empty if it was unknown.
+        false: True if it differed from reality.
     """
 
     start: int
@@ -43,12 +43,12 @@ class Band:
 
 @dataclass(frozen=True, slots=True)
 class PlotRow:
-    """What one simulator held.
+    """Values that one simulator held.
 
     Attributes:
         path: Belief path.
-        bands: In order of time, without gaps.
-        told: Claims about it that were heard there.
+        bands: Bands in order of time, without gaps.
+        told: Claims about the value that were heard there.
     """
 
     path: str
@@ -61,8 +61,8 @@ class NotedClaim:
     """A claim that was heard.
 
     Attributes:
-        tick: When.
-        believed: Whether it was taken up.
+        tick: Tick of the utterance.
+        believed: True if the claim was taken up.
     """
 
     tick: int
@@ -77,7 +77,7 @@ def belief_plot(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str) -
 def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: float) -> Drawing:
     head = Block(bottom=MARGIN)
     paragraph(head, title, MARGIN, width - 2 * MARGIN, TEXT_SIZE * 1.2, bold=True)
-    # Names stand beside their rows if they leave most of the width to them, else above.
+    # Put names beside their rows if that leaves most of the width to the rows, else above.
     widest = max(text_width(row.path, TEXT_SIZE, bold=True) for row in rows)
     beside = widest < width * 0.3
     left = MARGIN + (widest + 6 if beside else 0)
@@ -106,7 +106,7 @@ def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: 
     if lines:
         marks.append(Lines(lines, INK, 0.4))
     marks += [mark for row, at in zip(rows, tops, strict=True) for mark in _told(chart, row, at)]
-    # Words stay readable where a line goes through them.
+    # Draw words last, so that lines do not cross them out.
     marks += [mark for mark in bands if isinstance(mark, Text)]
     bottom = chart.axis.draw(top - 3, marks)
     bottom = _legend(chart, (MARGIN, bottom + 4), width - 2 * MARGIN, marks)
@@ -114,7 +114,7 @@ def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: 
 
 
 class _Chart:
-    """From ticks to places, from values to colours."""
+    """Scales of a plot: from ticks to x positions, from values to colours."""
 
     def __init__(self, rows: Sequence[PlotRow], span: XY) -> None:
         start = min(row.bands[0].start for row in rows)
@@ -127,12 +127,12 @@ class _Chart:
         self.unknown = any(not band.words for row in rows for band in row.bands)
 
     def x(self, tick: int) -> float:
-        """Return the place of a tick."""
+        """Return the x position of a tick."""
         return self.axis.x(tick)
 
 
 def _fills(words: Iterable[str]) -> Mapping[str, str]:
-    """Return a fill for each value; values that speak of one colour get shades of it."""
+    """Return a fill for each value; values that name the same colour get different shades."""
     before = Counter[str]()
     fills = {}
     for value, colour in colours_of(words).items():
@@ -172,7 +172,7 @@ def _told(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
 
 
 def _swatch(chart: _Chart, words: str, at: XY, wide: float, high: float) -> list[Drawn]:
-    """Return the look of a value; what is unknown is hatched."""
+    """Return the marks of a value; unknown values are hatched."""
     x, y = at
     if words:
         return [Rectangle(x, y, wide, high, chart.fills[words], mix(PAPER, INK, 0.5), 0.3)]

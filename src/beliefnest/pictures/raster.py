@@ -1,4 +1,4 @@
-"""A drawing as an image of pixels."""
+"""Raster writer: a drawing as an image of pixels."""
 
 import itertools
 import math
@@ -13,11 +13,12 @@ from beliefnest.pictures.palette import PAPER
 __all__ = ["raster"]
 
 _FINER = 2
-"""Everything is drawn so many times larger and scaled down in the end: Pillow has hard edges."""
+"""Factor of supersampling. Pillow draws hard edges, so the image is drawn larger and scaled
+down."""
 
 
 def raster(drawing: Drawing, dpi: float) -> Image.Image:
-    """Return the image of a drawing, with so many pixels to an inch."""
+    """Return the image of a drawing with a resolution of `dpi` pixels per inch."""
     scale = dpi / 72 * _FINER
     size = (round(drawing.width * dpi / 72), round(drawing.height * dpi / 72))
     image = Image.new("RGB", (size[0] * _FINER, size[1] * _FINER), PAPER)
@@ -28,7 +29,7 @@ def raster(drawing: Drawing, dpi: float) -> Image.Image:
 
 
 class _Pen:
-    """Draws marks with `scale` pixels to a point."""
+    """Pen that draws marks with `scale` pixels per point."""
 
     def __init__(self, draw: ImageDraw.ImageDraw, scale: float) -> None:
         self._draw = draw
@@ -68,7 +69,7 @@ class _Pen:
         thick: float,
         radius: float,
     ) -> None:
-        # A line lies half on each side of the edge, as in the other formats.
+        # Centre the outline on the edge, as SVG and PDF do.
         out = thick / 2 if stroke is not None else 0.0
         x0, y0 = self._at((low[0] - out, low[1] - out))
         x1, y1 = self._at((high[0] + out, high[1] + out))
@@ -127,7 +128,7 @@ class _Pen:
         self._draw.line(places, colour, self._thick(thick), joint="curve")
 
     def _dashes(self, points: Sequence[XY], colour: str, thick: float, length: float) -> None:
-        """A line of dashes and gaps, all of one length."""
+        """Draw a dashed line; dashes and gaps have the same length."""
         drawn = 0.0
         for start, end in itertools.pairwise(points):
             distance = ((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2) ** 0.5
@@ -140,7 +141,7 @@ class _Pen:
                         _between(start, end, to / distance),
                     )
                     self._line(ends, colour, thick)
-                # A hair more than the rest, so that rounding never leaves it undone.
+                # Add a little to the remaining length, so that rounding cannot stall the loop.
                 drawn, at = drawn + (to - at) + 1e-9, to + 1e-9
 
     def _at(self, point: XY) -> XY:

@@ -1,4 +1,4 @@
-"""Where there is room for icons and labels on a plan."""
+"""Search for free room for icons and labels on a plan."""
 
 import math
 from collections.abc import Iterator
@@ -9,13 +9,13 @@ __all__ = ["Room"]
 
 _GAP = 1.1
 _BESIDE = 1.2
-"""Between an icon and its label."""
+"""Distance between an icon and its label, in points."""
 _FURTHER = 3.0
 _SHIFTS = (0.0, -0.75, 0.75, -0.5, 0.5, -0.25, 0.25)
 
 
 class Room:
-    """What of an area is taken.
+    """Record of the taken parts of an area.
 
     Args:
         bounds: The area.
@@ -27,24 +27,24 @@ class Room:
         self._avoided: list[Bounds] = []
 
     def copy(self) -> "Room":
-        """Return the same, to try something in."""
+        """Return a copy for a trial."""
         copied = Room(self._bounds)
         copied._taken, copied._avoided = [*self._taken], [*self._avoided]
         return copied
 
     def take(self, bounds: Bounds) -> None:
-        """Let nothing else be where this is."""
+        """Mark a rectangle as taken."""
         self._taken.append(bounds)
 
     def avoid(self, bounds: Bounds) -> None:
-        """Let labels be elsewhere if they can."""
+        """Mark a rectangle that labels should avoid if they can."""
         self._avoided.append(bounds)
 
     def _troubles(self, bounds: Bounds) -> int:
         return sum(_touch(bounds, each, 0) for each in self._avoided)
 
     def is_free(self, bounds: Bounds) -> bool:
-        """Return True if something is inside the area and touches nothing."""
+        """Return True if a rectangle is inside the area and touches no taken rectangle."""
         x0, y0, x1, y1 = bounds
         a0, b0, a1, b1 = self._bounds
         if x0 < a0 or y0 < b0 or x1 > a1 or y1 > b1:
@@ -52,7 +52,7 @@ class Room:
         return not any(_touch(bounds, each, _GAP) for each in self._taken)
 
     def spot(self, at: XY, width: float, height: float) -> XY | None:
-        """Return the nearest middle for something of that size, which is then taken."""
+        """Take the nearest free rectangle of a size; return its middle, None if there is none."""
         for x, y in _around(at, max(width, height) / 2):
             bounds = (x - width / 2, y - height / 2, x + width / 2, y + height / 2)
             if self.is_free(bounds):
@@ -61,7 +61,7 @@ class Room:
         return None
 
     def beside(self, icon: Bounds, width: float, height: float) -> list[XY]:
-        """Where a label can stand at an icon: free left upper corners, the best first."""
+        """Return free upper left corners for a label at an icon, the best first."""
         x0, y0, x1, y1 = icon
         middle, level = (x0 + x1) / 2, (y0 + y1) / 2
         gap = _BESIDE
@@ -75,10 +75,11 @@ class Room:
             (x1 + gap, y0 - height / 2),
             (x0 - gap - width, y0 - height / 2),
         ]
-        # At the edge of the area a label may stand further aside.
+        # At the edge of the area, shift the label inwards.
         a0, _, a1, _ = self._bounds
         inner = max(a0, min(a1 - width, middle - width / 2))
-        # Or aside, as long as it touches a side of the icon, or a little further off.
+        # Otherwise shift it sideways while it still overlaps the icon's width, or put it a little
+        # further off.
         half = (width + x1 - x0) / 2 - gap
         shifted = [inner, *(middle - width / 2 + shift * half for shift in _SHIFTS)]
         corners += [
@@ -92,12 +93,12 @@ class Room:
 
 
 def _touch(a: Bounds, b: Bounds, gap: float) -> bool:
-    """Return True if less than a gap lies between two."""
+    """Return True if the distance between two rectangles is less than a gap."""
     return a[0] < b[2] + gap and b[0] < a[2] + gap and a[1] < b[3] + gap and b[1] < a[3] + gap
 
 
 def _around(at: XY, step: float) -> Iterator[XY]:
-    """Yield places at and around a place, the nearest first."""
+    """Yield points at and around a point, the nearest first."""
     yield at
     for ring in range(1, 24):
         radius = ring * step * 0.75

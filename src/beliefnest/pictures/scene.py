@@ -1,4 +1,4 @@
-"""What a picture of one simulator shows: values that know nothing of points and colours."""
+"""Scene: the content of a picture of one simulator, independent of points and colours."""
 
 import math
 from collections import Counter
@@ -37,27 +37,28 @@ DEVICES = (
     *("door", "lever", "button", "furnace", "smoker", "crafting_table", "gate", "plate"),
     "_sign",
 )
-"""Parts of names of blocks that people work with."""
+"""Parts of the names of blocks that agents use."""
 
 Labels = Mapping[Position, str]
-"""What people call containers and places."""
+"""Names that people use for containers and places."""
 
 _NEAR = 2
-"""Blocks up or down within which a thing belongs to a storey."""
+"""Distance in blocks, up or down, within which a thing belongs to a storey."""
 _WIDEST = 40
-"""A plan of more blocks is cut to those around what stands in it."""
+"""Greatest width of a plan in blocks. Larger boxes are cut to the part around agents and things.
+"""
 _EDGE = 4
 
 
 @dataclass(frozen=True, slots=True)
 class Wrong:
-    """One thing that a simulator holds otherwise than another one does.
+    """One difference between two simulators.
 
     Attributes:
-        where: Position of a block or container; an agent's name.
-        held: What it holds, in words.
-        instead: How the other one has it, in words.
-        is_owned: Whether it is about what the agent has, and not about its place.
+        where: Position of a block or container, or name of an agent.
+        held: Value in this simulator, in words.
+        instead: Value in the other one, in words.
+        is_owned: True if it is about an agent's possessions, False if it is about its place.
     """
 
     where: Position | str
@@ -71,9 +72,9 @@ class PlanColumn:
     """One column of the plan.
 
     Attributes:
-        ground: Block text below; None: unknown.
-        standing: Block text at the storey's height; None: unknown.
-        wrong: Whether one of them is otherwise in the simulator it is compared with.
+        ground: Block state text below the storey's height; None if it is unknown.
+        standing: Block state text at the storey's height; None if it is unknown.
+        wrong: True if one of them differs from the simulator that this one is compared with.
     """
 
     ground: str | None
@@ -83,17 +84,18 @@ class PlanColumn:
 
 @dataclass(frozen=True, slots=True)
 class Device:
-    """A block that people work with: a door, a lever, a button, a crafting table.
+    """A block that agents use: a door, a lever, a button, a crafting table.
 
     Attributes:
-        position: Where it is.
-        name: Block name.
-        on: Whether it is open, switched on or pressed.
-        parts: Where it stands in its column, from 0 to 1: left, top, right, bottom of each box.
-        says: What is written on it.
-        false: What is held of it, and how it is elsewhere, if these differ; None: nothing is false.
-        teller: Who said that it is so; empty: it was perceived, or nothing is held of it.
-        age: Ticks since then.
+        position: Position of the block.
+        name: Name of the block.
+        on: True if it is open, switched on or pressed.
+        parts: Boxes of the block inside its column, each as left, top, right, bottom from 0 to
+            1.
+        says: Text on it, if it is a sign.
+        false: Its state here and in the other simulator, if they differ; otherwise None.
+        teller: Speaker, if the state is only known from hearsay; otherwise empty.
+        age: Ticks since the state was current.
     """
 
     position: Position
@@ -111,16 +113,16 @@ class Store:
     """A container.
 
     Attributes:
-        position: Where it is.
-        name: Block name; None: its block is not known.
-        label: What people call it.
-        items: What is known to be in it.
-        complete: Whether these are known to be all.
-        mark: What can be said of that.
-        age: Ticks since what is known of it was perceived.
-        instead: What is in it elsewhere, if it is false.
-        above: Blocks above the storey; below: negative.
-        teller: Who said what is known of it; empty: it was perceived, or nothing is known.
+        position: Position of the block.
+        name: Name of the block; None if it is unknown.
+        label: Name that people use for it.
+        items: Items that are known to be in it.
+        complete: True if there are no other items in it.
+        mark: Mark for the state of this knowledge.
+        age: Ticks since the contents were last perceived.
+        instead: Contents in the other simulator, if these are false; otherwise empty.
+        above: Blocks above the storey; negative below it.
+        teller: Speaker, if the contents are only known from hearsay; otherwise empty.
     """
 
     position: Position
@@ -136,7 +138,7 @@ class Store:
 
     @property
     def words(self) -> str:
-        """What is known of what is in it."""
+        """Return the known contents in words."""
         if not self.items:
             return "empty" if self.complete else "nothing known"
         told = ", ".join(
@@ -148,20 +150,21 @@ class Store:
 
 @dataclass(frozen=True, slots=True)
 class DrawnAgent:
-    """An agent.
+    """An agent in a scene.
 
     Attributes:
-        name: Who.
-        position: Its feet; None: unknown.
+        name: Name of the agent.
+        position: Position of its feet; None if it is unknown.
         yaw: Radians, 0 looks along -z, pi/2 along -x.
         mark: Current, stale, unknown or false.
-        age: Ticks since it was perceived; 0 if it is now.
-        holds: Item in its main hand; empty: none, or not known.
-        instead: Where it is elsewhere, if this is false.
-        above: Blocks above the storey; below: negative.
-        believer: Whose belief has it there, if it is not the simulator's own; empty: nobody's.
-        owned: What is wrong of what it has with it; None: nothing.
-        teller: Who said that it is there; empty: it was perceived.
+        age: Ticks since it was perceived; 0 if it is perceived now.
+        holds: Item in its main hand; empty if there is none or it is unknown.
+        instead: Position in the other simulator, if this one is false; otherwise empty.
+        above: Blocks above the storey; negative below it.
+        believer: Owner of the belief that this position comes from, if it is another
+            simulator's; otherwise empty.
+        owned: False entry about its possessions; None if there is none.
+        teller: Speaker, if the position is only known from hearsay; otherwise empty.
     """
 
     name: str
@@ -179,10 +182,10 @@ class DrawnAgent:
 
 @dataclass(frozen=True)
 class AgentSight:
-    """What an agent sees in the simulator.
+    """Blocks that an agent sees in the simulator.
 
     Attributes:
-        name: The agent.
+        name: Name of the agent.
         seen: bool, shape of the plan.
     """
 
@@ -196,22 +199,20 @@ class Scene:
 
     Attributes:
         path: Belief path.
-        tick: When.
-        agents: All agents of the run, for their looks.
+        tick: The tick.
+        agents: Names of all agents of the run, for their looks.
         low: x and z of the first column.
-        height: The storey: y of what stands on its floor.
-        cells: By column along x, then along z.
+        height: The storey: y of the blocks that stand on its floor.
+        cells: Columns along x, then along z.
         stores: Containers, in order of position.
-        devices: Blocks that people work with.
-        items: Dropped items: name and place.
-        places: What people call places.
+        devices: Blocks that agents use.
+        items: Dropped items: name and position.
+        places: Names and positions of places.
         people: Agents in order of their names.
-        sights: What chosen agents see.
-        wrong: How many things are false.
-        against: The path it is compared with.
-        note: Further words for the title, as its branch.
-        heat: Probability by x and z of a column, drawn as a tint.
-        heat_words: The question that it answers, for the legend.
+        sights: Sights of chosen agents.
+        wrong: Number of false entries.
+        against: Path of the simulator that this one is compared with.
+        note: Further words for the title, such as the branch.
     """
 
     path: str
@@ -234,12 +235,12 @@ class Scene:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Columns along x and along z."""
+        """Number of columns along x and along z."""
         return len(self.cells), len(self.cells[0])
 
 
 def best_height(states: Iterable[State]) -> int:
-    """Return the y at which most containers are, or else most agents' feet."""
+    """Return the y with the most containers, or else with the feet of the most agents."""
     found = list(states)
     heights = [place[1] for state in found for place in state.containers] or [
         math.floor(agent.position[1] + 1e-6)
@@ -267,13 +268,13 @@ def read_scene(
     """Return the scene of a simulator.
 
     Args:
-        state: What it holds at a tick.
-        wrong: What it holds otherwise than `against` does.
-        against: The path it is compared with.
-        labels: What people call containers.
-        places: What people call other places.
-        sight: Which blocks agents see whose sight is shown, shape of the box.
-        height: The storey, y of what stands on its floor; None: that of most things.
+        state: State of the simulator.
+        wrong: Its differences from the simulator `against`.
+        against: Path of the simulator to compare with.
+        labels: Names that people use for containers.
+        places: Names that people use for other places.
+        sight: Blocks that chosen agents see, by name of the agent; shape of the box.
+        height: The storey, y of the blocks that stand on its floor; None for the best one.
         note: Further words for the title.
     """
     level = best_height([state]) if height is None else height
@@ -318,7 +319,7 @@ def read_scene(
 def _window(
     state: State, places: Mapping[str, Position]
 ) -> tuple[tuple[int, int], tuple[int, int]]:
-    """The corners of the plan: the box, or of a wide one what lies around things and agents."""
+    """Return the corners of the plan: the box, or the part of it around things and agents."""
     (x0, _, z0), (x1, _, z1) = state.box.low, state.box.high
     if max(x1 - x0, z1 - z0) < _WIDEST:
         return (x0, z0), (x1, z1)
@@ -352,10 +353,10 @@ def read_stores(
     """Return the containers of a state.
 
     Args:
-        state: What a simulator holds.
+        state: State of a simulator.
         level: The storey.
-        labels: What people call them.
-        wrong: What is held otherwise elsewhere, by place.
+        labels: Names that people use for containers.
+        wrong: Differences from the other simulator, by position.
     """
     found = []
     for place, held in sorted(state.containers.items()):
@@ -379,7 +380,7 @@ def read_stores(
 
 
 def _teller(basis: Basis | None) -> str:
-    """Who said what an entry holds; empty: it does not rest on hearsay."""
+    """Return the speaker that an entry is known from; empty if it is not hearsay."""
     if basis is None or basis.source is not Source.HEARD:
         return ""
     return basis.speaker or "somebody"
@@ -437,7 +438,7 @@ def _devices(
             state = registry.state_id(cell.standing)
             properties = registry.properties(state)
             name = registry.name(state)
-            # A door that a signal holds is open; one that is only powered may be shut.
+            # The first property of _ON decides: a door also has `powered`, but may be shut then.
             states = [properties[key] == "true" for key in _ON if key in properties]
             parts = tuple((b[0], b[2], b[3], b[5]) for b in registry.boxes(state))
             place = (low[0] + i, low[1], low[2] + k)

@@ -1,4 +1,4 @@
-"""A drawing as SVG: text stays text, and has the room that was measured for it."""
+"""SVG writer: text stays text, fitted to the width that was measured for it."""
 
 from xml.etree import ElementTree
 
@@ -15,9 +15,9 @@ def svg_text(drawing: Drawing, *, inline: bool = False) -> str:
     """Return the SVG of a drawing.
 
     Args:
-        drawing: What is drawn.
-        inline: Whether it stands in a page: it is then as wide as there is room, at most its own
-            width, in pixels of 1/96 inch.
+        drawing: The drawing.
+        inline: True if it becomes part of a page. It then takes the available width, at most its
+            own width in pixels of 1/96 inch.
     """
     width, height = drawing.width, drawing.height
     root = ElementTree.Element(
@@ -103,10 +103,10 @@ def _text(root: ElementTree.Element, mark: Text) -> None:
 
 
 def _clean(text: str) -> str:
-    """Without characters that XML cannot hold."""
+    """Remove characters that XML cannot contain."""
     return "".join(c if c.isprintable() else "\ufffd" for c in text)
 
 
 def _n(value: float) -> str:
-    """Return a number in as few signs as its place needs."""
+    """Format a number as short as the accuracy of positions allows."""
     return f"{value:.2f}".rstrip("0").rstrip(".") or "0"

@@ -1,4 +1,4 @@
-"""Short words for states, for terminals and `repr`, and escaped text for notebooks."""
+"""States in short words for terminals and `repr`, and as escaped HTML for notebooks."""
 
 from collections.abc import Iterable, Sequence
 from html import escape
@@ -20,21 +20,21 @@ __all__ = [
 ]
 
 _MOST = 6
-"""Containers that are told of; more are counted."""
+"""Number of containers that are listed; further ones are only counted."""
 
 
 def point_words(point: Point | None) -> str:
-    """Where somebody is."""
+    """Return a point in words."""
     return "place not known" if point is None else f"at {place_words(point)}"
 
 
 def place_words(place: Point | Position) -> str:
-    """Return a place."""
+    """Return a position in words."""
     return f"({', '.join(f'{value:.1f}'.removesuffix('.0') for value in place)})"
 
 
 def items_words(items: Items, *, complete: bool) -> str:
-    """Contents, and whether there may be more."""
+    """Return contents in words, with a mark if there may be more."""
     told = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in sorted(items.items()))
     if complete:
         return told or "empty"
@@ -42,10 +42,10 @@ def items_words(items: Items, *, complete: bool) -> str:
 
 
 def told_apart(texts: Sequence[str]) -> tuple[str, ...]:
-    """Return blocks in words: with no more of their properties than it takes to tell them apart.
+    """Return blocks in words, with only the properties that distinguish them.
 
     Args:
-        texts: As people read blocks, with what is written on signs.
+        texts: Blocks as text for people, with the texts of signs.
     """
     words = {text: _block_words(text) for text in texts}
     alike = len(set(words.values())) < len(words)
@@ -68,12 +68,12 @@ _STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "o
 
 
 def html_lines(lines: Iterable[str]) -> str:
-    """Return lines of text; spaces at their beginning are kept."""
+    """Return lines of text as HTML that keeps leading spaces."""
     return f'<div style="white-space:pre-wrap">{_html(chr(10).join(lines))}</div>'
 
 
 def html_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table of texts."""
+    """Return a table of texts as HTML."""
     head = "".join(f"<th>{_html(each)}</th>" for each in headings)
     body = "".join(f"<tr>{''.join(f'<td>{_html(cell)}</td>' for cell in row)}</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
@@ -84,7 +84,7 @@ def _html(text: str) -> str:
 
 
 def state_words(state: State) -> str:
-    """Who is where and what is in what, as far as a simulator holds it."""
+    """Return the agents' places and the containers' contents of a state in words."""
     people = []
     for name, agent in sorted(state.agents.items()):
         words = f"{name} {point_words(agent.position)}"
