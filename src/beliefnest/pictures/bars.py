@@ -1,4 +1,4 @@
-"""Bars of a posterior at one tick."""
+"""Bar chart of a posterior at one tick."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ class BarGroup:
     """Bars on one scale.
 
     Attributes:
-        title: The question that they answer.
+        title: Question that they answer.
         low: Lower end of the scale.
         high: Upper end of the scale.
-        bars: Value by name.
-        is_share: Whether the values are probabilities.
+        bars: Values by name.
+        is_share: True if the values are probabilities.
     """
 
     title: str
@@ -35,9 +35,9 @@ class BarChart:
     """A posterior at one tick.
 
     Attributes:
-        title: The agent.
+        title: Name of the agent.
         note: The tick, in words.
-        groups: From the top downwards.
+        groups: Groups of bars, from the top downwards.
     """
 
     title: str
@@ -46,18 +46,18 @@ class BarChart:
 
 
 def number_text(value: float, digits: int = 2) -> str:
-    """Return a number with at most some digits after the point; never a negative zero."""
+    """Return a number with at most `digits` decimals; never a negative zero."""
     return f"{round(value, digits) + 0.0:g}"
 
 
 def draw_bars(chart: BarChart, at: XY, width: float, size: float) -> Block:
-    """Return the bars of a posterior: names to the left, values to the right of each bar.
+    """Draw the bars of a posterior, with a name to the left and a value to the right of each.
 
     Args:
         chart: The posterior.
-        at: Left upper corner, in points.
-        width: In points.
-        size: Of texts, in points.
+        at: Upper left corner, in points.
+        width: Width in points.
+        size: Size of texts in points.
     """
     left, top = at
     block = Block(bottom=top)

@@ -123,7 +123,12 @@ class Figure:
 
 
 def figure_of(scenes: Sequence[Scene], chart: BarChart | None = None) -> Figure:
-    """Return a figure of simulators side by side, as many in a row as fit."""
+    """Return a figure of simulators side by side, as many in a row as fit.
+
+    Args:
+        scenes: Scenes of the simulators.
+        chart: A posterior to draw after them, or None.
+    """
     paths = ", ".join(scene.path for scene in scenes)
     about = f"{paths} at tick {scenes[0].tick}"
     panels: list[Scene | BarChart] = [*scenes, *([] if chart is None else [chart])]

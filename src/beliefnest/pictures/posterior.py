@@ -1,4 +1,4 @@
-"""Posteriors over time, a panel for each question."""
+"""Plot of posteriors over time, with a panel for each question."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -29,13 +29,13 @@ class PosteriorPanel:
     """Curves or shares over time.
 
     Attributes:
-        title: The question that it answers.
+        title: Question that they answer.
         low: Lower end of the scale.
         high: Upper end of the scale.
         ticks: Ticks at which values change.
-        series: By name the values from each tick on.
-        stacked: Whether the values are shares of one whole, drawn on top of each other.
-        ordered: Whether the names are numbers, shaded from light to dark.
+        series: Values from each tick on, by name.
+        stacked: True if the values are shares of a whole, drawn on top of each other.
+        ordered: True if the names are numbers, shaded from light to dark.
     """
 
     title: str
@@ -53,10 +53,10 @@ def posterior_plot(
     """Return the figure of a posterior over time.
 
     Args:
-        panels: From the top downwards, all with the same first tick.
+        panels: Panels from the top downwards, all with the same first tick.
         end: First tick after the plot.
-        notes: Deeds that are marked in all panels.
-        title: The head of the figure.
+        notes: Acts to mark in all panels.
+        title: Title of the figure.
     """
     return Figure(lambda width: _draw(panels, end, notes, title, width), 174.0, title)
 
@@ -92,7 +92,7 @@ def _draw(
     if notes:
         lines = tuple(((axis.x(n.tick), first - 1.5), (axis.x(n.tick), bottom)) for n in notes)
         marks.append(Lines(lines, INK, 0.4))
-    # Titles stay readable where a line goes through them.
+    # Draw titles last, so that lines do not cross them out.
     marks += titles
     return Drawing(width, axis.draw(bottom + 2, marks) + MARGIN, tuple(marks), title)
 
@@ -118,7 +118,7 @@ def _looks(panel: PosteriorPanel, colours: Mapping[str, str]) -> dict[str, _Look
 
 
 def _keyed(panel: PosteriorPanel) -> list[str]:
-    """Return the series that are named beside a panel: all, or some of many."""
+    """Return the series that get a name beside the panel: all, or an even choice of many."""
     names = list(panel.series)
     if len(names) <= _MOST_KEYS:
         return names
@@ -138,7 +138,7 @@ def _key_texts(panels: Sequence[PosteriorPanel]) -> list[str]:
 
 @dataclass(frozen=True)
 class _Panel:
-    """A panel at its place on the page."""
+    """A panel with its place on the page."""
 
     panel: PosteriorPanel
     axis: TimeAxis
@@ -151,7 +151,7 @@ class _Panel:
         return bottom - (bottom - top) * (value - low) / (high - low)
 
     def marks(self, keys: float) -> list[Drawn]:
-        """Return all marks; `keys` is the room for names beside it."""
+        """Return all marks; `keys` is the width for names beside the panel."""
         (left, right), (top, bottom) = self.axis.span, self.rows
         marks: list[Drawn] = [Rectangle(left, top, right - left, bottom - top, "#ffffff")]
         marks += self._areas() if self.panel.stacked else self._curves()
@@ -201,8 +201,8 @@ class _Panel:
         return mix(PAPER, self.looks[name].colour, 0.72)
 
     def _keys(self, x: float, width: float) -> list[Drawn]:
-        """Return swatches and names beside the right end, each near its series."""
-        # Later shares lie above earlier ones.
+        """Return swatches and names to the right of the panel, each near the end of its series."""
+        # Stacked shares grow upwards, so list the names in reverse order.
         names = _keyed(self.panel)[::-1]
         if not self.panel.stacked:
             names.sort(key=self._level)
@@ -225,7 +225,7 @@ class _Panel:
         return marks
 
     def _level(self, name: str) -> float:
-        """Return the height at which a series ends."""
+        """Return the y at which a series ends."""
         last = self.panel.series[name][-1]
         if not self.panel.stacked:
             return self._y(last)
@@ -235,7 +235,7 @@ class _Panel:
 
 
 def _spread(levels: Sequence[float], rows: XY, step: float) -> list[float]:
-    """Return ascending heights, at least a step apart and between two ends."""
+    """Return ascending positions, at least a step apart and within the rows."""
     low, high = rows[0] + step / 2, rows[1] - step / 2
     placed: list[float] = []
     for level in levels:

@@ -1,4 +1,4 @@
-"""Scatter plots in rows of panels: the judgments of models against those of people."""
+"""Scatter plots in rows of panels: judgments of models against those of people."""
 
 import itertools
 import math
@@ -20,7 +20,7 @@ _GAP = 12.0
 _DOT = 1.7
 _LINE = 1.32
 _TICKS = 7
-"""Steps of an axis, at most."""
+"""Greatest number of steps of an axis."""
 _PAD = 0.06
 
 
@@ -29,10 +29,10 @@ class Point:
     """A dot.
 
     Attributes:
-        x: The model's value.
-        y: The people's value.
-        kind: What is judged; it has a colour.
-        error: Half the length of a vertical bar; 0: none.
+        x: Value of the model.
+        y: Value of the people.
+        kind: Subject of the judgment, which determines the colour.
+        error: Half the length of the error bar; 0 for none.
     """
 
     x: float
@@ -46,9 +46,9 @@ class ScatterPanel:
     """A panel.
 
     Attributes:
-        title: Above it.
-        note: Below the title.
-        points: Its dots.
+        title: Title above the panel.
+        note: Text below the title.
+        points: Dots of the panel.
     """
 
     title: str
@@ -61,9 +61,9 @@ class ScatterRow:
     """Panels with the same axes.
 
     Attributes:
-        across: Words below the horizontal axis.
-        up: Words above the vertical axis.
-        panels: Side by side, as many as there is room for.
+        across: Label of the horizontal axis.
+        up: Label of the vertical axis.
+        panels: Panels side by side, as many as fit.
     """
 
     across: str
@@ -72,7 +72,7 @@ class ScatterRow:
 
 
 def scatter_figure(rows: Sequence[ScatterRow], about: str) -> Figure:
-    """Return the figure, laid out for any width."""
+    """Return the figure, which can be laid out for any width."""
     return Figure(lambda width: _draw(rows, width, about), 174.0, about)
 
 
@@ -131,11 +131,11 @@ class _Chart:
         head = TEXT_SIZE * 1.6
         side = wide - margin
         self._corner = (left, top)
-        # Dots at the ends of the axes have room.
+        # Leave a margin for dots at the ends of the axes.
         self._area = (left + margin, top + head, side, side * 0.8)
 
     def at(self, x: float, y: float) -> XY:
-        """Return where a dot stands."""
+        """Return the position of a dot."""
         left, top, wide, high = self._area
         across = (x - self._xs[0]) / (self._xs[-1] - self._xs[0])
         up = (y - self._ys[0]) / (self._ys[-1] - self._ys[0])
@@ -147,7 +147,7 @@ class _Chart:
     def draw(
         self, block: Block, row: ScatterRow, points: Sequence[Point], kinds: Sequence[str]
     ) -> None:
-        """Draw the panel at the end of a block."""
+        """Append the panel to a block."""
         left, top, wide, high = self._area
         bottom = top + high
         marks: list[Drawn] = [Rectangle(left, top, wide, high, "#ffffff", mix(PAPER, INK, 0.35))]
@@ -205,10 +205,10 @@ def _colour(kinds: Sequence[str], kind: str) -> str:
 
 
 def _axis(values: Iterable[float]) -> tuple[float, ...]:
-    """Return ticks at round numbers, around all values."""
+    """Return ticks at round numbers that enclose all values."""
     found = list(values)
     low, high = min(found), max(found)
-    # A row of equal values has an axis all the same.
+    # Equal values still need an axis of some length.
     least = (high - low or abs(high) or 1.0) / _TICKS
     power = 10.0 ** math.floor(math.log10(least))
     step = next(power * n for n in (1, 2, 5, 10) if power * n >= least * 0.999)

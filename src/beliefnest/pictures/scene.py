@@ -213,6 +213,8 @@ class Scene:
         wrong: Number of false entries.
         against: Path of the simulator that this one is compared with.
         note: Further words for the title, such as the branch.
+        heat: Probability of columns by x and z, drawn as a tint.
+        heat_words: Question that these probabilities answer, for the legend.
     """
 
     path: str

@@ -1,4 +1,4 @@
-"""The axis of ticks below plots, and the deeds that are noted above them."""
+"""Axis of ticks below plots, and the notes of acts above them."""
 
 import math
 from collections.abc import Sequence
@@ -17,11 +17,11 @@ _ACT = TEXT_SIZE * 0.95
 
 @dataclass(frozen=True, slots=True)
 class NotedAct:
-    """A deed that mattered.
+    """An act that mattered.
 
     Attributes:
-        tick: When.
-        words: Who did what.
+        tick: Tick of the act.
+        words: Actor and act in words.
     """
 
     tick: int
@@ -30,7 +30,7 @@ class NotedAct:
 
 @dataclass(frozen=True, slots=True)
 class TimeAxis:
-    """Ticks along the width of a plot.
+    """Scale from ticks to the width of a plot.
 
     Attributes:
         start: First tick.
@@ -43,12 +43,12 @@ class TimeAxis:
     span: XY
 
     def x(self, tick: int) -> float:
-        """Return the place of a tick."""
+        """Return the x position of a tick."""
         low, high = self.span
         return low + (high - low) * (tick - self.start) / (self.end - self.start)
 
     def draw(self, top: float, marks: list[Drawn]) -> float:
-        """Add the axis with its numbers; return where it ends."""
+        """Add the axis with its numbers; return its lower end."""
         low, high = self.span
         widest = text_width(str(self.end), TEXT_SIZE)
         step = _round_step((self.end - self.start) / max(1.0, (high - low) / (widest * 2.2)))
@@ -64,7 +64,9 @@ class TimeAxis:
         return base + TEXT_SIZE * 1.5
 
     def note(self, acts: Sequence[NotedAct], top: float, marks: list[Drawn]) -> float:
-        """Add the words of deeds, each in the first line in which it touches no other."""
+        """Add the acts in words, each in the first line where it overlaps no other; return the
+        end.
+        """
         ends: list[float] = []
         low, high = self.span
         for act in acts:

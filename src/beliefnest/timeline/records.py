@@ -24,7 +24,7 @@ __all__ = [
 ]
 
 Senses = Literal["world", "percepts"]
-"""What programs can read: the whole world, or what their agents perceive or remember."""
+"""Input of programs: the whole world, or only what their agents perceive or remember."""
 
 
 @dataclass(frozen=True, slots=True)
