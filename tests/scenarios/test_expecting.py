@@ -167,7 +167,7 @@ def test_answers_are_read(text: str, options: tuple[str, ...], answer: str | Non
     ("expect", "told"),
     [
         ({"takes": {}}, "expect.takes: name at least one item"),
-        ({"says": " "}, "expect.says: give part of what is to be said"),
+        ({"says": " "}, "expect.says: is empty; give part of an utterance"),
         (
             {
                 "answers": {
@@ -180,7 +180,7 @@ def test_answers_are_read(text: str, options: tuple[str, ...], answer: str | Non
         ),
         (
             {"answers": {"question": "Where?", "right": "A", "options": ["A", "B"]}},
-            "options: 'A' is a letter, by which options are called",
+            "options: 'A' is a single letter, which names an option",
         ),
         (
             {"answers": {"question": "Where?", "right": "here", "wrong": ["here"]}},

@@ -346,5 +346,5 @@ def test_a_line_that_was_cut_off_spoils_no_other(tmp_path):
 
 
 def test_a_process_that_is_ended_is_told_of():
-    with pytest.raises(bn.BodyError, match="what has ended is kept"), _engine("loky", 2):
+    with pytest.raises(bn.BodyError, match="finished cells are kept"), _engine("loky", 2):
         raise TerminatedWorkerError

@@ -1,4 +1,4 @@
-"""Scenario files, what they mean, and how they are run and judged."""
+"""Scenarios: files, their meaning, and how they are run and judged."""
 
 from beliefnest.scenarios.scenario import Scenario
 

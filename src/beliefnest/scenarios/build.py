@@ -1,4 +1,4 @@
-"""What a document of the right form means: the setting, the probes, the expectations."""
+"""Construction of scenarios from checked documents: setting, probes, and expectations."""
 
 import math
 import re
@@ -70,10 +70,10 @@ __all__ = ["build_scenario"]
 T = TypeVar("T")
 
 _MOST_OPTIONS = 26
-"""One for each letter."""
+"""Greatest number of options: one for each letter."""
 
 _WORKED_IN = ("conditions", "parameters", "constraints")
-"""Keys whose values have taken their places in the others."""
+"""Keys that are resolved before the scenario is built."""
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
 
@@ -84,14 +84,14 @@ def build_scenario(
     condition: int | None,
     conditions: Mapping[int, Mapping[str, Any]],
 ) -> ScenarioContent:
-    """Return the scenario that a document describes, its condition merged in already.
+    """Return the scenario of a document into which the condition is already merged.
 
     Raises:
-        ScenarioError: Something in it makes no sense; the message names file, line and key.
+        ScenarioError: The content is not consistent; the message names file, line and key.
     """
     if not _NAME.fullmatch(file.name):
         raise document.fault(
-            ("name",), f"{file.name!r} names no folder; use letters, digits, - and _"
+            ("name",), f"{file.name!r} is no name for a folder; use letters, digits, - and _"
         )
     builder = _Builder(document, file, Registry.load())
     descriptions = {
@@ -122,7 +122,7 @@ def build_scenario(
 
 
 class _Builder:
-    """The snapshot of the first tick, and what refers to the things in it."""
+    """Builder of the snapshot of the first tick, and of all parts that refer to it."""
 
     def __init__(self, document: Document, file: ScenarioFile, registry: Registry) -> None:
         self._document = document
@@ -138,7 +138,7 @@ class _Builder:
         self._snapshot = Snapshot(0, box, grid, containers, agents, signs=signs, sign_claims=claims)
 
     def setting(self) -> Setting:
-        """What a nest starts from."""
+        """Return the setting from which a nest starts."""
         file = self._file
         for number, static in enumerate(file.static_blocks):
             if isinstance(static, str):
@@ -168,7 +168,7 @@ class _Builder:
         )
 
     def _unique(self, initial: Sequence[InitialBelief]) -> frozenset[str]:
-        """Return items of which there is one, which world and initial beliefs do not contradict."""
+        """Return the unique items; refuse those that world or initial beliefs contradict."""
         found = set()
         for number, name in enumerate(self._file.unique):
             path = ("unique", number)
@@ -180,7 +180,7 @@ class _Builder:
         return frozenset(found)
 
     def probe(self, number: int, entry: ProbeEntry) -> Probe:
-        """Return one probe, its template read."""
+        """Return one probe with the text of its template."""
         path = ("probes", number)
         believers = self._check_belief_path((*path, "path"), entry.path)
         if entry.acts_in is not None:
@@ -205,7 +205,7 @@ class _Builder:
         )
 
     def _expect(self, path: KeyPath, entry: ExpectEntry) -> tuple[Expected, ...]:
-        """Return all that is expected of a probe."""
+        """Return all expectations of a probe."""
         expected: list[Expected] = []
         if entry.opens is not None:
             self._check_container((*path, "opens"), entry.opens)
@@ -225,7 +225,7 @@ class _Builder:
             expected.append(Takes(items))
         if entry.says is not None:
             if not entry.says.strip():
-                raise self._document.fault((*path, "says"), "give part of what is to be said")
+                raise self._document.fault((*path, "says"), "is empty; give part of an utterance")
             expected.append(Says(entry.says))
         for number, answers in enumerate(_listed(entry.answers)):
             expected.append(self._answers((*path, "answers", number), answers))
@@ -259,7 +259,7 @@ class _Builder:
         if letters:
             raise self._document.fault(
                 (*path, "options"),
-                f"{letters[0]!r} is a letter, by which options are called; write it out",
+                f"{letters[0]!r} is a single letter, which names an option; write it out",
             )
         both = [each for each in right if each in entry.wrong]
         if both:
@@ -270,13 +270,13 @@ class _Builder:
         return Answers(entry.question, right, options, wrong, entry.reason)
 
     def expectation(self, number: int, entry: ExpectationEntry) -> Expectation:
-        """Return one expectation."""
+        """Return one expectation about a simulator after the script."""
         path = ("expectations", number)
         self._check_belief_path((*path, "path"), entry.path)
         return Expectation(entry.path, self._expected(path, entry), entry.label)
 
     def rules(self) -> EpisodeEntry | None:
-        """What agents are after round after round."""
+        """Return the goals and rules of play, if the scenario has any."""
         rules, agents = self._file.episode, self._snapshot.agents
         if rules is None:
             return None
@@ -327,7 +327,7 @@ class _Builder:
         )
 
     def _state_text(self, path: KeyPath, text: str | None) -> str | None:
-        """Return a block state as states are written everywhere."""
+        """Return the canonical text of a block state."""
         if text is None:
             return None
         with self._document.naming(path):
@@ -454,7 +454,7 @@ class _Builder:
             )
 
     def _check_items(self, path: KeyPath, place: Position, items: Items) -> None:
-        """Refuse what the container that stands there could not hold."""
+        """Refuse items that the container at a place could not hold."""
         box = self._snapshot.box
         name = self._registry.name(int(self._snapshot.blocks[box.index(place)]))
         slots = container_slots(name)
@@ -471,14 +471,14 @@ def _written(document: Document) -> Mapping[str, Any]:
 
 
 def _listed(entry: T | list[T] | None) -> list[T]:
-    """What may be written alone or as a list."""
+    """Return a value that may be written alone or as a list, as a list."""
     if entry is None:
         return []
     return entry if isinstance(entry, list) else [entry]
 
 
 def _prompt_labels(file: ScenarioFile) -> dict[Position, str]:
-    """What containers are called, and what they look as if they held."""
+    """Return the labels of containers for prompts: names, and what they seem to contain."""
     labels = {}
     for entry in file.containers:
         looks = f"looks as if it held {entry.looks}" if entry.looks else ""

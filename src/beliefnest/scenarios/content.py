@@ -1,4 +1,4 @@
-"""What a scenario says: its setting, what models are asked, what simulators are to hold."""
+"""Content of a scenario: its setting, probes, and expectations."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,20 +14,21 @@ __all__ = ["Probe", "ScenarioContent"]
 
 @dataclass(frozen=True, slots=True)
 class Probe:
-    """A model is asked from one belief; its program runs in a simulator and is judged there.
+    """Request to a model, with a prompt from one belief.
 
-    If answers alone are expected, it is asked for no program.
+    The model's program runs in a simulator and is judged there. If only answers are expected, the
+    model is not asked for a program.
 
     Attributes:
-        path: The belief that the prompt is rendered from.
-        acts_in: The simulator that the program runs in.
-        agent: The agent that runs it.
-        task: What the model is asked to make the agent do.
-        expect: What is expected, all of it together; empty: the outcome is only recorded.
-        template: Text of the prompt template; None: the paper's.
-        label: A name for tables.
-        timeout_ticks: Ticks of 50 ms after which the program has failed.
-        senses: What the program reads.
+        path: Path of the belief from which the prompt is rendered.
+        acts_in: Path of the simulator in which the program runs.
+        agent: Name of the agent that runs the program.
+        task: Task of the agent, for the model.
+        expect: Expectations, all of which must hold; empty: the outcome is only recorded.
+        template: Text of the prompt template; None: the paper's template.
+        label: Name for tables.
+        timeout_ticks: Ticks of 50 ms after which the program fails.
+        senses: Source of what the program reads: the world, or its agent's percepts.
     """
 
     path: str
@@ -42,34 +43,34 @@ class Probe:
 
     @property
     def questions(self) -> tuple[Answers, ...]:
-        """The questions that are asked."""
+        """Return the questions of the probe."""
         return tuple(each for each in self.expect if isinstance(each, Answers))
 
     @property
     def asks_for_program(self) -> bool:
-        """True if the model is asked for a program."""
+        """Return True if the model is asked for a program."""
         return not self.expect or len(self.questions) < len(self.expect)
 
 
 @dataclass(frozen=True)
 class ScenarioContent:
-    """What a scenario says under one of its conditions if it has any.
+    """Content of a scenario under one of its conditions, if it has any.
 
     Attributes:
-        setting: What a nest starts from, the script included.
-        description: What it is about.
-        reported_by: Who reported what is expected; empty: the author of the scenario.
-        condition: Number of the condition it is under; None: as written, no overrides.
-        condition_description: What is special about the condition.
-        conditions: All conditions it could be loaded under: number to description.
-        probes: What models are asked, in order.
-        expectations: What simulators are to hold after the script.
-        rules: What agents are after round after round, and how they play; None: not said.
-        written: All of it as plain values, its parameters and its condition in place; empty if
-            only the setting is known.
-        source: Where it comes from, for messages.
-        text: The text of its file; empty if it was built in code.
-        templates: Texts of the templates that its probes name, by the name written there.
+        setting: Setting from which a nest starts, including the script.
+        description: Description of the scenario.
+        reported_by: Source of the expectations, such as a paper; empty: the scenario's author.
+        condition: Number of the condition; None: the scenario as written, without overrides.
+        condition_description: Description of the condition.
+        conditions: Descriptions of all conditions, by number.
+        probes: Probes in order.
+        expectations: Expectations about simulators after the script.
+        rules: Goals of the agents and rules of play; None: the scenario has none.
+        written: The content as plain values, with parameters and condition applied; empty if only
+            the setting is known.
+        source: Name of the source for messages.
+        text: Text of the file; empty if the scenario was built in code.
+        templates: Texts of the templates that probes name, by name.
     """
 
     setting: Setting
@@ -88,10 +89,10 @@ class ScenarioContent:
 
     @property
     def name(self) -> str:
-        """Its short name."""
+        """Return the short name of the scenario."""
         return self.setting.name
 
     @property
     def labels(self) -> Mapping[Position, str]:
-        """What people call the containers."""
+        """Return the labels of containers, by position."""
         return self.setting.labels

@@ -1,7 +1,7 @@
-"""Scenario documents: what is written in a file, and on which line.
+"""Scenario documents: the content of a file with its line numbers.
 
-A `YamlNode` is a value together with its line, so that a fault in merged and checked content
-can still be reported where it was written.
+A `YamlNode` is a value with its line, so that errors in merged content can still name the line
+in the file.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -16,7 +16,7 @@ from beliefnest.scenarios.format import LABELLED
 __all__ = ["MAX_DEPTH", "Document", "KeyPath", "YamlNode", "merged", "plain", "under", "wrapped"]
 
 MAX_DEPTH = 40
-"""Lists and mappings inside each other."""
+"""Greatest nesting depth of lists and mappings."""
 
 KeyPath = tuple[str | int, ...]
 """Keys and list indices from the top of a document to a value."""
@@ -24,11 +24,11 @@ KeyPath = tuple[str | int, ...]
 
 @dataclass(frozen=True, slots=True)
 class YamlNode:
-    """A value of a document.
+    """Value of a document with its line.
 
     Attributes:
         value: A scalar, a list of nodes, or a dict from key to node.
-        line: Line on which it, or its key, is written; 0: not in a file.
+        line: Line of the value or of its key; 0: the value is not from a file.
     """
 
     value: Any
@@ -37,14 +37,15 @@ class YamlNode:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A scenario as written.
+    """Scenario as written.
 
     Attributes:
         source: File name, or another name for messages.
-        root: Its content.
-        folder: Where files that it names are looked for.
-        text: The text of the file; empty if there is none.
-        templates: Texts of templates that it names, kept with it; others are read from files.
+        root: Content of the document.
+        folder: Folder of files that the document names.
+        text: Text of the file; empty if there is none.
+        templates: Texts of templates that are kept with the document, by name; others are in
+            files.
     """
 
     source: str
@@ -54,11 +55,11 @@ class Document:
     templates: Mapping[str, str] = field(default_factory=dict)
 
     def fault(self, path: KeyPath, message: str) -> ScenarioError:
-        """Return the error that names file, line and key of what is wrong."""
+        """Return an error that names file, line and key."""
         return ScenarioError(f"{self.where(path)}: {_key_text(path)}{message}")
 
     def where(self, path: KeyPath) -> str:
-        """File and line of a value, or of the nearest thing around it that is written."""
+        """Return file and line of a value, or of its innermost written parent."""
         node, line = self.root, self.root.line
         for key in path:
             child = _child(node, key)
@@ -104,10 +105,10 @@ def plain(node: YamlNode) -> object:
 
 
 def wrapped(value: object, depth: int = 0) -> YamlNode:
-    """Return a document built in code, which has no lines.
+    """Return the nodes of a value built in code, which have no lines.
 
     Raises:
-        ScenarioError: It is nested too deep, perhaps in itself.
+        ScenarioError: The value is nested too deep, or contains itself.
     """
     if depth > MAX_DEPTH:
         raise ScenarioError(f"the scenario is nested more than {MAX_DEPTH} deep")
@@ -125,7 +126,7 @@ def merged(document: Document, condition: int) -> Document:
     labelled entries and the override a mapping, the entries with these labels are merged.
 
     Raises:
-        ScenarioError: There is no such condition, or no entry of a label.
+        ScenarioError: The condition, or an entry with a label, does not exist.
     """
     base = dict(document.root.value)
     conditions = base.pop("conditions", YamlNode({})).value
@@ -135,7 +136,7 @@ def merged(document: Document, condition: int) -> Document:
             f"{document.source}: there is no condition {condition}; "
             + (f"conditions are {known}" if known else "it has no conditions")
         )
-    # The description of a condition says what is special about it, not what the scenario is.
+    # Keep the scenario's own description: that of a condition describes only the condition.
     written = conditions[condition]
     kept = {key: node for key, node in written.value.items() if key != "description"}
     override = YamlNode(kept, written.line)
@@ -148,7 +149,7 @@ def merged(document: Document, condition: int) -> Document:
 
 
 def under(document: Document, condition: int | None, keys: Iterable[str]) -> Document:
-    """The document with what a condition says of some keys merged in, and all else as written."""
+    """Return the document with a condition's overrides of some keys merged in."""
     conditions = document.root.value.get("conditions")
     if conditions is None or not isinstance(conditions.value, dict):
         return document

@@ -1,4 +1,4 @@
-"""What may be expected of a probe, and of a simulator after the script."""
+"""Expectations about probes, and about simulators after the script."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from beliefnest.world.values import Items, Point, Position
 
-if TYPE_CHECKING:  # A trial holds what these judge.
+if TYPE_CHECKING:  # Avoid a cycle: the module of trials imports this one.
     from beliefnest.scenarios.trial import Trial
 
 __all__ = [
@@ -32,14 +32,14 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Opens:
-    """A program is to open this container before any other."""
+    """Expectation: the program opens this container before any other."""
 
     container: Position
 
 
 @dataclass(frozen=True, slots=True)
 class Arrives:
-    """A program is to bring its agent to a place.
+    """Expectation: the program brings its agent to a place.
 
     Attributes:
         place: Middle of the feet, in blocks.
@@ -52,16 +52,16 @@ class Arrives:
 
 @dataclass(frozen=True, slots=True)
 class Intends:
-    """A program is to make for a place, whether or not it gets there or finds anything there.
+    """Expectation: the program heads for a place, even if it does not get there.
 
-    Known from what the program asked for, never from its words: the first thing it asked to use
-    is at the place or, if the place is no container or it asked to use nothing, the last place it
-    asked to walk to is near.
+    The judgement uses the program's calls, never its words. It holds if the first block or agent
+    that the program asked to use is at the place. If the place is no container, or the program
+    asked to use nothing, it holds if the last goal of a walk is near the place.
 
     Attributes:
         place: A container or another place, in blocks.
-        within: Greatest distance of a walk's goal from there, in blocks.
-        is_container: Whether a container of the scenario stands there.
+        within: Greatest distance of a walk's goal from the place, in blocks.
+        is_container: True if a container of the scenario is there.
     """
 
     place: Point
@@ -71,10 +71,10 @@ class Intends:
 
 @dataclass(frozen=True, slots=True)
 class Takes:
-    """A program is to take at least these items out of containers.
+    """Expectation: the program takes at least these items out of containers.
 
     Attributes:
-        items: Item name to count.
+        items: Counts by item name.
     """
 
     items: Items
@@ -82,10 +82,10 @@ class Takes:
 
 @dataclass(frozen=True, slots=True)
 class Says:
-    """A program is to say something aloud or to one.
+    """Expectation: the program says or whispers something.
 
     Attributes:
-        text: Part of an utterance, in upper or lower case.
+        text: Part of an utterance; case does not matter.
     """
 
     text: str
@@ -93,15 +93,15 @@ class Says:
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """A model is to answer a question in words, or by choosing an option.
+    """Expectation: the model answers a question, in words or by choosing an option.
 
     Attributes:
-        question: What is asked.
-        right: The answers that are right. One in words is right if it has one of these in it,
-            as whole words in upper or lower case, and none of `wrong`.
-        options: What it chooses from, shuffled by the seed; empty: it answers in words.
-        wrong: What an answer in words may not have in it.
-        reason: Whether it is asked why.
+        question: The question.
+        right: Right answers. An answer in words is right if it contains one of them as whole
+            words, in any case, and none of `wrong`.
+        options: Options to choose from, shuffled by the seed; empty: an answer in words.
+        wrong: Texts that a right answer in words must not contain.
+        reason: True if the model is also asked for a reason.
     """
 
     question: str
@@ -113,11 +113,11 @@ class Answers:
 
 @dataclass(frozen=True, slots=True)
 class Judge:
-    """A Python function says whether a probe came out right.
+    """Expectation: a Python function accepts the trial.
 
     Attributes:
-        function: Given the trial, True if it did, else False or a text that says why not.
-        name: What tables call it.
+        function: Function of the trial; returns True, or False or a text that says why not.
+        name: Name in tables.
     """
 
     function: "Callable[[Trial], bool | str]"
@@ -126,7 +126,7 @@ class Judge:
 
 @dataclass(frozen=True, slots=True)
 class Holds:
-    """A container is to hold exactly these known items."""
+    """Expected state: a container holds exactly these known items."""
 
     container: Position
     items: Items
@@ -134,11 +134,11 @@ class Holds:
 
 @dataclass(frozen=True, slots=True)
 class Stands:
-    """An agent is to stand at a place.
+    """Expected state: an agent stands at a place.
 
     Attributes:
-        agent: Its name.
-        place: Middle of the feet, in blocks; None: its place is to be unknown.
+        agent: Name of the agent.
+        place: Middle of the feet, in blocks; None: the place is unknown.
         within: Greatest distance from there, in blocks.
     """
 
@@ -149,11 +149,11 @@ class Stands:
 
 @dataclass(frozen=True, slots=True)
 class Hears:
-    """Something is to have been said as far as a simulator knows, or not.
+    """Expected state: a simulator knows of an utterance, or of none.
 
     Attributes:
         text: Part of an utterance.
-        ever: Whether an utterance with this part is to be known; False: none is.
+        ever: True if an utterance with this part is known; False if none is.
     """
 
     text: str
@@ -162,11 +162,11 @@ class Hears:
 
 @dataclass(frozen=True, slots=True)
 class Reads:
-    """Something is to be written on a sign as far as a simulator knows.
+    """Expected state: a sign has a text.
 
     Attributes:
-        sign: Where the sign is.
-        text: What is to be written on it; None: that is to be unknown.
+        sign: Position of the sign.
+        text: Text of the sign; None: the text is unknown.
     """
 
     sign: Position
@@ -175,11 +175,11 @@ class Reads:
 
 @dataclass(frozen=True, slots=True)
 class Is:
-    """Something is to be a block as far as a simulator knows.
+    """Expected state: a block has a block state.
 
     Attributes:
-        block: Where the block is.
-        state: The block state, as `State.blocks` has it; None: it is to be unknown.
+        block: Position of the block.
+        state: Block state, as in `State.blocks`; None: the block is unknown.
     """
 
     block: Position
@@ -187,17 +187,17 @@ class Is:
 
 
 Content = Holds | Stands | Hears | Reads | Is
-"""What a simulator is to hold."""
+"""Expected state of a simulator."""
 
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """What a simulator is to hold after the script.
+    """Expectation about a simulator after the script.
 
     Attributes:
-        path: The simulator.
-        content: What it is to hold.
-        label: A name for tables.
+        path: Path of the simulator.
+        content: Expected state.
+        label: Name for tables.
     """
 
     path: str
@@ -207,13 +207,13 @@ class Expectation:
 
 @dataclass(frozen=True, slots=True)
 class Believes:
-    """A simulator is to hold something once a probe's program has ended."""
+    """Expectation: a simulator has an expected state at the end of a probe's program."""
 
     expectation: Expectation
 
 
 Tells = Opens | Arrives | Intends | Takes | Says | Believes | Judge
-"""What is judged by a program's run."""
+"""Expectations that are judged by a program's run."""
 
 Expected = Tells | Answers
-"""What may be expected of a probe."""
+"""Expectations about a probe."""

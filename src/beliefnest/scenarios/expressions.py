@@ -1,7 +1,7 @@
 """Small expressions over named values, such as `gap + 1` or `spot[0] != other[0]`.
 
-Python's syntax, and of it only what computes with numbers, texts and lists: no attributes, no
-calls but `abs`, `len`, `max`, `min` and `round`, so that a file can be read that nobody trusts.
+Expressions are a safe subset of Python for numbers, texts and lists: no attributes, and no calls
+except `abs`, `len`, `max`, `min` and `round`. Untrusted files can therefore be read.
 """
 
 import ast
@@ -47,24 +47,24 @@ _CALLS: Mapping[str, Callable[..., object]] = {
 
 
 def names_in(text: str) -> frozenset[str]:
-    """Return the names of values that an expression is about.
+    """Return the names of the values in an expression.
 
     Raises:
-        InputError: It is no expression.
+        InputError: The text is no expression.
     """
     nodes = ast.walk(_parsed(text))
     return frozenset(node.id for node in nodes if isinstance(node, ast.Name)) - _CALLS.keys()
 
 
 def evaluate(text: str, values: Mapping[str, object]) -> object:
-    """What an expression comes to.
+    """Evaluate an expression.
 
     Args:
         text: The expression.
-        values: Name to value.
+        values: Values by name.
 
     Raises:
-        InputError: It is no expression, names what there is not, or cannot be computed.
+        InputError: The text is no expression, names an unknown value, or cannot be computed.
     """
     body = _parsed(text)
     try:
@@ -83,7 +83,7 @@ def _parsed(text: str) -> ast.expr:
         raise InputError(f"{text!r} is no expression") from None
 
 
-# One return for each kind of node that is allowed.
+# One return for each allowed kind of node.
 def _value(  # noqa: PLR0911
     node: ast.expr, values: Mapping[str, object], text: str
 ) -> object:
@@ -127,12 +127,12 @@ def _compared(left: object, ops: list[ast.cmpop], others: list[object], text: st
 
 
 def _plain(value: object) -> object:
-    """Lists and tuples of the same values are the same."""
+    """Return a value with tuples as lists, so that both compare equal."""
     return [_plain(part) for part in value] if isinstance(value, list | tuple) else value
 
 
 def _number(value: object) -> object:
-    """Only numbers are computed with: a text times a number could be of any length."""
+    """Return a number; refuse texts, since a text times a number could have any length."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise TypeError(f"{value!r} is no number")
     return value

@@ -1,4 +1,4 @@
-"""The check of a document's form: every key known, every value of its kind."""
+"""Check of a document's form: known keys, and values of the right kind."""
 
 import difflib
 import re
@@ -19,7 +19,7 @@ _UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.
 _MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
 
 _MOST_BITS = 64
-"""Of a whole number that a message repeats; Python refuses to write out very long ones."""
+"""Bits of whole numbers that messages repeat; Python refuses to format very long ones."""
 
 
 def check_form(document: Document) -> ScenarioFile:
@@ -36,7 +36,7 @@ def check_form(document: Document) -> ScenarioFile:
 
 
 def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
-    """Refuse texts that cannot be stored."""
+    """Refuse texts that cannot be stored, as they contain lone surrogates."""
     if isinstance(node.value, dict):
         for key, child in node.value.items():
             if isinstance(key, str) and not is_well_formed(key):
@@ -76,7 +76,7 @@ def _fault(document: Document, error: str) -> ScenarioError:
 
 
 def _found(root: YamlNode, path: KeyPath, what: str) -> str:
-    """What stands there, where the fault does not say so."""
+    """Return the value at a place for a message, if the error does not already say it."""
     value = _node_at(root, list(path)).value
     is_short = isinstance(value, float | None) or (
         isinstance(value, int) and value.bit_length() <= _MOST_BITS
@@ -86,7 +86,7 @@ def _found(root: YamlNode, path: KeyPath, what: str) -> str:
 
 
 def _allowed(path: KeyPath, what: str) -> str:
-    """What may stand there."""
+    """Return what is allowed at a place, for a message."""
     if values := allowed_values(path):
         forms = [f"{{{key}: ...}}" for key in allowed_keys(path)]
         return f"; allowed are {', '.join([*values, *forms])}"
@@ -104,10 +104,10 @@ def _hint(name: str, path: KeyPath) -> str:
 
 
 def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str) -> KeyPath:
-    """Return the place of a fault that msgspec names with `[...]` for the keys of mappings.
+    """Return the place of an error, for which msgspec writes `[...]` instead of mapping keys.
 
-    For each `[...]` the mapping is cut down to one entry at a time; the entry that still
-    shows the fault is the one meant.
+    For each `[...]`, try the mapping with only one entry at a time. The entry that still causes
+    the error is the wrong one.
     """
     path: list[str | int] = []
     for step in steps:

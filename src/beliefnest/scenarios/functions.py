@@ -1,4 +1,4 @@
-"""Python functions that judge probes: given in code, or named in a file."""
+"""Python functions that judge probes, given in code or named in a file."""
 
 import importlib
 from collections.abc import Callable
@@ -13,25 +13,25 @@ __all__ = ["NamedFunction", "judge_of"]
 
 @dataclass(frozen=True, slots=True)
 class NamedFunction:
-    """A function of a module, which is imported when it is first needed.
+    """Function of a module, which is imported when it is first needed.
 
     Attributes:
-        module: Name of a module that Python finds.
-        function: Name of a function in it.
+        module: Name of a module on Python's path.
+        function: Name of a function in the module.
     """
 
     module: str
     function: str
 
     def __call__(self, trial: Trial) -> bool | str:
-        """What the function says of a trial."""
+        """Call the function with a trial."""
         return self.loaded()(trial)
 
     def loaded(self) -> Callable[[Trial], bool | str]:
         """Return the function.
 
         Raises:
-            InputError: There is none of that name.
+            InputError: The module or function does not exist.
         """
         try:
             found: Callable[[Trial], bool | str] | None = getattr(
@@ -51,7 +51,7 @@ def judge_of(written: object) -> Judge:
     """Return the judge that a scenario names.
 
     Raises:
-        InputError: It is no function and no `module:function`.
+        InputError: The value is neither a function nor a text `module:function`.
     """
     if callable(written):
         return Judge(written, getattr(written, "__name__", "the judging function"))
@@ -59,4 +59,4 @@ def judge_of(written: object) -> Judge:
         module, _, function = written.partition(":")
         if function.isidentifier() and all(part.isidentifier() for part in module.split(".")):
             return Judge(NamedFunction(module, function), function)
-    raise InputError(f"{written!r} is no function; name one as module:function")
+    raise InputError(f"{written!r} is no function; give one as module:function")

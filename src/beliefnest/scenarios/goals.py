@@ -1,4 +1,4 @@
-"""Goals: conditions on reality and on beliefs, and when they came true."""
+"""Goals: conditions on reality and on beliefs, and the ticks at which they came true."""
 
 import itertools
 import math
@@ -32,32 +32,32 @@ __all__ = [
 
 _NOWHERE = 80.0
 _REACH = 6.0
-"""Blocks between eyes and the middle of what is held."""
+"""Greatest distance in blocks from the eyes to the middle of a lever that an agent holds."""
 
 
 class GoalFacts(Protocol):
-    """What conditions ask of a state: the real one, a believed or an imagined one."""
+    """Protocol of a state that conditions read: real, believed or imagined."""
 
     def items_in(self, place: Position) -> Items:
-        """Return items known to be in a container; none where nothing is known."""
+        """Return the items known to be in a container; empty if nothing is known."""
 
     def items_of(self, agent: str) -> Items:
-        """Return items that an agent is known to have."""
+        """Return the items that an agent is known to have."""
 
     def feet_of(self, agent: str) -> Point | None:
-        """Where an agent stands; None: unknown."""
+        """Return the position of an agent's feet; None: unknown."""
 
     def block(self, place: Position) -> str | None:
-        """Return the block state text; None: unknown."""
+        """Return the text of a block state; None: unknown."""
 
 
 Look = Callable[[BeliefPath], GoalFacts]
-"""The state at a belief path; `()` is what is taken for real."""
+"""Function from a belief path to the state there; `()` is reality, as the caller takes it."""
 
 
 @dataclass(frozen=True, slots=True)
 class StateFacts:
-    """The facts of a simulator's state."""
+    """Facts of a simulator's state."""
 
     state: State
 
@@ -71,24 +71,24 @@ class StateFacts:
         return self.state.agents[agent].inventory
 
     def feet_of(self, agent: str) -> Point | None:
-        """Where an agent stands."""
+        """Return the position of an agent's feet; None: unknown."""
         return self.state.agents[agent].position
 
     def block(self, place: Position) -> str | None:
-        """Return the block state text."""
+        """Return the text of a block state; None: unknown."""
         return self.state.blocks[place]
 
 
 @dataclass(frozen=True, slots=True)
 class ItemsIn:
-    """A container holds at least so many of an item."""
+    """Fact: a container holds at least a number of an item."""
 
     place: Position
     item: str
     count: int = 1
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Return True if it does."""
+        """Return True if the container holds the items."""
         return facts.items_in(self.place).get(self.item, 0) >= self.count
 
     def __str__(self) -> str:
@@ -97,14 +97,14 @@ class ItemsIn:
 
 @dataclass(frozen=True, slots=True)
 class ItemsWith:
-    """An agent has at least so many of an item."""
+    """Fact: an agent has at least a number of an item."""
 
     agent: str
     item: str
     count: int = 1
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Return True if it has."""
+        """Return True if the agent has the items."""
         return facts.items_of(self.agent).get(self.item, 0) >= self.count
 
     def __str__(self) -> str:
@@ -113,19 +113,19 @@ class ItemsWith:
 
 @dataclass(frozen=True, slots=True)
 class AgentAt:
-    """An agent stands near a place, `within` so many blocks of the block's middle."""
+    """Fact: an agent stands within a distance of the middle of a block."""
 
     agent: str
     place: Position
     within: float = 1.0
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Return True if it stands there."""
+        """Return True if the agent stands there."""
         feet = facts.feet_of(self.agent)
         return feet is not None and self.distance(feet) <= self.within
 
     def distance(self, feet: Point) -> float:
-        """How far from the place somebody stands, in blocks."""
+        """Return the distance of feet from the place, in blocks."""
         x, y, z = self.place
         return math.dist(feet, (x + 0.5, float(y), z + 0.5))
 
@@ -135,10 +135,10 @@ class AgentAt:
 
 @dataclass(frozen=True, slots=True)
 class BlockIs:
-    """A block is in a state; properties that are not named may be any.
+    """Fact: a block has a state; properties that are not named may have any value.
 
     Attributes:
-        place: Where it is.
+        place: Position of the block.
         state: `name` or `name[property=value,...]`.
     """
 
@@ -146,7 +146,7 @@ class BlockIs:
     state: str
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Return True if it is."""
+        """Return True if the block has the state."""
         there = facts.block(self.place)
         return there is not None and agrees(there, self.state)
 
@@ -156,12 +156,12 @@ class BlockIs:
 
 @dataclass(frozen=True, slots=True)
 class BlocksAlike:
-    """A block is as another one, its model; unknown is like nothing.
+    """Fact: a block equals another one, its model; an unknown block equals nothing.
 
     Attributes:
-        place: Where it is.
-        model: Where the other one is.
-        property: The property in which they are to agree; empty: in all that it is.
+        place: Position of the block.
+        model: Position of the model.
+        property: Property in which both must agree; empty: in the whole state.
     """
 
     place: Position
@@ -169,12 +169,12 @@ class BlocksAlike:
     property: str = ""
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Return True if they agree."""
+        """Return True if the two blocks agree."""
         wanted = self.wanted(facts)
         return wanted is not None and wanted == self._of(facts.block(self.place))
 
     def wanted(self, facts: GoalFacts) -> str | None:
-        """What the model has: the property's value, or the whole block; None: unknown."""
+        """Return the model's value of the property, or its whole state; None: unknown."""
         return self._of(facts.block(self.model))
 
     def _of(self, text: str | None) -> str | None:
@@ -186,18 +186,18 @@ class BlocksAlike:
 
 @dataclass(frozen=True, slots=True)
 class LeversHeld:
-    """All the levers of one site are on at once, each with somebody else at it.
+    """Fact: all levers of one site are on at once, each with a different agent at it.
 
     Attributes:
-        agents: As many as a site has levers, whoever is at which.
-        sites: Block positions of levers, of each site.
+        agents: Names of the agents, as many as a site has levers; any agent may be at any lever.
+        sites: Positions of the levers of each site.
     """
 
     agents: tuple[str, ...]
     sites: tuple[tuple[Position, ...], ...]
 
     def holds(self, facts: GoalFacts) -> bool:
-        """Return True if they are."""
+        """Return True if the levers of a site are on, each with a different agent at it."""
         return any(self.missing(facts, site) == (0, 0.0) for site in self.known(facts))
 
     def known(self, facts: GoalFacts) -> list[tuple[Position, ...]]:
@@ -209,7 +209,7 @@ class LeversHeld:
         ]
 
     def missing(self, facts: GoalFacts, site: tuple[Position, ...]) -> tuple[int, float]:
-        """How many levers of a site are off, and how far off their holders are, in blocks."""
+        """Return the number of levers that are off, and the distance of their holders in blocks."""
         is_off = sum(_property(facts.block(place), "powered") != "true" for place in site)
         far = min(
             sum(
@@ -230,18 +230,18 @@ Fact = ItemsIn | ItemsWith | AgentAt | LeversHeld | BlockIs | BlocksAlike
 
 @dataclass(frozen=True, slots=True)
 class GoalCondition:
-    """A fact that is to be the case somewhere.
+    """Condition that a fact holds in reality or in a belief.
 
     Attributes:
-        fact: What.
-        path: Where: `()` in reality, else in that belief.
+        fact: The fact.
+        path: Belief path; `()` is reality.
     """
 
     fact: Fact
     path: BeliefPath = ()
 
     def holds(self, look: Look) -> bool:
-        """Return True if it is the case there."""
+        """Return True if the fact holds there."""
         return self.fact.holds(look(self.path))
 
     def __str__(self) -> str:
@@ -250,14 +250,15 @@ class GoalCondition:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What an agent, or a task, is after.
+    """Goal of an agent or of a task.
 
     Attributes:
-        reach: What is to be the case at one and the same tick. If there is nothing to reach, the
-            end of the episode is reached.
-        never: What must not be the case at any tick until then.
-        messages: Most utterances of all players until then; None: any number.
-        ticks: Most ticks until then, from where the first round begins; None: any number.
+        reach: Conditions that must hold at the same tick. Without any, the goal is reached at the
+            end of the episode.
+        never: Conditions that must not hold at any tick until then.
+        messages: Greatest number of utterances of all players until then; None: no limit.
+        ticks: Greatest number of ticks until then, from the start of the first round; None: no
+            limit.
     """
 
     reach: tuple[GoalCondition, ...] = ()
@@ -267,11 +268,11 @@ class Goal:
 
     @property
     def conditions(self) -> tuple[GoalCondition, ...]:
-        """All of them."""
+        """Return all conditions of the goal."""
         return (*self.reach, *self.never)
 
     def differs(self, other: "Goal") -> bool:
-        """Whether each of two who are after these wants something that the other does not."""
+        """Return True if each of the two goals contains a condition that the other does not."""
         mine, theirs = self._wanted, other._wanted
         return not (mine <= theirs or theirs <= mine)
 
@@ -282,7 +283,7 @@ class Goal:
 
     @property
     def paths(self) -> frozenset[BeliefPath]:
-        """The simulators that it is about."""
+        """Return the belief paths of all conditions."""
         return frozenset(each.path for each in self.conditions)
 
     def __str__(self) -> str:
@@ -297,15 +298,15 @@ class Goal:
 
 @dataclass(slots=True)
 class Progress:
-    """How far a goal has come; fed tick by tick.
+    """Progress of a goal, updated tick by tick.
 
     Attributes:
         goal: The goal.
-        start: The tick at which the first round begins.
-        first: By number of a condition, the tick at which it came true first.
-        reached: The tick at which all was reached; None: not yet.
-        violated: The tick at which something happened that must not; None: nothing has.
-        messages: How many utterances of players there were.
+        start: Tick at which the first round begins.
+        first: Tick at which each condition first came true, by number of the condition.
+        reached: Tick at which the goal was reached; None: not yet.
+        violated: Tick at which the goal was violated; None: it was not.
+        messages: Number of utterances of players so far.
     """
 
     goal: Goal
@@ -317,16 +318,16 @@ class Progress:
 
     @classmethod
     def begun(cls, goal: Goal, start: int) -> "Progress":
-        """Nothing yet."""
+        """Return the progress of a goal at its start."""
         return cls(goal, start, {})
 
     def feed(self, tick: int, look: Look, messages: int) -> None:
-        """Take what is the case at a tick; after the goal is lost, for `first` alone.
+        """Update the progress with a tick; after a violation, update `first` only.
 
         Args:
             tick: The tick.
-            look: The states at it.
-            messages: How many utterances of players there were in it.
+            look: States at the tick.
+            messages: Number of utterances of players in the tick.
         """
         if self.reached is not None:
             return
@@ -348,26 +349,26 @@ class Progress:
             self.reached = tick
 
     def succeeded(self, *, over: bool) -> bool:
-        """Return True if the goal is reached, given whether the episode has come to its end."""
+        """Return True if the goal is reached; `over` is True if the episode has ended."""
         if self.violated is not None:
             return False
         return self.reached is not None or (over and not self.goal.reach)
 
     def came_true(self) -> Sequence[tuple[str, int | None]]:
-        """Return all conditions in words, each with the tick at which it came true first."""
+        """Return all conditions in words, each with the tick at which it first came true."""
         return [
             (str(each), self.first.get(number)) for number, each in enumerate(self.goal.conditions)
         ]
 
 
 def looking_at(states: Mapping[BeliefPath, State]) -> Look:
-    """Look at states by path."""
+    """Return a function that looks up facts in states by path."""
     return lambda path: StateFacts(states[path])
 
 
 @cache
 def agrees(there: str, wanted: str) -> bool:
-    """Return True if a block is in a state; properties that are not named may be any."""
+    """Return True if a block has a state; properties that are not named may have any value."""
     name, stated = parse_state(wanted)
     is_named, properties = parse_state(there)
     return is_named == name and stated.items() <= properties.items()
@@ -378,7 +379,7 @@ def _is_named(text: str | None, name: str) -> bool:
 
 
 def _beyond_reach(feet: Point | None, place: Position) -> float:
-    """Blocks between somebody and where a hand reaches a place; 0 for who is within reach."""
+    """Return how many blocks an agent is beyond reach of a place; 0: within reach."""
     if feet is None:
         return _NOWHERE
     middle = tuple(value + 0.5 for value in place)

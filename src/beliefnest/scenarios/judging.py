@@ -1,4 +1,4 @@
-"""Judging from the world: what was asked for, opened, said; who arrived where; what is believed."""
+"""Judging of probes by what programs did in the world and what simulators believe."""
 
 import math
 import re
@@ -43,24 +43,24 @@ __all__ = [
 ]
 
 OUTCOMES = ("ok", "wrong", "no_way", "program_failed", "no_answer", "error")
-"""What a probe can come to.
+"""Possible outcomes of a probe.
 
-`wrong`: something else was done, said or answered than was expected. `no_way`: nothing was, since
-what the program made for cannot be reached on foot. `program_failed`: nothing was, since the
-program broke off for another reason. `no_answer`: the model gave no program, or no answer. `error`:
-the world or the judging function failed; nothing is known.
+`ok`: all expectations hold. `wrong`: the program did or said something else, or the model answered
+something else. `no_way`: the program did none of it, because it could not walk to its target.
+`program_failed`: the program did none of it, because it failed for another reason. `no_answer`: the
+model gave no program or no answer. `error`: the world or the judging function failed.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """Whether one thing that was expected of a probe came out.
+    """Judgement of one expectation of a probe.
 
     Attributes:
-        expected: What was expected.
-        ok: Whether it came out.
-        why_not: What came out instead, for people; empty if it is ok.
-        outcome: One of `OUTCOMES`; None: not ok, and the program's end says which.
+        expected: The expectation.
+        ok: True if it holds.
+        why_not: What happened instead, for people; empty if `ok`.
+        outcome: One of `OUTCOMES`; None: not ok, and the end of the program decides.
     """
 
     expected: Expected
@@ -79,7 +79,7 @@ def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:
 
 
 def verdict_of(expected: Tells, trial: Trial) -> Judgement:
-    """Return True if a program did what was expected."""
+    """Judge one expectation by what a program did."""
     by_deed = False
     match expected:
         case Opens(container):
@@ -113,11 +113,11 @@ def verdict_of(expected: Tells, trial: Trial) -> Judgement:
 
 
 def outcome_of(verdicts: Sequence[Judgement], result: ProgramResult | None) -> str:
-    """What a probe came to, all in all; one of `OUTCOMES`.
+    """Return the overall outcome of a probe, one of `OUTCOMES`.
 
     Args:
-        verdicts: Of all that was expected of it.
-        result: What became of its program; None: there is none.
+        verdicts: Judgements of all expectations.
+        result: Result of the program; None: there is no program.
     """
     failed = [each for each in verdicts if not each.ok]
     told = [each.outcome for each in failed]
@@ -132,7 +132,7 @@ def outcome_of(verdicts: Sequence[Judgement], result: ProgramResult | None) -> s
 
 
 def answer_verdict(expected: Answers, answer: str | None) -> Judgement:
-    """Return True if a question was answered rightly; None: it was not answered."""
+    """Judge the answer to a question; an answer of None means that there was no answer."""
     if answer is None:
         return Judgement(expected, ok=False, why_not="gave no answer", outcome="no_answer")
     if expected.options:
@@ -146,10 +146,10 @@ def answer_verdict(expected: Answers, answer: str | None) -> Judgement:
 
 
 def found_instead(content: Content, state: State) -> str | None:
-    """What a simulator holds in place of what was expected of it; None: just that."""
+    """Return what a simulator believes instead of what was expected; None: it is as expected."""
     match content:
         case Holds(place, items):
-            # A container that was never perceived is known to hold nothing in particular.
+            # A container that was never perceived has no known contents, so compare with nothing.
             container = state.containers.get(place)
             held = dict(container.items) if container else {}
             if held == dict(items):
@@ -186,7 +186,7 @@ def _stands_instead(content: Stands, state: State) -> str | None:
 
 
 def sign_found(state: State, place: Position) -> str:
-    """What is known of the sign at a place, in words."""
+    """Return what is known about the sign at a place, in words."""
     text = state.signs.get(place)
     if text is None:
         return f"of a sign at {place_text(place)} nothing is known"
@@ -211,7 +211,7 @@ def _verdict(expected: Expected, ok: bool, found: str, *, by_deed: bool = False)
 def _judged(expected: Judge, trial: Trial) -> Judgement:
     try:
         answer: object = expected.function(trial)
-    except Exception as error:  # noqa: BLE001  # a user's function may raise anything; it is told
+    except Exception as error:  # noqa: BLE001  # a user's function may raise anything; report it
         answer = None
         said = f"{expected.name} raised {type(error).__name__}: {error}"
     else:
@@ -240,7 +240,7 @@ def _taken(trial: Trial) -> dict[str, int]:
 
 
 def _has(answer: str, text: str) -> bool:
-    """Return True if an answer has a text in it, as whole words."""
+    """Return True if an answer contains a text as whole words."""
     return re.search(rf"(?<!\w){re.escape(text.casefold())}(?!\w)", answer.casefold()) is not None
 
 

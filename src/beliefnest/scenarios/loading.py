@@ -1,4 +1,4 @@
-"""From a document to a scenario: finding it, choosing the condition, checking what it says."""
+"""Loading of scenarios: find the document, apply the condition, and check the content."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -28,13 +28,13 @@ __all__ = [
 ]
 
 Change = Callable[[Document], Document]
-"""Makes another document of one."""
+"""Function from a document to a changed document."""
 
 _SUFFIXES = (".yaml", ".yml")
 
 
 def builtin_names() -> list[str]:
-    """Return names of the scenarios that come with the package."""
+    """Return the names of the built-in scenarios."""
     folder = files("beliefnest.scenarios") / "builtin"
     names = (entry.name for entry in folder.iterdir())
     return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
@@ -44,7 +44,7 @@ def condition_number(condition: int | str | None) -> int | None:
     """Return the number of a condition, which may be given as text.
 
     Raises:
-        ScenarioError: It is no number.
+        ScenarioError: `condition` is no number.
     """
     if condition is None or (isinstance(condition, int) and not isinstance(condition, bool)):
         return condition
@@ -58,21 +58,21 @@ def load_scenario(
     condition: int | None = None,
     parameters: Mapping[str, object] | None = None,
 ) -> ScenarioContent:
-    """See `Scenario.load`."""
+    """Load a scenario, see `Scenario.load`."""
     return scenario_in(read_document(name_or_path), condition, parameters)
 
 
 def load_conditions(name_or_path: str) -> tuple[ScenarioContent, ...]:
-    """See `Scenario.load_all`."""
+    """Load a scenario under all its conditions, see `Scenario.load_all`."""
     document = read_document(name_or_path)
     return tuple(scenario_in(document, number) for number in condition_numbers(document))
 
 
 def condition_numbers(document: Document) -> tuple[int | None, ...]:
-    """Return numbers of a document's conditions, in order; only None if it has none.
+    """Return the numbers of a document's conditions, in order; only None if it has none.
 
     Raises:
-        ScenarioError: The document is not of the right form.
+        ScenarioError: The document does not have the right form.
     """
     return tuple(sorted(check_form(with_parameters(document, {})).conditions)) or (None,)
 
@@ -80,14 +80,14 @@ def condition_numbers(document: Document) -> tuple[int | None, ...]:
 def scenario_from(
     content: Mapping[str, Any], condition: int | None, source: str
 ) -> ScenarioContent:
-    """See `Scenario.from_mapping`."""
+    """Build a scenario from a mapping, see `Scenario.from_mapping`."""
     return scenario_in(Document(source, wrapped(content), Path()), condition)
 
 
 def kept_scenario(
     text: str, templates: Mapping[str, str], condition: int | None, source: str
 ) -> ScenarioContent:
-    """See `Scenario.kept`."""
+    """Build the scenario that a run keeps, see `Scenario.kept`."""
     return scenario_in(replace(parse_yaml(text, source), templates=templates), condition)
 
 
@@ -95,8 +95,8 @@ def read_document(name_or_path: str) -> Document:
     """Return the document of a built-in scenario, or of one in a file.
 
     Raises:
-        UnknownNameError: There is no built-in scenario of that name, and no such file.
-        ScenarioError: The file cannot be read, or is not one YAML mapping.
+        UnknownNameError: There is neither a built-in scenario nor a file of that name.
+        ScenarioError: The file cannot be read, or is not a single YAML mapping.
     """
     names = builtin_names()
     if name_or_path in names:
@@ -119,17 +119,17 @@ def scenario_in(
     parameters: Mapping[str, object] | None = None,
     change: Change | None = None,
 ) -> ScenarioContent:
-    """What a document says with values for its parameters, under a condition, and changed.
+    """Return the scenario of a document after applying parameters, a condition, and a change.
 
     Args:
-        document: As written.
-        condition: Number of a condition; None: as written, no overrides.
-        parameters: Name to value; the others have their defaults.
-        change: Given the document with its condition merged in, another one that says the same
-            of another scene; None: no change.
+        document: The document as written.
+        condition: Number of a condition; None: the document without overrides.
+        parameters: Values of parameters, by name; the others have their defaults.
+        change: Function that changes the document after the condition is merged in, for example
+            to a mirrored scene; None: no change.
 
     Raises:
-        ScenarioError: Something is wrong with it, or it has no such condition or parameter.
+        ScenarioError: The document is wrong, or a condition or parameter does not exist.
     """
     filled = with_parameters(document, parameters or {}, condition)
     written = check_form(filled)

@@ -1,4 +1,4 @@
-"""Places and items as texts for people."""
+"""Texts for places and items, for people."""
 
 from beliefnest.world.values import Items, Point
 
@@ -6,7 +6,7 @@ __all__ = ["items_text", "place_text"]
 
 
 def place_text(point: Point) -> str:
-    """Return a place as `(2, -51, -4)`, tenths where it is no whole number."""
+    """Return a place such as `(2, -51, -4)`; other than whole numbers have one decimal."""
     return f"({', '.join(f'{round(value, 1):g}' for value in point)})"
 
 

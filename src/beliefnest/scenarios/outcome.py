@@ -1,4 +1,4 @@
-"""What came of a scenario under one condition."""
+"""Outcomes of scenarios, probes and expectations."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -20,15 +20,15 @@ __all__ = ["ExpectationOutcome", "Outcome", "ProbeOutcome", "Reply"]
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """What a model answered to a question.
+    """Reply of a model to a question.
 
     Attributes:
-        question: What was asked.
-        options: What it could choose from, in the order of the prompt; empty: words.
-        prompt: The prompt as the model got it.
-        text: The whole answer.
-        answer: What it answered, one of `options` if there are any; None: nothing of use.
-        reason: Why, in its words; empty if it did not say.
+        question: The question.
+        options: Options in the order of the prompt; empty: an answer in words.
+        prompt: Prompt as sent to the model.
+        text: Complete text of the reply.
+        answer: Parsed answer, one of `options` if there are any; None: no usable answer.
+        reason: Reason in the model's words; empty: none given.
     """
 
     question: str
@@ -41,20 +41,21 @@ class Reply:
 
 @dataclass(frozen=True, slots=True)
 class ProbeOutcome:
-    """What a model answered to a probe, and what its program did.
+    """Outcome of a probe: the model's answers, and what its program did.
 
     Attributes:
-        probe: What was asked.
-        verdicts: One for each thing that was expected, in that order.
+        probe: The probe.
+        verdicts: Judgement of each expectation, in order.
         outcome: One of `judging.OUTCOMES`.
-        usage: What all its answers took.
-        prompt: The prompt as the model got it; empty if it was asked for no program.
-        answer: The whole answer.
-        program: The program in it; empty if there is none.
-        attempts: How often the model was asked for a program; faults were sent back in between.
-        trial: What the program did; None if there is none.
-        replies: What it answered to questions.
-        fault: Why there is no program to judge; empty if there is one, or none was asked for.
+        usage: Tokens and cost of all answers.
+        prompt: Prompt as sent to the model; empty if it was not asked for a program.
+        answer: Complete text of the last answer.
+        program: Program in the answer; empty if there is none.
+        attempts: Number of requests for a program; errors were sent back in between.
+        trial: Run of the program; None if there is none.
+        replies: Replies to questions.
+        fault: Reason why there is no program to judge; empty if there is one, or if the model was
+            not asked for one.
     """
 
     probe: Probe
@@ -71,12 +72,12 @@ class ProbeOutcome:
 
     @property
     def ok(self) -> bool | None:
-        """True if all came out as expected; None: nothing was expected."""
+        """Return True if all expectations hold; None: there are no expectations."""
         return all(each.ok for each in self.verdicts) if self.probe.expect else None
 
     @property
     def why_not(self) -> str:
-        """What is not as expected, or why nothing came of it; empty if all is well."""
+        """Return what is not as expected, or why there is no result; empty if all is well."""
         if self.outcome == "ok":
             return ""
         told = [each.why_not for each in self.verdicts if not each.ok]
@@ -88,15 +89,15 @@ class ProbeOutcome:
 
     @property
     def error(self) -> Fault | None:
-        """Why the program failed; None if it did not."""
+        """Return the error of the program; None if it did not fail."""
         return None if self.trial is None else self.trial.result.error
 
     @property
     def result(self) -> ProgramResult:
-        """What became of the program.
+        """Return the result of the program.
 
         Raises:
-            InputError: There was no program.
+            InputError: There is no program.
         """
         if self.trial is None:
             raise InputError(f"the probe {self.probe.label!r} had no program; look at `outcome`")
@@ -104,37 +105,37 @@ class ProbeOutcome:
 
     @property
     def branch(self) -> str:
-        """The branch that the program ran on; empty if there was none."""
+        """Return the branch on which the program ran; empty if there was no program."""
         return "" if self.trial is None else self.trial.branch
 
     @property
     def opened(self) -> tuple[Position, ...]:
-        """The containers that the agent opened, in order."""
+        """Return the containers that the agent opened, in order."""
         return () if self.trial is None else self.trial.opened
 
     @property
     def arrived(self) -> Point | None:
-        """Where the agent stood in the end; None if it was not there, or nothing was run."""
+        """Return the agent's place at the end; None if it was not there, or nothing was run."""
         return None if self.trial is None else self.trial.arrived
 
     @property
     def intended(self) -> Point | None:
-        """What the program made for (see `Trial.intended`); None: nothing."""
+        """Return the place that the program headed for (see `Trial.intended`); None: none."""
         return None if self.trial is None else self.trial.intended
 
     @property
     def ticks(self) -> int:
-        """How long the program ran."""
+        """Return the number of ticks that the program ran."""
         return 0 if self.trial is None else self.trial.result.ticks
 
 
 @dataclass(frozen=True, slots=True)
 class ExpectationOutcome:
-    """Whether a simulator holds what was expected of it.
+    """Outcome of an expectation about a simulator.
 
     Attributes:
-        expectation: What was expected.
-        why_not: What it holds instead; None: just that.
+        expectation: The expectation.
+        why_not: What the simulator believes instead; None: the expectation holds.
     """
 
     expectation: Expectation
@@ -142,24 +143,24 @@ class ExpectationOutcome:
 
     @property
     def ok(self) -> bool:
-        """True if it holds that."""
+        """Return True if the expectation holds."""
         return self.why_not is None
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a scenario under one condition.
+    """Outcome of a scenario under one condition.
 
     Attributes:
-        scenario: The scenario under that condition.
-        seed: What drove every random number.
+        scenario: The scenario with its condition applied.
+        seed: Seed of every random number.
         ticks: Length of the script in the real world.
         seconds: Wall time from the start of the world to the last judgement.
-        reality: The real world after the script.
-        beliefs: Path to belief after the script, for every path the scenario names.
-        expectations: One for each of the scenario's.
-        probes: One for each of the scenario's.
-        reading: What it took to have what was said read for claims, if a model did that.
+        reality: State of the real world after the script.
+        beliefs: States of beliefs after the script, for every path that the scenario names.
+        expectations: Outcome of each expectation of the scenario.
+        probes: Outcome of each probe of the scenario.
+        reading: Tokens and cost of extracting claims from utterances, if a model did that.
     """
 
     scenario: Scenario
@@ -187,19 +188,19 @@ class Outcome:
 
     @property
     def usage(self) -> Usage:
-        """What all answers took."""
+        """Return the tokens and cost of all answers."""
         return sum((probe.usage for probe in self.probes), self.reading)
 
     @property
     def ok(self) -> bool:
-        """True if everything was as expected."""
+        """Return True if everything is as expected."""
         return all(each.ok for each in self.expectations) and all(
             each.ok is not False for each in self.probes
         )
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """What is not as expected, one line each: what it is called, and what came instead."""
+        """Return a line for each unmet expectation: its name, and what happened instead."""
         held = [
             f"{each.expectation.label or each.expectation.path}: {each.why_not}"
             for each in self.expectations

@@ -1,8 +1,8 @@
-"""Parameters of a scenario: what is declared, and `${name}` replaced by values.
+"""Parameters of a scenario: declarations, and replacement of `${name}` by values.
 
-`${name}`, or `${an expression of names}`, may stand in any value or key of a scenario file. Where
-it is all of a value, the value takes its place, of whatever kind; inside a text it is written out,
-lists with commas, so that `new Vec3(${spot})` is a position.
+`${name}`, or `${expression of names}`, may be in any value or key of a scenario file. If it is the
+complete value, the parameter's value of any type replaces it. Inside a text, the value is written
+out, lists with commas, so that `new Vec3(${spot})` is a position.
 """
 
 import json
@@ -24,14 +24,14 @@ __all__ = ["broken_constraint", "choices", "declared_in", "text_of", "with_param
 _HOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}", re.ASCII)
 _PROGRAMS = ("program", "programs")
-"""Keys below which `${...}` may be JavaScript's own."""
+"""Keys of programs, in which `${...}` may belong to JavaScript."""
 _MOST_VALUES = 1_000_000
 _KEYS = ("parameters", "constraints")
-"""Keys that say what parameters there are."""
+"""Keys of the declarations."""
 
 
 def choices(declared: ParameterEntry) -> Sequence[Any] | None:
-    """Return all values of a parameter, in order; None: it is any number in its range."""
+    """Return all values of a parameter, in order; None: any number in its range."""
     if declared.values:
         return list(declared.values)
     if declared.range is None:
@@ -47,10 +47,10 @@ def choices(declared: ParameterEntry) -> Sequence[Any] | None:
 
 
 def declared_in(document: Document, condition: int | None = None) -> dict[str, ParameterEntry]:
-    """Return the parameters that a document declares, as a condition says; None: as written.
+    """Return the declared parameters of a document, with the overrides of a condition.
 
     Raises:
-        ScenarioError: A declaration is not of the right form, or a condition makes a new one.
+        ScenarioError: A declaration has a wrong form, or a condition declares a new parameter.
     """
     node = under(document, condition, _KEYS).root.value.get("parameters")
     if node is None:
@@ -90,7 +90,7 @@ def _declared(document: Document, name: object, entry: YamlNode) -> ParameterEnt
 
 
 def _count_of(declared: ParameterEntry) -> float:
-    """How many values a range has, where they are kept as a list."""
+    """Return the number of values of a range with steps."""
     if declared.range is None or not declared.step or isinstance(declared.step, int):
         return 0
     return (declared.range[1] - declared.range[0]) / declared.step
@@ -99,9 +99,9 @@ def _count_of(declared: ParameterEntry) -> float:
 def broken_constraint(
     document: Document, values: Mapping[str, object], condition: int | None = None
 ) -> str | None:
-    """Return the first of a document's constraints that values do not keep; None: they keep all.
+    """Return the first constraint of a document that values break; None: they break none.
 
-    A condition may have constraints of its own in their place.
+    The constraints of a condition replace those of the document.
 
     Raises:
         ScenarioError: A constraint is no expression, or cannot be computed.
@@ -120,16 +120,16 @@ def broken_constraint(
 def with_parameters(
     document: Document, given: Mapping[str, object], condition: int | None = None
 ) -> Document:
-    """A document with its parameters' values in place; declarations and constraints are left out.
+    """Return a document with its parameters filled in, without declarations and constraints.
 
     Args:
-        document: As written.
-        given: Name to value; parameters that are not given have their defaults.
-        condition: Number of the condition whose defaults and constraints count; None: as written.
+        document: The document as written.
+        given: Values of parameters, by name; the others have their defaults.
+        condition: Number of the condition whose defaults and constraints apply; None: none.
 
     Raises:
-        ScenarioError: A parameter is not declared, a constraint is broken, or `${...}` is not
-            understood.
+        ScenarioError: A parameter is not declared, a constraint is broken, or `${...}` cannot be
+            parsed.
     """
     declared = declared_in(document, condition)
     unknown = [name for name in given if name not in declared]
@@ -160,7 +160,7 @@ def _without_declarations(root: YamlNode) -> YamlNode:
 
 
 class _Filling:
-    """Puts values in place of `${...}`."""
+    """Filler that replaces `${...}` by values."""
 
     def __init__(self, document: Document, values: Mapping[str, object]) -> None:
         self._document = document
@@ -195,7 +195,7 @@ class _Filling:
         return _HOLE.sub(written, text)
 
     def _found(self, hole: re.Match[str], path: KeyPath) -> tuple[object] | None:
-        """Return the value of a hole; None: it is JavaScript's own."""
+        """Return the value of a hole in a tuple; None: it belongs to JavaScript."""
         own = any(key in _PROGRAMS for key in path)
         try:
             names = names_in(hole[1])
@@ -217,14 +217,14 @@ def _on_line(node: YamlNode, line: int) -> YamlNode:
 
 
 def _written(value: object) -> str:
-    """Return a value inside a text."""
+    """Return a value as written inside a text."""
     if isinstance(value, list | tuple):
         return ", ".join(_written(part) for part in value)
     return value if isinstance(value, str) else json.dumps(value)
 
 
 def text_of(root: YamlNode) -> str:
-    """Return a document's content as YAML, one line for each entry at its top."""
+    """Return a document's content as YAML, with one line for each top-level key."""
     value = plain(root)
     assert isinstance(value, Mapping)  # the root of a document is one
     return "".join(f"{_flow(key)}: {_flow(inner)}\n" for key, inner in value.items())

@@ -1,4 +1,4 @@
-"""Agents of a scenario: entries of a file to states, and the check that they have room."""
+"""Agents of a scenario: their states from a file's entries, and checks of their places."""
 
 import math
 from itertools import combinations
@@ -28,7 +28,7 @@ _Bounds = tuple[Point, Point]
 def build_agents(
     document: Document, file: ScenarioFile, grid: BlockGrid, box: Box, registry: Registry
 ) -> dict[str, AgentState]:
-    """Return the agents by name, each on its own free place inside the box."""
+    """Return the agents by name, each at a free place of its own inside the box."""
     agents: dict[str, AgentState] = {}
     if len(file.agents) > MOST_AGENTS:
         found = len(file.agents)
@@ -110,7 +110,7 @@ def _check_place(
         raise document.fault(
             path, f"{list(feet)} lies outside the box {list(box.low)} to {list(box.high)}"
         )
-    # A shape may reach into the block above it, as a fence does.
+    # The shape of a block, such as a fence, may reach into the block above.
     around = Box((low[0], low[1] - 1, low[2]), (high[0], high[1], high[2]))
     for position in around.positions():
         if position not in box:

@@ -1,4 +1,4 @@
-"""Asking a model one probe: for a program, which is run and judged, and for answers."""
+"""Probing of a model: ask for a program, run and judge it, and ask questions."""
 
 from dataclasses import dataclass, field
 
@@ -28,13 +28,13 @@ __all__ = ["Asking", "run_probe"]
 
 @dataclass(frozen=True, slots=True)
 class Asking:
-    """How a model is asked.
+    """Options of requests to a model.
 
     Attributes:
-        attempts: How often at most, for one probe: a program that does not work is sent back.
-        sampling: How answers are drawn.
-        keeps_unanswered: Whether a probe for which a model gives no program in all its attempts
-            comes to `no_answer`; False: it ends the scenario with an error.
+        attempts: Greatest number of requests for one probe; failed programs are sent back.
+        sampling: Sampling options of answers.
+        keeps_unanswered: If True, a probe without a program after all attempts has the outcome
+            `no_answer`. If False, it ends the scenario with an error.
     """
 
     attempts: int = 3
@@ -44,7 +44,7 @@ class Asking:
 
 @dataclass(frozen=True, slots=True)
 class _Programs:
-    """What came of asking for a program."""
+    """Result of asking for a program."""
 
     attempts: tuple[Round, ...]
     trial: Trial | None
@@ -55,18 +55,18 @@ class _Programs:
 def run_probe(
     nest: Nest, number: int, probe: Probe, model: Model, seed: int, asking: Asking
 ) -> ProbeOutcome:
-    """Ask a model, run and judge what it answers.
+    """Ask a model for a probe; run its program and judge the results.
 
     Args:
-        nest: The script played.
-        number: Of the probe, from 1; its branches are named by it.
-        probe: What is asked.
-        model: Who is asked.
-        seed: Drives the order of options.
-        asking: How it is asked.
+        nest: The nest after the script.
+        number: Number of the probe, from 1; names of branches contain it.
+        probe: The probe.
+        model: The model.
+        seed: Seed of the order of options.
+        asking: Options of requests.
 
     Raises:
-        ModelError: The model failed, or gave no program that works (`Asking.keeps_unanswered`).
+        ModelError: The model failed, or gave no working program (`Asking.keeps_unanswered`).
         BodyError: The Minecraft side died.
     """
     believer, name = nest[probe.path], f"probe {number}"
@@ -121,7 +121,7 @@ def _ask_for_program(
             sampling=asking.sampling,
         ).attempts
     except NoUsableProgramError as error:
-        # If it did give programs, what the last of them did is the result.
+        # If there were programs, the run of the last one is the result.
         attempts = error.attempts
         if not trials.done:
             if not asking.keeps_unanswered:
@@ -136,7 +136,7 @@ def _ask_for_program(
 
 
 class _Prompts:
-    """What a model is told: how to answer, and what the belief holds."""
+    """Prompts of a probe: instructions, and the content of the belief."""
 
     def __init__(self, believer: Simulator, probe: Probe) -> None:
         self._believer = believer
@@ -149,7 +149,7 @@ class _Prompts:
 
     @property
     def prompt(self) -> Prompt:
-        """Rendered anew in each round if the template shows the last error, else one text."""
+        """Return the prompt; a template that shows the last error is rendered for each request."""
         return self._render if LAST_ERROR in self._template.text else self._render(None, None)
 
     def _render(self, code: str | None, error: str | None) -> str:
@@ -159,7 +159,7 @@ class _Prompts:
 
 
 class _Trials:
-    """Runs programs of a probe, each from the same moment, on a branch of its own."""
+    """Runner of a probe's programs, each from the same tick on its own branch."""
 
     def __init__(self, nest: Nest, probe: Probe, name: str) -> None:
         self._nest = nest
@@ -169,10 +169,10 @@ class _Trials:
         self.done: list[tuple[Trial, tuple[Judgement, ...]]] = []
 
     def complaint(self, program: str) -> str | None:
-        """Run a program; why it does not work, for the model to read.
+        """Run a program; return an error for the model to read, or None.
 
-        A program that has acted is never sent back, however it ended: what it did is the
-        answer, and its error tells of a world that the believer may not know.
+        A program that has acted is never sent back, even if it failed: its acts are the answer,
+        and its error may reveal a world that the believer does not know.
         """
         probe, simulator = self._probe, self._simulator
         branch = self._name if not self.done else f"{self._name} attempt {len(self.done) + 1}"
@@ -181,7 +181,7 @@ class _Trials:
         try:
             result = simulator.run(probe.agent, program, probe.timeout_ticks, probe.senses)
             if result.killed:
-                # Nothing of it was kept; once more, as it need not have been the program's fault.
+                # The world died and nothing was recorded. Try again: the program may be innocent.
                 result = simulator.run(probe.agent, program, probe.timeout_ticks, probe.senses)
             trial = Trial(
                 agent=probe.agent,

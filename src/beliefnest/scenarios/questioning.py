@@ -1,4 +1,4 @@
-"""Asking a model a question: in words, or with options to choose from."""
+"""Questions to a model, answered in words or by choosing an option."""
 
 import random
 import re
@@ -28,12 +28,12 @@ def ask_question(
     """Ask a model a question of a probe, from the belief of the probe.
 
     Args:
-        nest: The script played.
-        probe: Whose belief and template are used.
-        question: What is asked.
-        model: Who is asked.
-        seed: Drives the order of the options.
-        sampling: How the answer is drawn.
+        nest: The nest after the script.
+        probe: Probe with the belief path and template.
+        question: The question.
+        model: The model.
+        seed: Seed of the order of the options.
+        sampling: Sampling options of the answer.
 
     Raises:
         ModelError: The model failed.
@@ -65,14 +65,14 @@ def shuffled(question: Answers, seed: int) -> tuple[str, ...]:
 
 
 def parse_answer(text: str, options: Sequence[str]) -> tuple[str | None, str]:
-    """Answer and reason in what a model said.
+    """Parse the answer and the reason in a model's reply.
 
     Args:
-        text: All it said; the last line `Answer: ...` counts, and what follows `Reason:`.
-        options: What it could choose from, each also by its letter; empty: words.
+        text: Complete reply; the last line `Answer: ...` and the text after `Reason:` count.
+        options: Options, which a reply may also name by letter; empty: an answer in words.
 
     Returns:
-        The answer, None if there is none or it is no option; the reason, empty if there is none.
+        Answer, None if there is none or it is no option; reason, empty if there is none.
     """
     lines = _ANSWER.findall(text)
     told = _REASON.search(text)

@@ -1,4 +1,4 @@
-"""Reading scenario files: YAML, with the line of every key kept."""
+"""Reading of scenario files: YAML with the line number of every key."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -20,7 +20,7 @@ from beliefnest.scenarios.document import MAX_DEPTH, Document, KeyPath, YamlNode
 __all__ = ["parse_yaml", "read_yaml", "template_text", "templates_file"]
 
 _LONGEST = 4 * 2**20
-"""Bytes of a scenario file."""
+"""Greatest size of a scenario file in bytes."""
 _MAX_VALUES = 50_000
 _NO_KEY = "a key is no text; put it into quotes"
 _FLOW = ("while parsing a flow mapping", "while parsing a flow sequence")
@@ -35,10 +35,10 @@ _TOO_MUCH = (
 
 
 def read_yaml(path: Path) -> Document:
-    """Return the document in a YAML file, with the templates that were kept beside it, if any.
+    """Return the document in a YAML file, with the templates that a run kept beside it, if any.
 
     Raises:
-        ScenarioError: The file cannot be read, or is not one YAML mapping.
+        ScenarioError: The file cannot be read, or is not a single YAML mapping.
     """
     document = parse_yaml(_text(path), str(path))
     kept = templates_file(path)
@@ -47,20 +47,20 @@ def read_yaml(path: Path) -> Document:
 
 
 def templates_file(path: Path) -> Path:
-    """Where the templates that a scenario file names are kept beside it: name to text, as JSON."""
+    """Return the JSON file beside a kept scenario file that has its templates by name."""
     return path.with_suffix(".templates.json")
 
 
 def template_text(document: Document, path: KeyPath, name: str) -> str:
-    """Return the text of a template that a document names, and that is none of the built-in ones.
+    """Return the text of a template, not a built-in one, that a document names.
 
     Args:
-        document: Keeps it, or says in which folder it is.
-        path: Where it is named.
-        name: Its name there.
+        document: Document that keeps the template, or whose folder has it.
+        path: Place of the name in the document.
+        name: Name of the template.
 
     Raises:
-        ScenarioError: It cannot be read.
+        ScenarioError: The template cannot be read.
     """
     if name in document.templates:
         return document.templates[name]
@@ -72,14 +72,14 @@ def template_text(document: Document, path: KeyPath, name: str) -> str:
 
 
 def parse_yaml(text: str, source: str) -> Document:
-    """Return the document that a YAML text holds.
+    """Parse a document from a YAML text.
 
     Args:
         text: The text.
-        source: What messages call it.
+        source: Name of the source for messages.
 
     Raises:
-        ScenarioError: It is not one YAML mapping.
+        ScenarioError: The text is not a single YAML mapping.
     """
     try:
         content = _parser().load(text)
@@ -90,7 +90,7 @@ def parse_yaml(text: str, source: str) -> Document:
         hint = _IN_BRACES if error.context in _FLOW else ""
         raise ScenarioError(f"{source}{line}: broken YAML: {problem}{hint}") from None
     except (TypeError, ValueError) as error:
-        # The parser builds collections late, where it knows no line any more.
+        # The parser builds collections late, when it no longer knows their lines.
         said = " ".join(str(error).split())
         raise ScenarioError(f"{source}: broken YAML: a key or value cannot be: {said}") from None
     except YAMLError as error:
@@ -120,7 +120,7 @@ def _templates(path: Path) -> dict[str, str]:
 
 
 def _parser() -> YAML:
-    """Return a parser that gives up what is nested too deep or too much before it holds it."""
+    """Return a parser that refuses too deep or too large content before it builds it."""
     parser = YAML(typ="rt", pure=True)
     parser.Composer = _Composer
     parser.Constructor = _Constructor
@@ -128,7 +128,7 @@ def _parser() -> YAML:
 
 
 class _Composer(Composer):
-    """Counts what is written."""
+    """Composer that counts nodes and their depth."""
 
     _depth = 0
     _values = 0
@@ -148,7 +148,7 @@ class _Composer(Composer):
 
 
 class _Constructor(RoundTripConstructor):
-    """Names the line of a scalar that cannot be read, such as a number of 5,000 digits."""
+    """Constructor that names the line of an invalid scalar, such as a number of 5,000 digits."""
 
     def construct_object(self, node: Any, deep: bool = False) -> Any:
         try:
@@ -159,9 +159,9 @@ class _Constructor(RoundTripConstructor):
 
 
 class _Conversion:
-    """Turns the parser's values into nodes.
+    """Converter from the parser's values to nodes.
 
-    Aliases can make a small file stand for an endless or enormous content: both are refused.
+    Aliases can expand a small file to endless or enormous content; the converter refuses both.
     """
 
     def __init__(self, source: str) -> None:
@@ -202,7 +202,7 @@ def _line(lines: Mapping[object, list[int]], key: object, default: int) -> int:
 
 
 def _scalar(value: object) -> object:
-    """Return the plain value of a scalar that remembers how it was written."""
+    """Return the plain value of a scalar of the parser, without its notation."""
     for kind in (bool, int, float, str):
         if isinstance(value, kind):
             return kind(value)

@@ -1,6 +1,6 @@
-"""The form of what runs and studies keep as JSON, checked when it is read again.
+"""Forms of the JSON files of runs and studies, checked when the files are read again.
 
-Only keys that are read are named; a file of a later version may hold more.
+The forms list only keys that are read; files of later versions may have further keys.
 """
 
 from pathlib import Path
@@ -18,7 +18,7 @@ _Place = tuple[float, float, float]
 
 
 class UsageForm(msgspec.Struct):
-    """What answers took, as `usage_json` writes it."""
+    """Usage of answers, as `usage_json` writes it."""
 
     requests: int
     input_tokens: int
@@ -27,7 +27,7 @@ class UsageForm(msgspec.Struct):
 
 
 class ExpectationForm(msgspec.Struct):
-    """An expectation, as `expectation_json` writes it."""
+    """Outcome of an expectation, as `expectation_json` writes it."""
 
     path: str
     label: str
@@ -40,7 +40,7 @@ class _Reply(msgspec.Struct):
 
 
 class ProbeForm(msgspec.Struct):
-    """A probe, as `probe_json` writes it."""
+    """Outcome of a probe, as `probe_json` writes it."""
 
     label: str
     path: str
@@ -62,16 +62,16 @@ class ProbeForm(msgspec.Struct):
 
 
 def checked_form(content: object, form: type[Any], file: Path, remedy: str) -> None:
-    """Refuse the content of a file that has another form.
+    """Refuse the content of a file if it has another form.
 
     Args:
         content: Plain values.
-        form: What they have to be.
-        file: Where they stand.
+        form: Expected form.
+        file: File of the content, for the message.
         remedy: What to do, for the end of the message.
 
     Raises:
-        InputError: They are something else; the message names the key.
+        InputError: The content has another form; the message names the key.
     """
     try:
         msgspec.convert(content, form)
@@ -83,7 +83,7 @@ def read_json(file: Path, remedy: str) -> dict[str, Any]:
     """Return the JSON object in a file.
 
     Raises:
-        InputError: It cannot be read, or holds something else.
+        InputError: The file cannot be read, or holds something else.
     """
     try:
         return decode_json(read_regular(file), dict[str, Any])
@@ -94,10 +94,10 @@ def read_json(file: Path, remedy: str) -> dict[str, Any]:
 
 
 def read_lines(file: Path, form: type[T]) -> list[T]:
-    """Return what the lines of a JSONL file hold, without a last one that was cut off.
+    """Return the content of a JSONL file's lines, without an incomplete last line.
 
     Raises:
-        InputError: It cannot be read, or a line has another form.
+        InputError: The file cannot be read, or a line has another form.
     """
     try:
         *whole, last = read_regular(file).split(b"\n")
@@ -109,7 +109,7 @@ def read_lines(file: Path, form: type[T]) -> list[T]:
         whole.append(last)
     found = []
     for number, line in enumerate(whole, 1):
-        # A process that was ended while it wrote leaves a part of a line.
+        # A process that is killed while it writes leaves a part of a line.
         if not line.endswith(b"}"):
             continue
         try:

@@ -1,4 +1,4 @@
-"""What came of a scenario as plain values: the objects of `--json`, the rows of studies."""
+"""Outcomes as plain values, for `--json` and for the files of runs and studies."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -29,7 +29,7 @@ __all__ = ["expectation_json", "expected_json", "placed_json", "probe_json", "us
 
 
 def usage_json(usage: Usage) -> dict[str, object]:
-    """What answers took."""
+    """Return the usage of answers as plain values."""
     return {
         "requests": usage.requests,
         "input_tokens": usage.input_tokens,
@@ -39,7 +39,7 @@ def usage_json(usage: Usage) -> dict[str, object]:
 
 
 def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
-    """Return True if a simulator holds what was expected of it."""
+    """Return the outcome of an expectation as plain values."""
     return {
         **_expected_of(outcome.expectation),
         "ok": outcome.ok,
@@ -48,7 +48,7 @@ def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
 
 
 def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
-    """Return all that is expected of a probe, with the keys of a scenario file; None: nothing."""
+    """Return the expectations of a probe with the keys of scenario files; None: none."""
     found: dict[str, Any] = {}
     for each in expected:
         for key, value in _one(each).items():
@@ -58,7 +58,7 @@ def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
 
 
 def placed_json(placed: Placements) -> dict[str, object]:
-    """List what a body had to place otherwise than believed; positions are `x,y,z`."""
+    """Return what a body had to place otherwise than believed; positions are texts `x,y,z`."""
     return {
         key if isinstance(key, str) else ",".join(map(str, key)): [_plain(start), _plain(end)]
         for key, (start, end) in placed.items()
@@ -70,10 +70,10 @@ def _plain(place: Point | str | None) -> object:
 
 
 def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
-    """What came of a probe.
+    """Return the outcome of a probe as plain values.
 
     Args:
-        outcome: Of the probe.
+        outcome: Outcome of the probe.
         run_dir: Folder of the recorded run.
     """
     probe, trial = outcome.probe, outcome.trial

@@ -1,4 +1,4 @@
-"""The form of goals and rules of play, in scenario files and task files, and what goals mean."""
+"""Goals and rules of play: their form in scenario and task files, and their meaning."""
 
 from collections.abc import Collection
 from typing import Annotated, Literal
@@ -98,10 +98,10 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
 
 
 def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
-    """Return the goal that an entry describes.
+    """Return the goal of an entry.
 
     Raises:
-        InputError: A condition makes no sense.
+        InputError: A condition is not valid.
     """
     if entry.ticks is not None and not entry.reach:
         raise InputError("a goal has `ticks` and nothing to `reach` within them")
@@ -114,12 +114,12 @@ def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
 
 
 def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
-    """See that goals and rules of play make sense.
+    """Check goals and rules of play.
 
     Raises:
-        InputError: They do not.
-        PathError: A condition is about a belief that there is not.
-        UnknownNameError: A condition is about an item or a block that there is not.
+        InputError: They are not consistent.
+        PathError: The belief of a condition does not exist.
+        UnknownNameError: The item or block of a condition does not exist.
     """
     for name in sorted({*entry.players, *entry.goals, *entry.policies, *entry.talk}):
         if name not in agents:
@@ -130,16 +130,16 @@ def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
             check_condition(condition, agents, box)
     for name in sorted(agents):
         if entry.players and (name in entry.players) == (name in entry.policies):
-            raise InputError(f"{name} is to be one of `players` or to have a policy in `policies`")
+            raise InputError(f"{name} must be one of `players` or have a policy in `policies`")
 
 
 def check_condition(entry: ConditionEntry, agents: Collection[str], box: Box) -> None:
-    """See that a condition can come true: that what it names is there.
+    """Check that everything that a condition names exists.
 
     Raises:
-        InputError: It makes no sense, or is about a place outside the box.
-        PathError: It is about a belief that there is not.
-        UnknownNameError: It is about an item or a block that there is not.
+        InputError: The condition is not valid, or is about a place outside the box.
+        PathError: The belief does not exist.
+        UnknownNameError: The item or block does not exist.
     """
     _conditions_of(entry, agents)
     registry = Registry.load()
@@ -157,18 +157,18 @@ def check_condition(entry: ConditionEntry, agents: Collection[str], box: Box) ->
 
 
 def _conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[GoalCondition]:
-    """Return the conditions that an entry describes, one for each thing it names.
+    """Return the conditions of an entry, one for each fact and belief that it names.
 
     Raises:
-        InputError: It makes no sense.
-        PathError: It is about a belief that there is not.
+        InputError: The entry is not valid.
+        PathError: The belief does not exist.
     """
     path = parse_path(entry.path, agents)
     for name in (*entry.agents, *([] if entry.agent is None else [entry.agent])):
         if name not in agents:
             raise InputError(f"a condition is about {name!r}, who is no agent")
     if any(len(site) != len(entry.agents) for site in entry.sites):
-        raise InputError("a site of a condition has not as many levers as there are `agents`")
+        raise InputError("each site of a condition must have as many levers as there are `agents`")
     facts = _facts(entry)
     if not facts:
         plain = msgspec.to_builtins(entry)

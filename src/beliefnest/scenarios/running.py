@@ -1,4 +1,4 @@
-"""Running a scenario in an open nest: its script, its expectations, its probes."""
+"""Running of a scenario in an open nest: script, expectations, and probes."""
 
 import time
 
@@ -26,20 +26,20 @@ def run_scenario(
     on_progress: Progress,
     asking: Asking | None = None,
 ) -> Outcome:
-    """Play the script, hold the expectations against the nest, and run the probes.
+    """Play the script, check the expectations against the nest, and run the probes.
 
     Args:
-        nest: Opened with the scenario, nothing played yet.
-        scenario: Under the condition it is to be run under.
-        model: Who answers the prompts of the probes.
-        seed: What the nest was opened with, for the record.
+        nest: Nest opened with the scenario, before the script.
+        scenario: Scenario with its condition applied.
+        model: Model that answers the probes.
+        seed: Seed of the nest, for the record.
         started: `time.perf_counter()` before the nest was opened.
-        on_progress: Takes what is being done.
-        asking: How the model is asked; None: as `Asking()` says.
+        on_progress: Function that receives the progress.
+        asking: Options of requests to the model; None: `Asking()`.
 
     Raises:
         ProgramError: A program of the script failed.
-        InputError: A function that judges is not there; nothing was played.
+        InputError: A judging function does not exist; nothing was played.
         ModelError: The model gave no usable answer.
         BodyError: The Minecraft side died.
     """
@@ -47,7 +47,7 @@ def run_scenario(
     nest.play(on_progress)
     ticks = nest.tick
     steps = len(scenario.setting.script)
-    # Only then is there a wait to be told of.
+    # Report progress only if a model reads claims: only then is there a wait.
     compiling = "" if is_compiled(kernel.fold) else " (this very first time code is compiled)"
     on_progress(f"working out beliefs{compiling}", steps, steps)
     paths = _paths(scenario)
@@ -75,7 +75,7 @@ def run_scenario(
 
 
 def _paths(scenario: Scenario) -> list[str]:
-    """Return every belief that the scenario names, normalised, in order of depth."""
+    """Return the paths of all beliefs that the scenario names, normalized, shallow ones first."""
     agents = scenario.setting.snapshot.agents
     named = [each.path for each in scenario.expectations]
     named += [path for probe in scenario.probes for path in (probe.path, probe.acts_in)]
@@ -90,7 +90,7 @@ def _paths(scenario: Scenario) -> list[str]:
 
 
 def _reading(nest: Nest) -> Usage:
-    """What it took to have what was said read for claims."""
+    """Return the tokens and cost of extracting claims from utterances."""
     asked = [each for each in nest.prompts() if "claims_from" in each.detail]
     took = [Usage(a.requests, a.input_tokens, a.output_tokens, a.cost) for a in asked]
     return sum(took, Usage())

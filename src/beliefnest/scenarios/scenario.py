@@ -1,4 +1,4 @@
-"""A scenario: what happens in the real world, and what is asked and expected of beliefs."""
+"""Scenarios: events in the real world, and probes and expectations about beliefs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -21,7 +21,7 @@ __all__ = ["Scenario"]
 
 @dataclass(frozen=True)
 class Scenario(ScenarioContent):
-    """One scenario, under one of its conditions if it has any; loaded, or built in code."""
+    """Scenario under one of its conditions, if it has any; loaded, or built in code."""
 
     @classmethod
     def load(
@@ -35,11 +35,11 @@ class Scenario(ScenarioContent):
         Args:
             name_or_path: Name of a built-in scenario, or path of a YAML file.
             condition: Number of a condition, or its text; None: as written, no overrides.
-            parameters: Values of parameters that it declares; the others have their defaults.
+            parameters: Values of declared parameters; the others have their defaults.
 
         Raises:
-            UnknownNameError: There is no built-in scenario of that name, and no such file.
-            ScenarioError: The file is wrong, or has no such condition.
+            UnknownNameError: There is neither a built-in scenario nor a file of that name.
+            ScenarioError: The file is wrong, or the condition does not exist.
         """
         return cls._of(load_scenario(name_or_path, condition_number(condition), parameters))
 
@@ -48,7 +48,7 @@ class Scenario(ScenarioContent):
         """Return the scenario under each of its conditions; as written if it has none.
 
         Raises:
-            UnknownNameError: There is no built-in scenario of that name, and no such file.
+            UnknownNameError: There is neither a built-in scenario nor a file of that name.
             ScenarioError: The file is wrong.
         """
         return tuple(cls._of(content) for content in load_conditions(name_or_path))
@@ -60,7 +60,7 @@ class Scenario(ScenarioContent):
         condition: int | str | None = None,
         source: str = "scenario",
     ) -> Self:
-        """Return a scenario built in code: what a file holds, as dicts, lists and scalars.
+        """Build a scenario from a file's content as dicts, lists and scalars.
 
         Raises:
             ScenarioError: The content is wrong.
@@ -75,16 +75,16 @@ class Scenario(ScenarioContent):
         parameters: Mapping[str, object] | None = None,
         change: Change | None = None,
     ) -> Self:
-        """Return the scenario of a document that was read once and is varied many times.
+        """Return a variation of a document that was read once.
 
         Args:
-            document: As `read_document` gives it.
+            document: Document, as `read_document` returns it.
             condition: Number of a condition; None: as written, no overrides.
-            parameters: Values of parameters that it declares; the others have their defaults.
-            change: Makes another scene of it; None: none.
+            parameters: Values of declared parameters; the others have their defaults.
+            change: Function that changes the document to another scene; None: no change.
 
         Raises:
-            ScenarioError: Something is wrong with what comes of it.
+            ScenarioError: The variation is not a valid scenario.
         """
         return cls._of(scenario_in(document, condition, parameters, change))
 
@@ -92,16 +92,16 @@ class Scenario(ScenarioContent):
     def kept(
         cls, text: str, templates: Mapping[str, str], condition: int | None, source: str
     ) -> Self:
-        """Return a scenario as a run keeps it.
+        """Return the scenario that a run keeps.
 
         Args:
-            text: The text of its file.
-            templates: The templates that this names, by the name written there.
-            condition: Number of its condition; None: it was run as written.
-            source: What messages call it.
+            text: Text of the scenario file.
+            templates: Texts of the templates that the file names, by name.
+            condition: Number of the condition; None: it was run as written.
+            source: Name of the source for messages.
 
         Raises:
-            ScenarioError: This version does not understand it.
+            ScenarioError: This version cannot read the scenario.
         """
         return cls._of(kept_scenario(text, templates, condition, source))
 

@@ -1,4 +1,4 @@
-"""The JSON schema of scenario files, made of the types in `format`: for editors and for errors."""
+"""JSON schema of scenario files, generated from the types in `format`, for editors and errors."""
 
 from collections.abc import Iterable
 from inspect import cleandoc
@@ -16,15 +16,15 @@ _HOLE = {
     "pattern": r"^\$\{[^{}]*\}$",
 }
 _AS_WRITTEN = ("ParameterEntry",)
-"""Definitions in which `${...}` stands for nothing."""
+"""Definitions in which `${...}` is not replaced."""
 _DECLARING = ("parameters", "constraints", "conditions")
-"""Keys that are written as they are."""
+"""Keys whose values contain no `${...}` to replace."""
 
 
 def schema() -> dict[str, Any]:
-    """Return the JSON schema of a scenario file for editors, descriptions included.
+    """Return the JSON schema of a scenario file for editors, with descriptions.
 
-    Anything that is no text may also be `${...}`, which a parameter's value takes the place of.
+    Any value that is no text may also be a text `${...}`, which a parameter's value replaces.
     """
     published = _form()
     definitions = {
@@ -35,7 +35,7 @@ def schema() -> dict[str, Any]:
 
 
 def _with_holes(entry: dict[str, Any]) -> dict[str, Any]:
-    """Return an object's definition whose properties may be holes, and what is in them."""
+    """Return an object's definition in which properties and values inside them may be holes."""
     properties = {
         key: value if key in _DECLARING else _or_hole(value)
         for key, value in entry.get("properties", {}).items()
@@ -53,7 +53,7 @@ def _or_hole(value: dict[str, Any]) -> dict[str, Any]:
 
 
 def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
-    """Return a list or a mapping whose values may be holes; any other form as it is."""
+    """Return the form of a list or mapping whose values may be holes; other forms unchanged."""
     inner = dict(form)
     for key in ("items", "additionalProperties"):
         if isinstance(inner.get(key), dict):
@@ -64,11 +64,11 @@ def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
 
 
 def _form() -> dict[str, Any]:
-    """Return the JSON schema of a scenario file whose parameters have their values in place."""
+    """Return the JSON schema of a scenario file after parameters are filled in."""
     published: dict[str, Any] = msgspec.json.schema(ScenarioFile)
     definitions = published["$defs"]
     for entry in definitions.values():
-        # Python 3.13 cuts the indentation of docstrings, older ones leave it.
+        # Python 3.13 removes the indentation of docstrings; older versions keep it.
         entry["description"] = cleandoc(entry["description"])
     overriding = {
         key: dict(value)
@@ -88,7 +88,7 @@ def _form() -> dict[str, Any]:
 
 
 def _override_of(name: str, definitions: dict[str, Any]) -> dict[str, str]:
-    """Define the same object with nothing required, and refer to it."""
+    """Define a copy of an object's form without required keys, and return a reference to it."""
     override = f"{name}Override"
     definitions[override] = {**definitions[name], "title": override, "required": []}
     return {"$ref": f"#/$defs/{override}"}
@@ -99,17 +99,17 @@ def _mapping_of(values: dict[str, str]) -> dict[str, Any]:
 
 
 def allowed_keys(path: Iterable[str | int]) -> list[str]:
-    """The keys that the object at a place of a scenario file may have; none if it is no object."""
+    """Return the keys allowed at a place of a scenario file; none if there is no object."""
     return sorted({key for place in _places(path) for key in place.get("properties", {})})
 
 
 def allowed_values(path: Iterable[str | int]) -> list[str]:
-    """Return the words that may stand at a place of a scenario file, if they are listed."""
+    """Return the allowed words at a place of a scenario file, if they are enumerated."""
     return sorted({str(value) for place in _places(path) for value in place.get("enum", [])})
 
 
 def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:
-    """What the schema says of a place of a scenario file, one entry for each form it may have."""
+    """Return the schema's definitions for a place of a scenario file, one for each form."""
     definitions = _form()["$defs"]
     found = [definitions["ScenarioFile"]]
     for key in path:

@@ -1,4 +1,4 @@
-"""Pass rates of repeated runs, and how sure they are."""
+"""Pass rates of repeated runs and their confidence intervals."""
 
 import math
 
@@ -11,12 +11,12 @@ def wilson_interval(passed: float, total: int) -> tuple[float, float]:
     """Compute the 95 % interval of a pass rate.
 
     Args:
-        passed: Runs that passed.
-        total: All runs, at least 1.
+        passed: Number of runs that passed.
+        total: Number of all runs, at least 1.
 
     Returns:
-        Lowest and highest rate, in [0, 1]. Source: Wilson (1927), without continuity
-        correction; unlike the normal one it holds for few runs and for rates of 0 and 1.
+        Lowest and highest rate, in [0, 1]. Source: Wilson (1927), without continuity correction.
+        Unlike the normal approximation, it is valid for few runs and for rates of 0 and 1.
     """
     rate = passed / total
     spread = _Z95**2 / total

@@ -1,4 +1,4 @@
-"""Blocks and containers of a scenario: entries of a file to a grid of block states."""
+"""Blocks, containers and signs of a scenario: from a file's entries to a grid of block states."""
 
 from collections.abc import Iterable, Mapping
 
@@ -29,18 +29,18 @@ __all__ = [
 ]
 
 UNKNOWN = -1
-"""Block state id of what is not known."""
+"""Block state id of unknown blocks."""
 
 
 def box_between(first: Position, second: Position) -> Box:
-    """Return the box between two corners, whichever they are."""
+    """Return the box between two opposite corners in any order."""
     low = tuple(min(pair) for pair in zip(first, second, strict=True))
     high = tuple(max(pair) for pair in zip(first, second, strict=True))
     return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
 
 def build_box(document: Document, file: ScenarioFile) -> Box:
-    """Return the box of a scenario; ScenarioError if it is too large."""
+    """Return the box of a scenario; raise ScenarioError if it is too large."""
     box = box_between(*file.box)
     if fault := box_fault(box):
         raise document.fault(("box",), fault)
@@ -48,7 +48,7 @@ def build_box(document: Document, file: ScenarioFile) -> Box:
 
 
 def build_grid(document: Document, file: ScenarioFile, box: Box, registry: Registry) -> BlockGrid:
-    """Block states of the box: air, then the entries in order, then the containers' blocks."""
+    """Return the block states of the box: air, then the entries in order, then containers."""
     grid: BlockGrid = np.full(box.shape, registry.air, dtype=np.int32)
     for number, entry in enumerate(file.blocks):
         path = ("blocks", number)
@@ -81,7 +81,7 @@ def build_signs(
     box: Box,
     registry: Registry,
 ) -> dict[Position, str]:
-    """What is written on signs; those on which nothing is are left out."""
+    """Return the texts of signs by position; signs without a text are left out."""
     places: set[Position] = set()
     containers = {container.at for container in file.containers}
     texts = {}
@@ -103,7 +103,7 @@ def build_signs(
 def build_sign_claims(
     document: Document, file: ScenarioFile, texts: Mapping[Position, str], box: Box
 ) -> dict[Position, PlainClaims]:
-    """What the texts of signs claim, as plain data."""
+    """Return the claims of signs by position, as plain data."""
     found: dict[Position, PlainClaims] = {}
     for number, entry in enumerate(file.signs):
         for index, told in enumerate(entry.claims):
@@ -112,7 +112,7 @@ def build_sign_claims(
                 (claim,) = claims_from_plain((msgspec.to_builtins(told),))
                 claim.check(box, file.agents)
             if entry.at not in texts:
-                raise document.fault(path, "nothing is written that could claim anything; add text")
+                raise document.fault(path, "is for signs with a text; add `text`")
             found[entry.at] = (*found.get(entry.at, ()), claim.plain())
     return found
 
@@ -124,7 +124,7 @@ def build_containers(
     box: Box,
     registry: Registry,
 ) -> dict[Position, Items]:
-    """What every container block of the grid holds; those nobody describes are empty."""
+    """Return the contents of every container in the grid; containers without entry are empty."""
     found: dict[Position, Items] = {}
     for number, entry in enumerate(entries):
         path = ("containers", number)
@@ -150,7 +150,7 @@ def check_items(
     slots: int,
     holder: str,
 ) -> None:
-    """Refuse unknown items, counts below 1, and more than fit into the slots of a holder."""
+    """Refuse unknown items, counts below 1, and more items than the slots of a holder can hold."""
     for name, count in items.items():
         with document.naming((*path, name)):
             registry.item_stack(name)
@@ -171,7 +171,7 @@ def check_inside(document: Document, path: KeyPath, position: Position, box: Box
 def entry_mask(
     document: Document, path: KeyPath, entry: BlockEntry, box: Box
 ) -> npt.NDArray[np.bool_]:
-    """Which positions of the box an entry is about: bool of shape `box.shape`."""
+    """Return a mask of the positions of an entry: bool of shape `box.shape`."""
     given = [key for key in ("at", "fill", "walls") if getattr(entry, key) is not None]
     if len(given) != 1:
         found = " and ".join(given) or "none of them"

@@ -1,4 +1,4 @@
-"""What one program of a probe did, as it is judged."""
+"""Trial: the run of one program of a probe, as it is judged."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,16 +12,17 @@ __all__ = ["Trial"]
 
 @dataclass(frozen=True)
 class Trial:
-    """A program that was run, and what it did.
+    """Run of a program.
 
     Attributes:
-        agent: Who ran it.
-        program: Its text.
-        branch: The branch that it ran on.
-        result: What became of it; what its agent asked for and did is in there.
-        state: The simulator it ran in, at its end.
-        belief: Given a belief path, its state at the program's end; of use while it is judged.
-        opened: The containers that the agent opened, in order.
+        agent: Name of the agent that ran it.
+        program: Text of the program.
+        branch: Branch on which it ran.
+        result: Result of the program, with the calls and acts of its agent.
+        state: State of its simulator at the end.
+        belief: Function from a belief path to the state at the end of the program; valid only
+            while the trial is judged.
+        opened: Containers that the agent opened, in order.
     """
 
     agent: str
@@ -34,20 +35,20 @@ class Trial:
 
     @property
     def arrived(self) -> Point | None:
-        """Where the agent stood in the end; None if it was not there."""
+        """Return the agent's place at the end; None if it was not there."""
         return self.state.agents[self.agent].position
 
     @property
     def used(self) -> tuple[Point, ...]:
-        """What the program asked to use, in order."""
+        """Return the places that the program asked to use, in order."""
         return tuple(a.place for a in self.result.aims if a.uses and a.place is not None)
 
     @property
     def walked(self) -> tuple[Point, ...]:
-        """Where the program asked to walk, in order."""
+        """Return the goals of the walks that the program asked for, in order."""
         return tuple(a.place for a in self.result.aims if not a.uses and a.place is not None)
 
     @property
     def intended(self) -> Point | None:
-        """The first thing it asked to use, else the last place it asked to walk to, in blocks."""
+        """Return the first place it asked to use, else the last goal of a walk, in blocks."""
         return self.used[0] if self.used else self.walked[-1] if self.walked else None

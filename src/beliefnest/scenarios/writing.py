@@ -1,4 +1,4 @@
-"""Places as scenario files: what is there, written so that people can read and change it."""
+"""Scenario files of captured places, written so that people can read and change them."""
 
 from collections.abc import Iterator, Mapping
 from io import StringIO
@@ -24,15 +24,17 @@ _FULL = 20.0
 
 
 def scenario_text(name: str, description: str, place: Snapshot) -> str:
-    """Return a scenario file of a place; where nobody stands, a `visitor` does, who has nothing.
+    """Return the text of a scenario file for a place.
+
+    A place without agents gets an agent `visitor` without items.
 
     Args:
         name: Short name of the scenario.
-        description: What it is about.
-        place: What is there; all of its blocks are known.
+        description: Description of the scenario.
+        place: Snapshot of the place, with all blocks known.
 
     Raises:
-        InputError: Nobody can stand there, or the place cannot be said in a scenario.
+        InputError: An agent cannot stand there, or a scenario cannot express the place.
     """
     registry = Registry.load()
     agents = place.agents or {_VISITOR: AgentState(_standing(place, registry))}
@@ -51,9 +53,9 @@ def scenario_text(name: str, description: str, place: Snapshot) -> str:
 
 
 def cuboids(grid: BlockGrid, skipped: npt.NDArray[np.bool_]) -> Iterator[tuple[int, Box]]:
-    """Cuboids of one block state each that are all cells of a grid which are not skipped.
+    """Yield cuboids of one block state each, which together are all cells that are not skipped.
 
-    Each is as long as can be along z, then along x, then along y; indices begin at 0.
+    Each cuboid extends greedily along z, then along x, then along y. Indices begin at 0.
     """
     open_cells = ~skipped
     for i, j, k in np.argwhere(open_cells).tolist():
@@ -113,15 +115,15 @@ def _agent(state: AgentState) -> Any:
 
 
 def _standing(place: Snapshot, registry: Registry) -> tuple[float, float, float]:
-    """Return the lowest place to stand, and of those the nearest to the middle."""
+    """Return the lowest place to stand; of several, the nearest to the middle."""
     full = {s: _fills(registry, s) for s in np.unique(place.blocks).tolist()}
     empty = np.isin(place.blocks, [s for s in full if not registry.boxes(s)])
     floor = np.isin(place.blocks, [s for s, fills in full.items() if fills])
     free = floor[:, :-2] & empty[:, 1:-1] & empty[:, 2:]
     if free.size == 0 or not free.any():
         raise InputError(
-            "nobody stands in the box, and nobody could: let it hold a floor with two free blocks "
-            "above it"
+            "there is no agent in the box, and no place for one; choose a box that contains a "
+            "floor with two free blocks above it"
         )
     middle = [side / 2 for side in place.box.shape]
     i, j, k = min(
@@ -164,11 +166,11 @@ def _yaml(content: Mapping[str, Any]) -> str:
 
 
 def _check(text: str, place: Snapshot) -> None:
-    """That the text says what is there: it is read as any scenario is."""
+    """Load the text as a scenario, and check that it describes the same place."""
     try:
         read = kept_scenario(text, {}, None, "what was captured").setting.snapshot
     except ScenarioError as error:
-        raise InputError(f"the place cannot be said in a scenario: {error}") from error
+        raise InputError(f"a scenario cannot express the place: {error}") from error
     same = (read.blocks == place.blocks).all() and read.containers == place.containers
     if not same or read.signs != place.signs:
         raise AssertionError("a scenario says something else than what was captured")

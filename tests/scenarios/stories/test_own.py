@@ -101,7 +101,7 @@ def test_the_command_lists_what_is_answered_otherwise(file, capsys) -> None:
         ({"questions": [{"thing": "pear", "answer": "barn"}]}, "the answer 'barn' is none"),
         ({"questions": [{"door": "den", "answer": "ajar"}]}, "the answer 'ajar' is none"),
         ({"questions": [{"door": "hall", "answer": "open"}]}, "door of the hall"),
-        ({"questions": [{"thing": "pear", "door": "den", "answer": "open"}]}, "has to be one of"),
+        ({"questions": [{"thing": "pear", "door": "den", "answer": "open"}]}, "must have one of"),
         ({"questions": [{"believers": ["Zoe"], "thing": "pear", "answer": None}]}, "Zoe is not"),
     ],
 )
@@ -161,7 +161,7 @@ def test_what_is_written_on_a_sign_is_known_to_who_saw_it(tmp_path, world):
         ({"questions": [{"sign": "attic", "answer": "x"}]}, "nobody writes on a sign of the attic"),
         (
             {"questions": [{"sign": "den", "answer": "x"}]},
-            "'x' is none; there are '', 'no\\\\npears', 'pears'",
+            "'x' is no possible answer; answers are '', 'no\\\\npears', 'pears'",
         ),
         (
             {"events": [*SIGNS["events"][:2], f'Anne wrote "{"x" * 46}" on the sign of the den.']},

@@ -1,7 +1,6 @@
-"""Text stories of the ToMi and Hi-ToM kind: read, laid out, played, and asked about.
+"""Text stories of the ToMi and Hi-ToM kind: parse them, play them, and answer questions.
 
-What is asked is read from the nest after the story was played; nothing is concluded from
-the text.
+Answers come from the nest after the story has been played, never from the text.
 """
 
 from beliefnest.scenarios.stories.plan import FloorPlan, lay_out

@@ -1,4 +1,4 @@
-"""What the acts of a story are in a world: calls of the scripted one, programs for bots."""
+"""Acts of a story in a world: calls of the scripted world, or programs for bots."""
 
 import json
 from collections.abc import Sequence
@@ -41,7 +41,7 @@ def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
 
 
 def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
-    """Return the programs that bots act something out with, by agent; empty: nothing is done."""
+    """Return the programs with which bots perform an act, by agent; empty: no bot acts."""
     match act:
         case Come(agents, room):
             return {agent: _walk(plan.stands[room, agent], act.shuts) for agent in agents}
@@ -54,7 +54,7 @@ def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
 
 
 def _program(act: Move | UseDoor | Write | Look | Tell, plan: FloorPlan) -> str:
-    """What one agent does; at the end it is at its stand, in nobody's way."""
+    """Return the program of one agent, which ends at the agent's stand, out of the others' way."""
     match act:
         case Move(agent, thing, source, target):
             items = f"{{{plan.items[thing]}: 1}}"

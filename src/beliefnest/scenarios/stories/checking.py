@@ -1,8 +1,8 @@
-"""Whether an answer that is expected contradicts the very story that it is about.
+"""Check of expected answers against their story, to find errors in data files.
 
-Held against the nest's answers, and sharing nothing with them but what really happens: in a
-story in which nobody tells anything, some agents know together where a thing is, and know that
-of each other, whenever all of them and the thing are in one room. Nothing else tells them.
+The check is independent of the nest, and uses only real events. In a story without testimony,
+agents learn the place of a thing only when they are in a room with it. If all believers of a
+question are in that room together, each also knows that the others know the place.
 """
 
 from collections.abc import Iterator
@@ -14,12 +14,12 @@ __all__ = ["data_fault"]
 
 
 def data_fault(story: Story, question: Question, expected: str | None) -> str | None:
-    """What in the story an expected answer contradicts; None: nothing, or it cannot be told.
+    """Return how an expected answer contradicts the story; None: no contradiction is found.
 
     Args:
         story: The story.
-        question: What is asked.
-        expected: Name of the container that is said to be the answer.
+        question: The question.
+        expected: Name of the container in the expected answer.
     """
     if story.tells or question.at_beginning or question.thing not in story.things:
         return None
@@ -45,7 +45,7 @@ def data_fault(story: Story, question: Question, expected: str | None) -> str | 
 
 
 def _states(story: Story, thing: str) -> Iterator[tuple[int, dict[str, str | None], Place]]:
-    """After every line, its index, the room each agent is in, and where the thing is."""
+    """Yield after every line: its index, the room of each agent, and the place of the thing."""
     rooms: dict[str, str | None] = {}
     place = story.things[thing]
     for number, act in enumerate(story.acts):

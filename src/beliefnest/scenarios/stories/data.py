@@ -1,4 +1,4 @@
-"""Files of stories with questions and the answers expected."""
+"""Files of stories with questions and expected answers."""
 
 import re
 from collections.abc import Collection, Iterator
@@ -18,7 +18,7 @@ __all__ = ["Item", "StoryItems", "read_items"]
 
 
 class _Row(msgspec.Struct):
-    """A row as Hi-ToM has them; its other columns play no part."""
+    """Row of a Hi-ToM file; other columns are ignored."""
 
     story: str
     question: str
@@ -27,7 +27,7 @@ class _Row(msgspec.Struct):
 
 
 class _Published(msgspec.Struct):
-    """The published file: the rows, under a key."""
+    """Published file: an object with the rows under a key."""
 
     data: list[_Row]
 
@@ -37,12 +37,12 @@ _EVERYTHING = Knowing()
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A question and the answer that is expected.
+    """Question and its expected answer.
 
     Attributes:
-        row: Its row in the file, from 1.
-        question: What is asked.
-        expected: Name of a container; None: the thing is held to be in none.
+        row: Row in the file, from 1.
+        question: The question.
+        expected: Name of a container; None: the thing is believed to be in no container.
     """
 
     row: int
@@ -52,12 +52,12 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class StoryItems:
-    """A story and all that is asked about it.
+    """Story and all its questions.
 
     Attributes:
         story: The story.
-        items: What is asked.
-        knowing: How its agents get to know what they do not see happen.
+        items: Questions and expected answers.
+        knowing: Rules by which agents learn of events that they do not see.
     """
 
     story: Story
@@ -66,16 +66,16 @@ class StoryItems:
 
 
 def read_items(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItems, ...]:
-    """Return the stories of a file as Hi-ToM has it; rows of the same story are put together.
+    """Return the stories of a Hi-ToM file; rows of the same story are grouped.
 
     Args:
-        path: A JSON file: an array of rows with `story`, `question`, `answer` and, if it likes,
+        path: JSON file: an array of rows with `story`, `question`, `answer` and optionally
             `question_order`; or an object with that array under `data`.
-        rows: Numbers of the rows to take, from 1; None: all.
+        rows: Numbers of the rows to read, from 1; None: all.
 
     Raises:
-        InputError: There is no such file or row, it is of another form, or a story or a
-            question cannot be understood; the message names the row, and the line of the story.
+        InputError: The file or a row does not exist, the file has another form, or a story or
+            question cannot be parsed. The message names the row and the line of the story.
     """
     try:
         text = read_regular(path)
@@ -111,7 +111,7 @@ _NUMBERED = re.compile(r"\s*\d+\W*\s")
 
 
 def _told_in(text: str) -> str:
-    """The story alone, without what a prompt says before line 1 and without ends of chapters."""
+    """Return the story without the prompt before line 1 and without ends of chapters."""
     lines = text.splitlines()
     first = next((n for n, line in enumerate(lines) if _NUMBERED.match(line)), 0)
     return "\n".join(line for line in lines[first:] if line.strip(" *"))

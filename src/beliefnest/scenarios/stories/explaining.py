@@ -1,4 +1,4 @@
-"""Why the nest answers as it does, as lines of text."""
+"""Explanations of the nest's answers, as lines of text."""
 
 from beliefnest.belief.entries import Basis
 from beliefnest.scenarios.stories.playing import PlayedStory, StoryAnswer
@@ -12,13 +12,13 @@ __all__ = ["explain_answer"]
 def explain_answer(
     played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None
 ) -> tuple[str, ...]:
-    """What each simulator on the way to the belief asked for holds, since when, and why.
+    """Explain the state of each simulator on the path of a question: since when, and why.
 
     Args:
-        played: The story, played.
-        question: What was asked.
-        answer: What the nest said.
-        expected: Name of the container expected; None: none.
+        played: The story after it was played.
+        question: The question.
+        answer: Answer of the nest.
+        expected: Name of the expected container; None: no container.
     """
     if question.door is not None or question.sign is not None:
         return _block(played, question, answer, expected)
@@ -39,7 +39,7 @@ def explain_answer(
 def _block(
     played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None
 ) -> tuple[str, ...]:
-    """Of a door or a sign."""
+    """Explain an answer about a door or a sign."""
     if question.door is not None:
         what, place = f"the door of the {question.door} is", played.plan.doors[question.door]
         found, wanted = (text or "unknown" for text in (answer.text, expected))
@@ -58,7 +58,7 @@ def _saying(text: str | None) -> str:
 def _perceptions(
     played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None
 ) -> list[str]:
-    """Return the nest's own account of the containers answered and expected."""
+    """Return the nest's explanations of the answered and the expected container."""
     room = played.story.things[question.thing].room
     wanted = None if expected is None else Place(room, expected)
     found = (answer.place, wanted)

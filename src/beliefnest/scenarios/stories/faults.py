@@ -1,4 +1,4 @@
-"""What is wrong with the form of a story, in the words of the format."""
+"""Messages about errors in the form of a story, in the words of the format."""
 
 import difflib
 import re
@@ -15,12 +15,12 @@ _UNKNOWN = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL
 
 
 def form_fault(fault: msgspec.DecodeError, story: type[Any], event: Any) -> str:
-    """Where a story is not of the form it should have, and what would be.
+    """Return a message that says where a story has a wrong form, and what is allowed there.
 
     Args:
-        fault: What reading it raised.
-        story: The type of a story.
-        event: The union of the types of events.
+        fault: Error of the decoder.
+        story: Type of a story.
+        event: Union of the types of events.
     """
     match = _FAULT.fullmatch(str(fault))
     if match is None:
@@ -40,7 +40,7 @@ def form_fault(fault: msgspec.DecodeError, story: type[Any], event: Any) -> str:
 
 
 def _keys(story: type[Any], path: str) -> Sequence[str]:
-    """Return the keys of a story; none where it is another part."""
+    """Return the keys of a story if the path is the story itself, else none."""
     return [] if path else [field.name for field in msgspec.structs.fields(story)]
 
 

@@ -1,8 +1,8 @@
-"""The sentences of text stories of the ToMi and Hi-ToM kind.
+"""Sentences of text stories of the ToMi and Hi-ToM kind.
 
-Sources: Le et al. 2019 (ToMi), He et al. 2023 (Hi-ToM). A line may begin with its number;
-a name is one word, or several joined by `_` or blanks. A line of nothing but stars ends a
-chapter and says nothing.
+Sources: Le et al. 2019 (ToMi), He et al. 2023 (Hi-ToM). A line may begin with its number.
+A name is one word, or several words joined by `_` or blanks. A line of stars ends a chapter
+and has no other meaning.
 """
 
 import re
@@ -31,7 +31,7 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class Entered:
-    """Agents come into a room, together."""
+    """Agents enter a room together."""
 
     agents: tuple[str, ...]
     room: str
@@ -39,7 +39,7 @@ class Entered:
 
 @dataclass(frozen=True, slots=True)
 class Exited:
-    """Agents leave a room, together."""
+    """Agents leave a room together."""
 
     agents: tuple[str, ...]
     room: str
@@ -55,7 +55,7 @@ class Stayed:
 
 @dataclass(frozen=True, slots=True)
 class Located:
-    """A thing is in a container, or a container in a room: the names tell which."""
+    """A thing is in a container, or a container is in a room, depending on the names."""
 
     thing: str
     place: str
@@ -81,7 +81,7 @@ class DoorUsed:
 
 @dataclass(frozen=True, slots=True)
 class Wrote:
-    """An agent in a room writes on its sign, over what is there."""
+    """An agent in a room writes on its sign and replaces the text there."""
 
     agent: str
     room: str
@@ -98,14 +98,14 @@ class Opened:
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """An agent says that a thing is in a container, or that it is not; true or not.
+    """An agent says that a thing is in a container, or that it is not there.
 
     Attributes:
-        agent: Who says it.
-        hearer: To whom it is whispered; None: it is said aloud.
-        thing: What it is about.
-        container: Where that is said to be.
-        is_there: Whether it is said to be there, and not to be elsewhere.
+        agent: Speaker.
+        hearer: Agent to whom the speaker whispers; None: the speaker says it aloud.
+        thing: The thing.
+        container: The container.
+        is_there: True if the speaker says that the thing is there, False if that it is not.
     """
 
     agent: str
@@ -117,7 +117,7 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """Something that changes neither the world nor what anyone knows of it."""
+    """A remark that changes neither the world nor any belief about it."""
 
 
 Sentence = Entered | Exited | Stayed | Located | Moved | DoorUsed | Wrote | Opened | Told | Remark
@@ -125,13 +125,13 @@ Sentence = Entered | Exited | Stayed | Located | Moved | DoorUsed | Wrote | Open
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A sentence and where it stands.
+    """Sentence and its place in the story.
 
     Attributes:
-        number: Line of the story's text, or event of its list, from 1.
-        text: The line as it is written.
-        sentence: What it says.
-        unit: What is counted: `line` or `event`.
+        number: Number of the line in the text, or of the event in the list, from 1.
+        text: The line as written.
+        sentence: Parsed sentence.
+        unit: What `number` counts: `line` or `event`.
     """
 
     number: int
@@ -141,7 +141,7 @@ class Line:
 
     @property
     def place(self) -> str:
-        """Where it stands, as `line 3`."""
+        """Return the place of the sentence, such as `line 3`."""
         return f"{self.unit} {self.number}"
 
     def fault(self, what: str) -> InputError:
@@ -234,7 +234,7 @@ def parse_lines(text: str) -> tuple[Line, ...]:
     """Return the sentences of a story, one for every line that is not blank.
 
     Raises:
-        InputError: A line is none of the sentences known; the message gives its number.
+        InputError: A line is no known sentence; the message gives its number.
     """
     return tuple(
         parse_line(number, line)
@@ -244,17 +244,17 @@ def parse_lines(text: str) -> tuple[Line, ...]:
 
 
 def parse_line(number: int, text: str, unit: str = "line") -> Line:
-    """Return one sentence of a story, the line or event of that number.
+    """Parse one sentence of a story: the line or event with a number.
 
     Raises:
-        InputError: It is none of the sentences known.
+        InputError: The text is no known sentence.
     """
     line = text.strip()
     return Line(number, line, _parse(line, f"{unit} {number}"), unit)
 
 
 def _parse(line: str, place: str) -> Sentence:
-    # What is written on a sign stays as it is.
+    # Keep the text of a sign as it is.
     spaced = _SPACE.sub(lambda found: found["text"] or " ", _NUMBER.sub("", line, count=1))
     words = spaced.strip().removesuffix(".")
     for form, make in _KINDS:

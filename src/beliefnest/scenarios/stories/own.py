@@ -1,4 +1,4 @@
-"""One's own stories: JSON lines of events and questions (docs/batteries.md has the format)."""
+"""User-written stories: JSON lines of events and questions (format: docs/batteries.md)."""
 
 from collections.abc import Collection
 from pathlib import Path
@@ -25,7 +25,7 @@ _Agents = Annotated[list[_Agent], msgspec.Meta(min_length=1)]
 
 
 class _Event(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="event"):
-    """Something that happens; which it is stands under `event`."""
+    """Event of a story; the key `event` names its kind."""
 
 
 class _Enter(_Event, frozen=True, tag="enter"):
@@ -117,7 +117,7 @@ _Happening = _Enter | _Leave | _Is | _Move | _Open | _Door | _Write | _Tell | _W
 
 
 class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A question: as a sentence, or as `believers` and `thing`, `door` or `sign`."""
+    """Question: a sentence, or `believers` with `thing`, `door` or `sign`."""
 
     answer: str | None
     question: str | None = None
@@ -129,7 +129,7 @@ class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class _OwnStory(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A line of the file."""
+    """Line of the file: one story."""
 
     events: list[str | _Happening]
     questions: list[_Asked]
@@ -140,15 +140,15 @@ class _OwnStory(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_own(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItems, ...]:
-    """Return the stories of a file of JSON lines, one story a line.
+    """Return the stories of a JSONL file, one story per line.
 
     Args:
         path: The file.
-        rows: Numbers of the lines to take, from 1; None: all.
+        rows: Numbers of the lines to read, from 1; None: all.
 
     Raises:
-        InputError: There is no such file or line, it is of another form, or a story or a
-            question cannot be understood; the message names the line, and the event.
+        InputError: The file or a line does not exist, a line has another form, or a story or
+            question cannot be parsed. The message names the line and the event.
     """
     try:
         lines = read_regular(path).splitlines()
@@ -193,7 +193,7 @@ def _question(asked: _Asked) -> Question:
     parts = [part for part in asks if part is not None]
     if len(parts) != 1 or (asked.question is not None and asked.believers):
         raise InputError(
-            f"the question {parts!r} has to be one of: 'question', a sentence; 'believers' and "
+            f"the question {parts!r} must have one of: 'question', a sentence; 'believers' and "
             "'thing'; 'believers' and 'door' or 'sign', the name of its room"
         )
     if asked.question is not None:
@@ -218,6 +218,6 @@ def _check_answer(story: Story, item: Item) -> None:
         there = {act.text for act in story.acts if isinstance(act, Write)} | {""}
     if item.expected not in there:
         raise InputError(
-            f"{item.question.text!r}: the answer {item.expected!r} is none; there are "
+            f"{item.question.text!r}: {item.expected!r} is no possible answer; answers are "
             f"{', '.join(map(repr, sorted(there)))}, and null for unknown"
         )

@@ -1,4 +1,4 @@
-"""The floor plan of a story: rooms along a corridor, without sight from one to another.
+"""Floor plan of a story: rooms along a corridor, with no line of sight between them.
 
 Seen from above, with two rooms and two cells; `B` is a barrel, `a` a stand, `.` floor:
 
@@ -14,13 +14,14 @@ Seen from above, with two rooms and two cells; `B` is a barrel, `a` a stand, `.`
     #....#....###
     ####a####a###     cells, one for each agent
 
-A way in is `_BEND` blocks wide between its two openings, so that no ray passes both: with
-one block between the corners it would have to leave the first opening by its wall. So
-nobody in the corridor or in a room sees into any other room or cell. The walls are as high
-as the box, and eyes (1.62) are above barrels (1): within a room all is seen.
+An entrance has two openings that are offset by `_BEND` blocks, so that no ray passes both:
+with one block between the corners, a ray would have to pass through the wall of the first
+opening. Agents in the corridor or in a room therefore see into no other room or cell. The
+walls are as high as the box, and eyes (1.62) are above barrels (1), so that agents in a room
+see all of it.
 
-In a story in which somebody tells something, who is in no room is in a further room without
-barrels, the hall, in place of a cell: there all see who comes, and hear each other.
+In a story with testimony, agents that are in no room are in the hall instead of their cells.
+The hall is a further room without barrels; agents there see and hear each other.
 """
 
 from collections.abc import Mapping, Sequence
@@ -37,7 +38,7 @@ from beliefnest.world.values import AgentState, Box, Items, Point, Position
 __all__ = ["WALL", "FloorPlan", "feet", "lay_out"]
 
 WALL = "stone"
-"""The block of walls and floors; nothing else is made of it."""
+"""Block of walls and floors, which nothing else is made of."""
 
 _CONTAINER = "barrel"
 _DOOR = "oak_door"
@@ -51,17 +52,17 @@ _BEND = 3
 
 @dataclass(frozen=True, slots=True)
 class FloorPlan:
-    """Where everything of a story is, in blocks.
+    """Positions of everything in a story, in blocks.
 
     Attributes:
         snapshot: The world before the story.
-        places: Position of each container's block.
-        apart: Where each agent is while it is in no room, the block of its feet: a cell of its
-            own, or its stand in the hall.
-        stands: Where each agent stands in each room, by (room, agent), block of the feet.
-        doors: Where the door of each room that has one is, its lower half.
-        items: The Minecraft item that stands for each thing; no two share one.
-        signs: Where the sign of each room that has one is.
+        places: Position of each container.
+        apart: Block of each agent's feet while it is in no room: in its own cell, or at its
+            stand in the hall.
+        stands: Block of an agent's feet in a room, by (room, agent).
+        doors: Position of the lower half of each door, by room.
+        items: Minecraft item of each thing; different things have different items.
+        signs: Position of each sign, by room.
     """
 
     snapshot: Snapshot
@@ -73,12 +74,12 @@ class FloorPlan:
     signs: Mapping[str, Position]
 
     def place_at(self, position: Position) -> Place:
-        """Return the container at a position of one."""
+        """Return the container at a position; there must be one."""
         return next(place for place, where in self.places.items() if where == position)
 
 
 def lay_out(story: Story) -> FloorPlan:
-    """Return a plan with all rooms, containers and agents of a story; everyone is in no room.
+    """Return a plan with all rooms, containers and agents of a story; no agent is in a room.
 
     Raises:
         InputError: The story has more things than Minecraft has items.
@@ -115,7 +116,7 @@ def lay_out(story: Story) -> FloorPlan:
             grid[x, y + height, z] = registry.state_id(
                 f"{_DOOR}[facing=north,half={half},open=true]"
             )
-    # Above a container if there is one: who stands in the room sees both.
+    # Put the sign above a container if there is one: agents in the room see both.
     signs = {
         room: (start, 2 if any(place.room == room for place in story.places) else 1, _BARRELS)
         for room, (start, _) in zip(story.rooms, spans, strict=False)
@@ -135,7 +136,7 @@ def lay_out(story: Story) -> FloorPlan:
 
 
 def feet(block: Position) -> Point:
-    """Middle of the feet of one who stands in the middle of a block."""
+    """Return the feet position of an agent in the middle of a block."""
     x, y, z = block
     return (x + 0.5, float(y), z + 0.5)
 
@@ -146,13 +147,13 @@ def _carved(
     cells: Mapping[str, Position],
     registry: Registry,
 ) -> BlockGrid:
-    """Walls and floors, with all rooms, ways and cells cut out.
+    """Return walls and floors with all rooms, entrances and cells cut out.
 
     Args:
-        box: The whole.
+        box: Box of the whole plan.
         spans: First x and width of each room.
-        cells: Each agent's cell.
-        registry: Of the blocks.
+        cells: Cell of each agent.
+        registry: Registry of block states.
 
     Returns:
         Block state ids, shape `box.shape`.
@@ -173,10 +174,10 @@ def _carved(
 
 
 def item_names(things: Sequence[str], registry: Registry) -> dict[str, str]:
-    """Return a Minecraft item of its own for every thing.
+    """Assign a different Minecraft item to every thing.
 
-    A thing that is an item by name stands for itself, the others take the remaining
-    items in the registry's order.
+    A thing with the name of an item gets that item. The others get the remaining items in the
+    registry's order.
 
     Raises:
         InputError: There are not enough items.

@@ -1,4 +1,4 @@
-"""A story played in a world, and the nest that follows it."""
+"""Playing of stories in a world, with a nest that tracks the beliefs."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,28 +23,28 @@ from beliefnest.scenarios.stories.story import (
     Story,
 )
 
-if TYPE_CHECKING:  # Models take long to import, and few stories are read by one.
+if TYPE_CHECKING:  # Importing models takes long, and few stories need one.
     from beliefnest.llm.hearsay import ClaimsFromModel
 
 __all__ = ["Knowing", "PlayedStory", "StoryAnswer"]
 
 _TIMEOUT_TICKS = 2400
 _TICKS_PER_BLOCK = 8
-"""More than walking takes."""
+"""Ticks allowed per block of a walk; more than walking takes."""
 
 
 @dataclass(frozen=True, slots=True)
 class StoryAnswer:
-    """Where a simulator of the nest holds a thing.
+    """Answer of a simulator to a question about a thing, a door or a sign.
 
     Attributes:
-        path: The simulator.
-        tick: The tick it was asked at.
-        thing: What was asked for.
-        place: The container that holds it there; None: none does.
-        basis: What that rests on; None: nothing.
-        is_open: For a door, whether it is open; None: that is unknown, or it is no door.
-        says: For a sign, what is written on it; None: that is unknown, or it is no sign.
+        path: Path of the simulator.
+        tick: Tick of the answer.
+        thing: The thing in question.
+        place: Container that holds the thing there; None: no known container.
+        basis: Basis of the belief; None: none.
+        is_open: True if the door is open; None: unknown, or the question is about no door.
+        says: Text of the sign; None: unknown, or the question is about no sign.
     """
 
     path: str
@@ -57,9 +57,9 @@ class StoryAnswer:
 
     @property
     def text(self) -> str | None:
-        """Name of the container, `open` or `shut`, or what a sign says.
+        """Return the name of the container, `open` or `shut`, or the text of the sign.
 
-        None: no container holds it, or unknown.
+        None: the answer is unknown, or no container holds the thing.
         """
         if self.says is not None:
             return self.says
@@ -70,14 +70,15 @@ class StoryAnswer:
 
 @dataclass(frozen=True, slots=True)
 class Knowing:
-    """How the agents of a story get to know what they do not see happen.
+    """Rules by which agents of a story learn of events that they do not see.
 
     Attributes:
-        containers: `transparent`: who is in a room knows where everything in it is; `opaque`:
-            who opened a container, or saw what was put there, knows what is in it.
-        testimony: How hearers take what is said (semantics, section 8).
-        sincere: Whether speakers are taken to believe what is not believed of them.
-        claims_from: Who reads claims out of what is told; None: they stand beside the words.
+        containers: `transparent`: agents in a room know the contents of its containers.
+            `opaque`: agents know contents after they opened a container or saw a transfer.
+        testimony: Effect of claims on hearers (semantics, section 8).
+        sincere: True if hearers assume that speakers believe what they say.
+        claims_from: Model that extracts claims from utterances; None: use the claims that the
+            story states beside the words.
     """
 
     containers: ContainerMode = "transparent"
@@ -90,13 +91,13 @@ _KNOWING = Knowing()
 
 
 class PlayedStory:
-    """A story that was played, and its nest; use it in a `with` block, or close it.
+    """Played story and its nest; use it in a `with` block, or close it.
 
     Attributes:
         story: The story.
-        plan: Where everything is.
-        nest: Open until this is closed; at the story's end.
-        line_ends: The tick each line ended with, in order of `story.lines`.
+        plan: Floor plan of the story.
+        nest: Nest at the end of the story, open until this object is closed.
+        line_ends: Last tick of each line, in order of `story.lines`.
     """
 
     def __init__(self, story: Story, plan: FloorPlan, nest: Nest, line_ends: Sequence[int]) -> None:
@@ -114,21 +115,21 @@ class PlayedStory:
         asked: Iterable[Question] = (),
         knowing: Knowing = _KNOWING,
     ) -> Self:
-        """Open a nest in a world and act the story out there.
+        """Open a nest in a world and play the story there.
 
         Args:
-            story: What happens.
-            world: `scripted`, where a line takes one tick, or `embedded`, where bots do it.
-            seed: Drives every random number.
-            asked: What will be asked: beliefs that are followed from the start cost less
-                than those made late. Other questions can be asked as well.
-            knowing: How agents get to know what they do not see happen.
+            story: The story.
+            world: `scripted`, where a line takes one tick, or `embedded`, where bots act.
+            seed: Seed of every random number.
+            asked: Questions that will be asked. Beliefs that are tracked from the start cost
+                less than those computed late. Other questions are possible as well.
+            knowing: Rules by which agents learn of events that they do not see.
 
         Raises:
             BodyError: The world could not be started, or died.
-            InputError: A question names an agent or a thing that is not in the story.
+            InputError: A question names an agent or thing that is not in the story.
             ProgramError: A bot could not do what a line says.
-            UnknownNameError: There is no such world.
+            UnknownNameError: The world does not exist.
         """
         plan = lay_out(story)
         asked = tuple(asked)
@@ -161,7 +162,7 @@ class PlayedStory:
         self.nest.close()
 
     def answer(self, question: Question) -> StoryAnswer:
-        """What the nest says.
+        """Answer a question from the nest.
 
         Raises:
             InputError: The question names an agent or a thing that is not in the story.
@@ -184,7 +185,7 @@ class PlayedStory:
         return self.nest[question.path]
 
     def answer_all(self, questions: Iterable[Question]) -> tuple[StoryAnswer, ...]:
-        """What the nest says to several questions, in their order.
+        """Answer several questions from the nest, in their order.
 
         Raises:
             InputError: A question names an agent or a thing that is not in the story.
@@ -221,15 +222,15 @@ class PlayedStory:
 
 
 def _deepest_first(path: str) -> tuple[int, str]:
-    """Return a deep node brings those above it along."""
+    """Return a sort key that puts deep paths first: they create the nodes above them."""
     return (-path.count("/"), path)
 
 
 def check_question(story: Story, question: Question) -> None:
-    """Refuse a question about what is not in a story.
+    """Check that a question is about agents and things of a story.
 
     Raises:
-        InputError: It names an agent or a thing that is not there.
+        InputError: The question names an agent or thing that is not in the story.
     """
     for agent in question.believers:
         if agent not in story.agents:
@@ -259,11 +260,11 @@ def check_question(story: Story, question: Question) -> None:
 
 
 def _grace(story: Story, plan: FloorPlan, world: str) -> int:
-    """Return ticks that somebody may be out of sight for no other reason than that one walks.
+    """Return the ticks for which agents may be out of sight only because they walk.
 
-    Who leaves a room does not see those in the hall before it gets there; in the scripted
-    world that takes no time. In the embedded one the next line waits for longer than that, so
-    that only who stayed in the room for another line may have learnt something.
+    An agent that leaves a room does not see the agents in the hall until it gets there. In the
+    scripted world that takes no time. In the embedded world the next line waits for longer than
+    that. So only agents that stayed in the room for another line may have learnt something.
     """
     if world == "scripted" or not story.tells:
         return 0
@@ -272,12 +273,12 @@ def _grace(story: Story, plan: FloorPlan, world: str) -> int:
 
 
 def story_setting(plan: FloorPlan, grace: int = 0, knowing: Knowing = _KNOWING) -> Setting:
-    """What a nest of a story starts from; all know the building.
+    """Return the setting of a story's nest, in which all agents know the building.
 
     Args:
-        plan: Where everything is.
-        grace: Ticks out of sight in which nobody learns anything.
-        knowing: How agents get to know what they do not see happen.
+        plan: Floor plan of the story.
+        grace: Ticks out of sight in which an agent learns nothing.
+        knowing: Rules by which agents learn of events that they do not see.
     """
     return Setting(
         name="story",
@@ -295,14 +296,14 @@ def story_setting(plan: FloorPlan, grace: int = 0, knowing: Knowing = _KNOWING) 
 
 
 def _play(story: Story, plan: FloorPlan, nest: Nest, world: str, grace: int) -> list[int]:
-    """Act every line out; the tick each ended with."""
+    """Play every line, and return the last tick of each."""
     ends = []
     for line, act in zip(story.lines, story.acts, strict=True):
         if world == "scripted":
             tell(nest["/"].scripted, plan, act)
         else:
             programs = programs_of(act, plan)
-            # One after the other where each shuts the door behind itself.
+            # Agents go one after the other if each shuts the door behind itself.
             shuts = isinstance(act, Come | Go) and act.shuts
             steps = [{a: p} for a, p in programs.items()] if shuts else [programs]
             for together in steps:
@@ -314,7 +315,7 @@ def _play(story: Story, plan: FloorPlan, nest: Nest, world: str, grace: int) -> 
 
 
 def _perform(nest: Nest, programs: Mapping[str, str], where: str) -> None:
-    """One act, by bots that do it together."""
+    """Let bots perform one act together."""
     if not programs:
         nest["/"].step(1)
         return

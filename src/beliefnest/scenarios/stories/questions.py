@@ -1,4 +1,4 @@
-"""The questions that are asked about stories."""
+"""Questions about stories."""
 
 import re
 from dataclasses import dataclass
@@ -10,15 +10,15 @@ __all__ = ["Question", "parse_question"]
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Where a thing is, or is believed to be; whether a door is open, or what a sign says.
+    """Question about the place of a thing, a door, or a sign, in reality or in a belief.
 
     Attributes:
-        believers: Agent names from the outermost believer inwards; empty: where it is.
-        thing: What is asked for; empty where it is a door or a sign.
-        at_beginning: Whether the beginning of the story is meant, and not its end.
-        text: The question as it is written.
-        door: The room whose door is asked for; None: it is about none.
-        sign: The room whose sign is asked for; None: it is about none.
+        believers: Names of agents from the outermost believer inwards; empty: reality.
+        thing: The thing; empty if the question is about a door or a sign.
+        at_beginning: True if the question is about the beginning of the story, not its end.
+        text: The question as written.
+        door: Room of the door; None: the question is about no door.
+        sign: Room of the sign; None: the question is about no sign.
     """
 
     believers: tuple[str, ...]
@@ -30,12 +30,12 @@ class Question:
 
     @property
     def order(self) -> int:
-        """How deep the belief asked for is nested; 0 for reality."""
+        """Return the depth of the belief in question; 0 for reality."""
         return len(self.believers)
 
     @property
     def path(self) -> str:
-        """The belief path asked for."""
+        """Return the belief path of the question."""
         return "/" + "/".join(self.believers)
 
 
@@ -64,10 +64,10 @@ _BELIEVER = re.compile(rf"({_AGENT}) {_THINK}(?: |$)")
 
 
 def parse_question(text: str) -> Question:
-    """What a question asks for.
+    """Parse a question.
 
     Raises:
-        InputError: It is none of the questions known.
+        InputError: The text is no known question.
     """
     words = " ".join(text.split()).removesuffix("?").rstrip()
     found = _about_a_thing(words, text) or _about_a_door(words, text) or _about_a_sign(words, text)

@@ -1,4 +1,4 @@
-"""Claims that a model reads out of what is told in a story, whose things have names of its own."""
+"""Extraction of claims from a story's utterances by a model, with the story's own names."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from beliefnest.scenarios.stories.story import Story, Tell
 from beliefnest.world.claims import Claim
 from beliefnest.world.nameable import Nameable
 
-if TYPE_CHECKING:  # Models take long to import.
+if TYPE_CHECKING:  # Importing models takes long.
     from beliefnest.llm.hearsay import ClaimsFromModel
     from beliefnest.llm.messages import Model
 
@@ -18,11 +18,11 @@ __all__ = ["StoryReader", "in_words_alone"]
 
 @dataclass(frozen=True, slots=True)
 class StoryReader:
-    """Asks a model what a text claims, by the names that things and containers have in a story.
+    """Extractor of claims that gives the model the story's names of things and containers.
 
     Attributes:
-        reader: Who is asked.
-        plan: What stands for what.
+        reader: Extractor that asks the model.
+        plan: Floor plan with the items and places of the story.
     """
 
     reader: "ClaimsFromModel"
@@ -30,15 +30,15 @@ class StoryReader:
 
     @property
     def name(self) -> str:
-        """Name of the model."""
+        """Return the name of the model."""
         return self.reader.name
 
     def through(self, wrap: "Callable[[Model], Model]") -> "StoryReader":
-        """Return the same, asking through what `wrap` puts around the model."""
+        """Return the same extractor with its model wrapped by a function."""
         return replace(self, reader=self.reader.through(wrap))
 
     def __call__(self, text: str, speaker: str, nameable: Nameable) -> Iterable[Claim]:
-        """What the text claims; errors as those of the reader."""
+        """Return the claims in a text; raise errors as the inner extractor does."""
         called = {item: thing for thing, item in self.plan.items.items()}
         containers = {
             at: f"{place.container} of the {place.room}" for place, at in self.plan.places.items()
@@ -47,6 +47,6 @@ class StoryReader:
 
 
 def in_words_alone(story: Story) -> Story:
-    """The story with its claims in the words of those who make them, and not beside these."""
+    """Return the story without the claims beside utterances, so that only the words remain."""
     acts = (replace(act, is_claimed=False) if isinstance(act, Tell) else act for act in story.acts)
     return replace(story, acts=tuple(acts))

@@ -1,7 +1,7 @@
-"""What a story's sentences mean: rooms, containers, agents, and what is done step by step.
+"""Meaning of a story's sentences: rooms, containers, agents, and the act of each line.
 
-Only what is really the case is followed here, as far as the acts need it (an agent has to
-be in a room, a thing is taken out of the container it is in). Beliefs are no part of it.
+This module tracks only reality, as far as the acts need it: an agent must be in a room, and a
+thing is taken out of the container it is in. It knows nothing of beliefs.
 """
 
 from collections.abc import Sequence
@@ -42,13 +42,13 @@ __all__ = [
 ]
 
 WAITING_ROOM = "waiting_room"
-"""The room that shows nothing. Where nobody tells anything, nobody in it sees anyone else
-either; in other stories it is where all meet who are in no room."""
+"""Room from which agents see no other room. In stories without testimony, agents in it do not
+see each other either. In other stories, all agents that are in no room meet there."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Place:
-    """A container: rooms may have containers of the same name."""
+    """Container in a room; other rooms may have containers of the same name."""
 
     room: str
     container: str
@@ -56,12 +56,12 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Come:
-    """Agents come into a room at the same time.
+    """Agents enter a room at the same time.
 
     Attributes:
-        agents: Who.
-        room: Where to.
-        shuts: The rooms with shut doors on their way; they open and shut those.
+        agents: The agents.
+        room: The room.
+        shuts: Rooms with shut doors on the way; the agents open these doors and shut them again.
     """
 
     agents: tuple[str, ...]
@@ -71,7 +71,7 @@ class Come:
 
 @dataclass(frozen=True, slots=True)
 class Go:
-    """Agents go out of all rooms, through shut doors as in `Come`."""
+    """Agents leave all rooms, through shut doors as in `Come`."""
 
     agents: tuple[str, ...]
     shuts: tuple[str, ...] = ()
@@ -120,15 +120,15 @@ class Write:
 
 @dataclass(frozen=True, slots=True)
 class Tell:
-    """An agent says something, with a claim.
+    """An agent says something with a claim.
 
     Attributes:
-        agent: Who says it.
-        hearer: To whom it is whispered; None: it is said aloud.
-        thing: What it is about.
-        place: Where that is said to be, or not to be.
-        is_there: Which of the two.
-        is_claimed: Whether the claim stands beside the words, and not in them alone.
+        agent: Speaker.
+        hearer: Agent to whom the speaker whispers; None: the speaker says it aloud.
+        thing: The thing.
+        place: The container.
+        is_there: True if the speaker says that the thing is there, False if that it is not.
+        is_claimed: True if the claim is stated beside the words, False if only in the words.
     """
 
     agent: str
@@ -140,7 +140,7 @@ class Tell:
 
     @property
     def text(self) -> str:
-        """What is said, in words."""
+        """Return the words of the utterance."""
         link = "is" if self.is_there else "is not"
         return f"The {self.thing} {link} in the {self.place.container}."
 
@@ -150,17 +150,17 @@ Act = Come | Go | Move | Look | UseDoor | Write | Tell | Wait
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """A story that can be played.
+    """Story that can be played. All tuples and mappings are in order of first mention.
 
     Attributes:
-        lines: Its lines.
-        acts: What is done in each line.
-        rooms: Names of the rooms, the waiting room left out, in order of mention.
-        places: The containers, in order of mention.
-        agents: Who acts in it, in order of mention; each is in no room at first.
-        things: Where each thing is at first, in order of mention.
-        doors: Rooms that have a door, open at first, in order of mention.
-        signs: Rooms that have a sign, with nothing on it at first, in order of mention.
+        lines: Lines of the story.
+        acts: Act of each line.
+        rooms: Names of the rooms, without the waiting room.
+        places: The containers.
+        agents: Names of the agents; all are in no room at first.
+        things: First place of each thing.
+        doors: Rooms with a door, which is open at first.
+        signs: Rooms with a sign, which is empty at first.
     """
 
     lines: tuple[Line, ...]
@@ -174,12 +174,12 @@ class Story:
 
     @property
     def tells(self) -> bool:
-        """True if anybody tells anything in it."""
+        """Return True if an agent tells something in the story."""
         return any(isinstance(act, Tell) for act in self.acts)
 
 
 def read_story(text: str) -> Story:
-    """Return the story that a text tells.
+    """Parse the text of a story.
 
     Raises:
         InputError: A line cannot be parsed, or contradicts those before it; the message
@@ -189,10 +189,10 @@ def read_story(text: str) -> Story:
 
 
 def story_of(lines: Sequence[Line]) -> Story:
-    """Return the story that some lines tell.
+    """Return the story of parsed lines.
 
     Raises:
-        InputError: There are none, or one contradicts those before it; the message gives its
+        InputError: There are no lines, or a line contradicts earlier ones; the message gives its
             number.
     """
     if not lines:
@@ -213,7 +213,7 @@ def story_of(lines: Sequence[Line]) -> Story:
 
 
 def _rooms(lines: Sequence[Line]) -> tuple[str, ...]:
-    """Return names of the rooms: what is gone into, and what containers are in."""
+    """Return the names of rooms: places that agents enter, and places of containers."""
     sentences = [line.sentence for line in lines]
     named = Entered | Exited | Stayed | DoorUsed | Wrote
     visited = [s.room for s in sentences if isinstance(s, named)]
@@ -225,13 +225,13 @@ def _rooms(lines: Sequence[Line]) -> tuple[str, ...]:
 
 
 def _stated_rooms(lines: Sequence[Line], rooms: Sequence[str]) -> dict[str, str]:
-    """Return the room of every container for which a line states it."""
+    """Return the rooms of containers for which a line states the room."""
     stated: dict[str, str] = {}
     for line in lines:
         match line.sentence:
             case Located(thing, place) if place in (*rooms, WAITING_ROOM):
                 if place == WAITING_ROOM:
-                    raise line.fault("nothing is seen in the waiting room; name another room")
+                    raise line.fault("agents see nothing in the waiting room; name another room")
                 if stated.setdefault(thing, place) != place:
                     raise line.fault(f"the {thing} is in the {stated[thing]} already")
     return stated
@@ -239,7 +239,7 @@ def _stated_rooms(lines: Sequence[Line], rooms: Sequence[str]) -> dict[str, str]
 
 @dataclass
 class _Reader:
-    """Follows where agents and things really are, line by line."""
+    """Interpreter that tracks the real places of agents and things, line by line."""
 
     lines: Sequence[Line]
     rooms: Sequence[str]
@@ -251,7 +251,7 @@ class _Reader:
     is_open: dict[str, bool] = field(default_factory=dict)
 
     def act(self, number: int) -> Act:
-        """What is done in a line."""
+        """Return the act of a line."""
         line = self.lines[number]
         match line.sentence:
             case Entered() | Exited():
@@ -338,7 +338,7 @@ class _Reader:
         return room
 
     def _here(self, line: Line, room: str, container: str) -> str:
-        """Return a room, once it is seen that its container is not stated to be in another one."""
+        """Return a room after checking that no line states another room for the container."""
         stated = self.stated.get(container, room)
         if stated != room:
             raise line.fault(f"the {container} is in the {stated}, and they are in the {room}")
@@ -357,7 +357,7 @@ class _Reader:
             raise line.fault(f"the {thing} is in the {before.container} of the {before.room}")
 
     def _place(self, line: Line, room: str, container: str) -> Place:
-        """Return a container of a room, which becomes one of the story's."""
+        """Return a container of a room, and add it to the story's containers."""
         if container in self.first:
             raise line.fault(f"the {container} lies in a container itself")
         place = Place(room, container)
@@ -365,7 +365,7 @@ class _Reader:
         return place
 
     def _room_near(self, number: int) -> str:
-        """Return the room that was entered last before a line, or next after it."""
+        """Return the room that agents entered last before a line, or next after it."""
         before, after = self.lines[:number][::-1], self.lines[number:]
         for line in (*before, *after):
             sentence = line.sentence

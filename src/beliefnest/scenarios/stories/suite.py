@@ -1,4 +1,4 @@
-"""Answering all questions of a file of stories, and how many answers are right."""
+"""Suites: answer all questions of a file of stories, and score the answers."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -13,18 +13,18 @@ __all__ = ["JudgedAnswer", "Score", "answer_story", "score", "scores_by_order"]
 
 @dataclass(frozen=True, slots=True)
 class JudgedAnswer:
-    """A question that was answered.
+    """Answer to a question, compared with the expected one.
 
     Attributes:
-        item: The question and what is expected.
-        answer: What the nest says.
-        needs_first: Whether the answer expected differs from what the nest says with the
-            first believer dropped; False where there is none.
-        tells: Whether somebody tells something in its story.
-        data_fault: What in its story the expected answer contradicts; None: nothing found.
-        explanation: Why the nest says it, for a wrong answer; else empty.
-        unread: Why something that was told in its story could not be read for claims; None: it
-            was read, or nobody was to read it.
+        item: Question and expected answer.
+        answer: Answer of the nest.
+        needs_first: True if the expected answer differs from the nest's answer to the question
+            without its first believer; False if there is no believer.
+        tells: True if an agent tells something in the story.
+        data_fault: How the expected answer contradicts its story; None: no contradiction found.
+        explanation: Explanation of a wrong answer; else empty.
+        unread: Reason why a model could not read an utterance of the story for claims; None: it
+            read all of them, or there is no such model.
     """
 
     item: Item
@@ -37,17 +37,17 @@ class JudgedAnswer:
 
     @property
     def ok(self) -> bool:
-        """True if the answer is the one expected."""
+        """Return True if the answer is the expected one."""
         return self.answer.text == self.item.expected
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """How many answers are right.
+    """Score of some answers.
 
     Attributes:
-        questions: How many there are.
-        right: How many are right.
+        questions: Number of questions.
+        right: Number of right answers.
     """
 
     questions: int
@@ -55,7 +55,7 @@ class Score:
 
     @property
     def accuracy(self) -> float | None:
-        """Share of right answers, 0 to 1; None: nothing was asked."""
+        """Return the share of right answers, 0 to 1; None: there are no questions."""
         return self.right / self.questions if self.questions else None
 
 
@@ -67,7 +67,7 @@ def answer_story(
     Raises:
         BodyError: The world could not be started, or died.
         ProgramError: A bot could not do what a line says.
-        UnknownNameError: There is no such world.
+        UnknownNameError: The world does not exist.
     """
     questions = [item.question for item in asked.items]
     nested = [q for q in questions if q.believers]
@@ -100,7 +100,7 @@ def score(judged: Iterable[JudgedAnswer]) -> Score:
 def scores_by_order(
     judged: Sequence[JudgedAnswer], of: Callable[[JudgedAnswer], bool] = lambda _: True
 ) -> dict[int, Score]:
-    """Return the score of each order that is asked for, among those answers that `of` selects."""
+    """Return the score of each order of questions, over the answers that `of` selects."""
     orders = sorted({each.item.question.order for each in judged})
     return {
         order: score(each for each in judged if each.item.question.order == order and of(each))
