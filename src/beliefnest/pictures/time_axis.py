@@ -64,8 +64,9 @@ class TimeAxis:
         return base + TEXT_SIZE * 1.5
 
     def note(self, acts: Sequence[NotedAct], top: float, marks: list[Drawn]) -> float:
-        """Add the acts in words, each in the first line where it overlaps no other; return the
-        end.
+        """Add the acts in words and return the end.
+
+        Each act goes to the first line where it overlaps no other.
         """
         ends: list[float] = []
         low, high = self.span
