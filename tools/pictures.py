@@ -1,5 +1,7 @@
 """Write the pictures of README and docs, with the program itself. Run by `make picture`."""
 
+import contextlib
+import re
 import tempfile
 from pathlib import Path
 
@@ -8,7 +10,8 @@ from beliefnest.cli.app import run_command_line
 from beliefnest.cli.folder import STORE
 from beliefnest.studies.plot import svg_of
 
-IMAGES = Path(__file__).parents[1] / "docs" / "img"
+ROOT = Path(__file__).parents[1]
+IMAGES = ROOT / "docs" / "img"
 CHEST = (-2, -51, -4)
 PATHS = ("/", "/observer", "/sally", "/observer/sally")
 FIGURE_1 = ("/", "/agent_1", "/agent_2", "/agent_1/agent_2", "/agent_2/agent_1")
@@ -48,6 +51,7 @@ def write_pictures(images: Path) -> None:
         with bn.Nest.read(figure_1 / "condition-1" / STORE) as nest:
             nest.figure(FIGURE_1).save(images / "red-green-blue.png")
         write_study(images, Path(folder, "study"))
+        write_minds(images, Path(folder))
 
 
 def write_study(images: Path, folder: Path) -> None:
@@ -56,6 +60,16 @@ def write_study(images: Path, folder: Path) -> None:
     result = study.run(folder, jobs=1)
     text = svg_of(result.plot(by=["condition", "model"]))
     (images / "study.svg").write_text(text, encoding="utf-8")
+
+
+def write_minds(images: Path, folder: Path) -> None:
+    """Write the figures of docs/minds.md with the examples of that page."""
+    page = (ROOT / "docs" / "minds.md").read_text(encoding="utf-8")
+    examples = re.findall(r"```python\n(.*?)```", page, re.DOTALL)[:2]
+    with contextlib.chdir(folder):
+        exec("\n".join(examples), {"__name__": "examples"})
+    for name in ("minds.png", "minds-plan.png"):
+        (images / name).write_bytes((folder / name).read_bytes())
 
 
 if __name__ == "__main__":

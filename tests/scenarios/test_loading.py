@@ -200,7 +200,13 @@ FAULTS_OF_TALK = [
     ("grace: 5", "hearing: maybe", 4, "perception.hearing", "global, sight, {radius: ...}"),
     ("perception:", "testimony: accept\nperception:", 2, "testimony", "stands under 'perception'"),
     ("path: /ann", "path: /bob/", 7, "initial_beliefs[1].path", "put them into one"),
-    ("path: /ann", "path: /ann/**/bob", 7, "initial_beliefs[1].path", "may only stand at its end, once"),
+    (
+        "path: /ann",
+        "path: /ann/**/bob",
+        7,
+        "initial_beliefs[1].path",
+        "may only stand at its end, once",
+    ),
     ("path: /ann", "path: ann/**", 7, "initial_beliefs[1].path", "'ann/**' is no belief path"),
     ("path: /ann", "path: /eve/**", 7, "initial_beliefs[1].path", "'/eve/**' names 'eve'"),
 ]
