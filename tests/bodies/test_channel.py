@@ -144,7 +144,7 @@ def test_half_a_character_in_a_request_is_refused_and_nothing_sent(tmp_path):
     script.write_text(START + message({"id": 1, "ok": True, "result": 7}))
     channel = Channel.start([sys.executable, str(script)])
     try:
-        with pytest.raises(InputError, match=r"'run' has half of a character in it"):
+        with pytest.raises(InputError, match=r"'run' contains half a character"):
             channel.request("run", programs={"ann": "\ud83d"})
         assert channel.request("run") == 7
     finally:

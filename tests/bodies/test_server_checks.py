@@ -216,5 +216,5 @@ def test_addresses():
     found = ServerAddress.parse("minecraft://example.org?at=-32,160&overwrite=yes&version=1.20.4")
     assert (found.host, found.port, found.at) == ("example.org", 25565, (-32, 160))
     assert (found.overwrite, found.keep, found.version) == (True, False, "1.20.4")
-    with pytest.raises(InputError, match="one run plays at a time"):
+    with pytest.raises(InputError, match="plays one run at a time"):
         check_world("minecraft://example.org", servers=False)

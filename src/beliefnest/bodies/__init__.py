@@ -1,1 +1,1 @@
-"""Where simulators are acted out: worlds, bodies, and the channel to Minecraft."""
+"""Worlds in which simulators are acted out, the bodies in them, and the channel to Minecraft."""

@@ -20,18 +20,20 @@ _FORM = "write minecraft://HOST:PORT, with options as ?version=1.20.4&at=0,160&o
 
 
 def is_server(world: str) -> bool:
-    """Return True if the name of a world is the address of a server."""
+    """Return True if the name of a world is the address of a Minecraft server."""
     return world.lower().startswith(f"{SCHEME}://")
 
 
 def overwriting(world: str) -> str:
-    """Return the address of a server whose box's blocks may be replaced.
+    """Return a server's address with the permission to replace blocks in the box.
 
     Raises:
-        InputError: The world is no server.
+        InputError: The world is not a server.
     """
     if not is_server(world):
-        raise InputError(f"nothing is overwritten in the world {world!r}; it is none of a server")
+        raise InputError(
+            f"the world {world!r} is no server; only blocks on a server can be overwritten"
+        )
     if ServerAddress.parse(world).overwrite:
         return world
     return f"{world}{'&' if '?' in world else '?'}overwrite=yes"
@@ -39,19 +41,19 @@ def overwriting(world: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ServerAddress:
-    """Where a server is, and how it is played on.
+    """Address of a Minecraft server, with options of playing on it.
 
     Attributes:
-        host: Its name or number.
-        port: Its port.
-        version: The Minecraft version to speak; None: what the server says.
-        operator: Name of the bot that sets up and watches, which must be an operator.
-        at: Where scenario (0, y, 0) lies in its world: x and z, multiples of 16.
+        host: Host name or IP address.
+        port: TCP port.
+        version: Minecraft version to speak; None to ask the server.
+        operator: Name of the bot that sets up and observes the place. It must be an operator.
+        at: Position of scenario (0, y, 0) in the server's world: x and z, multiples of 16.
         overwrite: Whether blocks in the box that are not the scenario's may be replaced.
-        keep: Whether the box is left as it is at the end, not as it was before.
-        accounts: Folder in which tokens of Microsoft accounts are kept, by which players log in;
-            None: the server is in offline mode.
-        patience: Seconds for which a lost connection, or a server that stands still, is waited for.
+        keep: Whether the box stays as it is at the end, instead of being restored.
+        accounts: Folder with tokens of the Microsoft accounts with which players log in; None if
+            the server is in offline mode.
+        patience: Seconds to wait for a lost connection or for a server that hangs.
     """
 
     host: str
@@ -66,28 +68,30 @@ class ServerAddress:
 
     @classmethod
     def parse(cls, text: str) -> "ServerAddress":
-        """Return the address that a text is.
+        """Parse the text of an address.
 
         Raises:
-            InputError: It is none, or an option is not known or not of its form.
+            InputError: The text is not an address, or an option is unknown or malformed.
         """
         parts = urlsplit(text)
         if parts.username is not None or parts.password is not None:
             raise InputError(
-                "the address of a server has no name or password in it, which would be kept with "
-                "every run; servers with accounts are joined by ?accounts=FOLDER, others without"
+                "the address of a server must not contain a name or password, because every run "
+                "would store it; give ?accounts=FOLDER for a server with accounts"
             )
         try:
             host, port = parts.hostname, parts.port
         except ValueError as error:
-            raise InputError(f"{text!r} has no port that there is: {_FORM}") from error
+            raise InputError(f"{text!r} has no valid port: {_FORM}") from error
         if parts.scheme != SCHEME or not host or parts.path not in ("", "/") or parts.fragment:
-            raise InputError(f"{text!r} is no address of a server: {_FORM}")
+            raise InputError(f"{text!r} is not the address of a server: {_FORM}")
         options: dict[str, Any] = {}
         for key, value in parse_qsl(parts.query, keep_blank_values=True):
             if key not in _OPTIONS:
                 known = ", ".join(_OPTIONS)
-                raise InputError(f"{text!r} has the option {key!r}; there are {known}")
+                raise InputError(
+                    f"{text!r} has the unknown option {key!r}; known options are {known}"
+                )
             if key in options:
                 raise InputError(f"{text!r} has the option {key!r} twice; give it once")
             options[key] = _OPTIONS[key](key, value)
@@ -95,7 +99,7 @@ class ServerAddress:
 
     @property
     def told(self) -> dict[str, Any]:
-        """What the Minecraft side is told of it."""
+        """Return the part of the address that the Minecraft side gets."""
         return asdict(self)
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""Places as they are: on a Minecraft server elsewhere, or in a file of the game or of WorldEdit."""
+"""Capture of existing places: on a Minecraft server, or in a file of the game or of WorldEdit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -28,11 +28,11 @@ _Placed = tuple[int, int, int]
 
 @dataclass(frozen=True)
 class Captured:
-    """A place as it was found.
+    """Place as it was found.
 
     Attributes:
-        snapshot: All that a scenario can say of it; its agents are the players who were there.
-        left_out: What it cannot say, one sentence for each kind of thing.
+        snapshot: Everything that a scenario can express; its agents are the players present.
+        left_out: Everything else, one sentence for each kind of thing.
     """
 
     snapshot: Snapshot
@@ -55,15 +55,15 @@ class _Place(msgspec.Struct, frozen=True):
 
 
 def capture_server(address: ServerAddress, box: Box) -> Captured:
-    """Read a place of a server, which stays as it is.
+    """Read a place of a server without changing it.
 
     Args:
-        address: The server; its operator looks around there, unseen.
-        box: The place, in scenario coordinates: the server's own where `at` is 0, 0.
+        address: The server; its operator moves around there, unseen.
+        box: The place, in scenario coordinates, which equal the server's if `at` is 0, 0.
 
     Raises:
-        BodyError: The server cannot be looked at; the message says what to do.
-        InputError: The box is too large, or outside of a world.
+        BodyError: The server cannot be read; the message says what to do.
+        InputError: The box is too large, or outside the world.
     """
     if fault := box_fault(box):
         raise InputError(f"the box {fault}")
@@ -90,12 +90,12 @@ def capture_file(data: bytes, corner: Position) -> Captured:
     """Read a Sponge schematic (`.schem`) or a structure file of the game (`.nbt`).
 
     Args:
-        data: What the file holds.
-        corner: Where its lowest corner comes to lie.
+        data: Content of the file.
+        corner: Position of the place's lowest corner.
 
     Raises:
-        WorldError: It is no such file, or too large.
-        InputError: It does not fit into a world there.
+        WorldError: The file has another format, or the place is too large.
+        InputError: The place does not fit into a world there.
     """
     channel, _ = started(0, ProcessLimits())
     place = msgspec.convert(_asked(channel, "read_place", bytes=data), _Place)
@@ -143,7 +143,7 @@ def _states(palette: Sequence[str], registry: Registry) -> tuple[BlockGrid, str]
 
 
 def _said(found: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
-    """What a scenario can say of a place, and what it cannot."""
+    """Return the part of a place that a scenario can express, and sentences about the rest."""
     left_out = []
     air = np.where(np.isin(found.blocks, registry.airs), registry.air, found.blocks)
     found = replace(found, blocks=air.astype(np.int32))

@@ -34,13 +34,13 @@ T = TypeVar("T")
 
 
 class _BrokenError(Exception):
-    """Node does not speak as agreed, or not at all."""
+    """Failure of Node to follow the protocol, or to answer at all."""
 
 
 class Channel(Owned):
-    """A running Node process and the socket to it; make one with `Channel.start`.
+    """Running Node process and the socket to it; made by `Channel.start`.
 
-    A forked child of this process cannot speak to it: `request` and `post` raise ForkedError.
+    A forked child of this process cannot use the channel: `request` and `post` raise ForkedError.
     """
 
     def __init__(self, child: Child, connection: socket.socket, silence: float) -> None:
@@ -59,9 +59,8 @@ class Channel(Owned):
         """Start a process that speaks the channel's protocol.
 
         Args:
-            command: The program and its arguments; the numbers of the two descriptors
-                are appended to them.
-            limits: What the process may take.
+            command: The program and its arguments; the numbers of the two descriptors are appended.
+            limits: Limits of the process.
 
         Raises:
             BodyError: The program could not be started.
@@ -84,7 +83,7 @@ class Channel(Owned):
 
     @property
     def lost(self) -> bool:
-        """True if Node has ended; it will answer nothing more."""
+        """True if Node has ended and will answer nothing more."""
         return not self._child.alive
 
     def request(
@@ -94,19 +93,19 @@ class Channel(Owned):
         percepts: PerceptsHandler | None = None,
         **arguments: Any,
     ) -> Any:
-        """Send a request and return its result; frames on the way go to `on_frame`.
+        """Send a request and return its result; frames that arrive before it go to `on_frame`.
 
-        Where Node asks what agents perceive by now, `percepts` says so.
+        If Node asks for the agents' present percepts, `percepts` answers.
 
         Raises:
-            InputError: A text of the request has half of a character in it and cannot be sent.
+            InputError: A text of the request contains half a character and cannot be sent.
             WorldError: Node refused the request as impossible.
-            BodyLostError: Node ended, or had to be killed; the message carries its last words.
-            BodyError: Node failed to do it.
+            BodyLostError: Node ended or had to be killed; the message contains its last output.
+            BodyError: Node failed to fulfil the request.
         """
         self.check_own("the Minecraft side")
         if self._closed:
-            raise BodyError(f"the world was closed; it cannot be asked for {op!r} any more")
+            raise BodyError(f"the world was closed and cannot do {op!r} any more; open another one")
         message = _encoded(op, {"id": self._number + 1, "op": op, **arguments})
         self._number += 1
         self._tick = None
@@ -118,7 +117,7 @@ class Channel(Owned):
         except _BrokenError as error:
             raise self._lost(op, str(error)) from error
         except BaseException:
-            # Its answer would be taken for that of the next request.
+            # Kill Node: its late answer would be taken for that of the next request.
             self._child.kill()
             raise
         if refused is not None:
@@ -126,11 +125,11 @@ class Channel(Owned):
         return _result(op, answer)
 
     def post(self, op: str, **arguments: Any) -> None:
-        """Send what has no answer, also while a request is under way.
+        """Send a message that has no answer; this is possible during a request.
 
         Raises:
-            BodyLostError: Node takes nothing any more and was killed. If it had ended before, the
-                next request says so.
+            BodyLostError: Node accepts nothing any more and was killed. If it had ended before, the
+                next request raises the error.
         """
         self.check_own("the Minecraft side")
         try:
@@ -141,25 +140,25 @@ class Channel(Owned):
             return
 
     def kill(self) -> None:
-        """End the process at once."""
+        """Kill the process at once."""
         self._child.kill()
 
     def close(self) -> None:
-        """End the process; its last requests are not waited for."""
+        """End the process without waiting for its last requests."""
         self._closed = True
         self._connection.close()
         self._child.close()
 
     def disown(self) -> None:
-        """Close the socket in a forked child; the parent's stays open."""
+        """Close the socket in a forked child; the parent's copy stays open."""
         self._connection.close()
 
     def _answer(
         self, on_frame: FrameHandler | None, percepts: PerceptsHandler | None
     ) -> tuple[dict[str, Any], Exception | None]:
-        """Return the answer to a request, and why a frame or a question before it was not taken.
+        """Return the answer to a request, and the error of handling a frame or question before it.
 
-        Frames are read to the end all the same, so that the next request finds its answer.
+        Frames are read to the end in any case, so that the next request finds its own answer.
         """
         refused: Exception | None = None
         while True:
@@ -191,7 +190,7 @@ class Channel(Owned):
                 raise _BrokenError(f"answered request {message.get('id')}, not {self._number}")
 
     def _note(self, message: dict[str, Any]) -> None:
-        """Take a sign of life, or show the user what the other side wants of them."""
+        """Handle a heartbeat, or show the user a text from Node."""
         if "notice" in message:
             sys.stderr.write(f"{escaped(message['notice'])}\n")
         elif message["beat"] is not None:
@@ -225,8 +224,8 @@ class Channel(Owned):
     def _patiently(self, act: Callable[[A], T], argument: A) -> T:
         """Read or write as soon as that is possible.
 
-        Short waits are counted and not the clock read: time in which this process itself was
-        stopped is not Node's silence.
+        The method counts short waits instead of reading the clock, because time in which this
+        process itself was stopped is not Node's silence.
         """
         waited = 0.0
         while True:
@@ -238,7 +237,7 @@ class Channel(Owned):
                     raise _BrokenError(f"gave no sign of life for {self._silence:g} s") from None
 
     def _lost(self, op: str, fault: str | None = None) -> BodyLostError:
-        """What is to be said of a Node that ended by itself, or is killed for a fault."""
+        """Return the error for a Node that ended by itself, or that is killed for a fault."""
         if fault is not None:
             self._child.kill()
         elif not self._child.ends():
@@ -262,7 +261,7 @@ def _encoded(op: str, message: dict[str, Any]) -> bytes:
     except UnicodeEncodeError as error:
         half = error.object[error.start]
         raise InputError(
-            f"a text in the request {op!r} has half of a character in it ({half!a}); "
+            f"a text in the request {op!r} contains half a character ({half!a}); "
             "give whole characters"
         ) from error
 

@@ -1,4 +1,4 @@
-"""A process that lives no longer than this one and takes no more than it was given."""
+"""Child process that ends with this one and stays within its limits."""
 
 import contextlib
 import os
@@ -21,15 +21,15 @@ _STDERR_BYTES = 1 << 16
 _GRACE_SECONDS = 2.0
 _MEGABYTE = 1 << 20
 
-# The caller's own would tell keys to the process and let NODE_OPTIONS change it.
+# With the caller's environment the process would know its keys and obey NODE_OPTIONS.
 _ENVIRONMENT = {"TZ": "UTC"}
 
 
 class Child(Owned):
-    """A running process; make one with `Child.start`.
+    """Running process; made by `Child.start`.
 
-    A process that was forked from the one that started it sees it as ended, and can neither end
-    it nor keep it alive.
+    In a fork of the process that started it, the child counts as ended; the fork can neither end it
+    nor keep it alive.
     """
 
     def __init__(
@@ -45,10 +45,10 @@ class Child(Owned):
         """Start a process.
 
         Args:
-            command: The program and its arguments; the numbers of two descriptors are appended:
-                the one it inherits, and its lifeline, whose end is to be its own.
-            descriptor: What it inherits.
-            limits: What it may take.
+            command: The program and its arguments. The numbers of two descriptors are appended: the
+                inherited one, and the lifeline, whose closing ends the process.
+            descriptor: Descriptor that the process inherits.
+            limits: Limits of the process.
 
         Raises:
             BodyError: The program could not be started.
@@ -63,7 +63,7 @@ class Child(Owned):
                 stderr=stderr,
                 env=_ENVIRONMENT,
                 pass_fds=(descriptor, life_read),
-                # Ctrl-C is Python's to handle: it ends the child by closing the lifeline.
+                # Python handles Ctrl-C: it ends the child by closing the lifeline.
                 start_new_session=True,
             )
         except OSError as error:
@@ -79,22 +79,22 @@ class Child(Owned):
 
     @property
     def pid(self) -> int:
-        """Its process id."""
+        """Process id."""
         return self._process.pid
 
     @property
     def alive(self) -> bool:
-        """True if it has not ended, and is this process's own."""
+        """True if the process runs and belongs to this process."""
         return self.is_own and self._process.poll() is None
 
     def ends(self) -> bool:
-        """Wait a moment for its end; whether that came."""
+        """Wait a moment for the end of the process; return whether it has ended."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=_GRACE_SECONDS)
         return not self.alive
 
     def kill(self) -> None:
-        """End it at once; nothing is done if it has ended."""
+        """Kill the process at once, unless it has ended."""
         if not self.is_own:
             return
         with contextlib.suppress(ProcessLookupError):
@@ -102,7 +102,7 @@ class Child(Owned):
         self._process.wait()
 
     def close(self) -> None:
-        """End it by its lifeline; a second call does nothing."""
+        """End the process by its lifeline; a second call does nothing."""
         if self._lifeline is None or not self.is_own:
             return
         os.close(self._lifeline)
@@ -112,13 +112,13 @@ class Child(Owned):
         self._stderr.close()
 
     def disown(self) -> None:
-        """Close the lifeline in a forked child: the process ends with its parent alone."""
+        """Close the lifeline in a forked child, so that only the parent keeps the process alive."""
         if self._lifeline is not None:
             os.close(self._lifeline)
             self._lifeline = None
 
     def obituary(self) -> tuple[str, str]:
-        """How a process that has ended did so, and its last words, if any, as lines."""
+        """Return how an ended process ended, and its last lines of output, if any."""
         status = self._process.returncode
         how = f"with status {status}" if status >= 0 else f"by signal {-status} ({_name(-status)})"
         self._stderr.seek(0, os.SEEK_END)
@@ -135,7 +135,7 @@ def _name(number: int) -> str:
 
 
 def _limit(pid: int, limits: ProcessLimits) -> None:
-    """Let the operating system hold a process to its limits, where it can do that from outside."""
+    """Apply the limits that the operating system can enforce from outside."""
     if sys.platform != "linux":
         return
     memory = limits.memory * _MEGABYTE

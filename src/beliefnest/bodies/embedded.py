@@ -1,4 +1,4 @@
-"""The embedded Minecraft world: one Node process with the server and all bots."""
+"""Embedded Minecraft world: one Node process with the server and all bots."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -20,22 +20,22 @@ from beliefnest.world.values import Box, Event
 __all__ = ["MINECRAFT", "EmbeddedBody", "EmbeddedWorld", "started"]
 
 MINECRAFT = "1.20.4"
-"""The Minecraft version of the embedded world."""
+"""Minecraft version of the embedded world."""
 
 
 class _Telling:
-    """Tells Node what an agent knows, and then what has changed of that."""
+    """Messages to Node about an agent's knowledge: first all of it, then the changes."""
 
     def __init__(self, sense: Sense, box: Box) -> None:
         self._sense, self._box = sense, box
         self._told = sense()
 
     def whole(self) -> dict[str, Any]:
-        """Return all that it knows, as a message."""
+        """Return the agent's whole knowledge as a message."""
         return messages.percepts_message(self._told)
 
     def changes(self) -> dict[str, Any]:
-        """What has changed since the last message."""
+        """Return the changes since the last message."""
         before, self._told = self._told, self._sense()
         if before is self._told:
             return {}
@@ -43,7 +43,7 @@ class _Telling:
 
 
 class EmbeddedBody:
-    """A region of the embedded world."""
+    """Region of the embedded world."""
 
     def __init__(
         self,
@@ -75,7 +75,7 @@ class EmbeddedBody:
         known: Sequence[str],
         on_close: Callable[[], None] = lambda: None,
     ) -> Self:
-        """Let Node make a region and fill it; `known` are all agents that can be spoken of."""
+        """Let Node create and fill a region; `known` are all agents that programs may mention."""
         channel.request(
             "create_region",
             region=region,
@@ -87,26 +87,26 @@ class EmbeddedBody:
 
     @property
     def goes_on(self) -> bool:
-        """False: its clock stands still between the calls."""
+        """False: its clock stands still between calls."""
         return False
 
     @property
     def lost(self) -> bool:
-        """True if the Node it lived in has ended."""
+        """True if its Node process has ended."""
         return self._channel.lost
 
     @property
     def tick(self) -> int:
-        """The body's latest tick."""
+        """Latest tick of the body."""
         return self._tick
 
     @property
     def internal_state(self) -> bytes:
-        """What goes on in it besides its snapshot's facts, as of the end of the last call."""
+        """State of processes that its snapshot does not contain, at the end of the last call."""
         return self._internal_state
 
     def snapshot(self) -> Snapshot:
-        """Return all there is in it now."""
+        """Return the present state."""
         return messages.snapshot_of(
             self._channel.request("snapshot", region=self._region), self._box
         )
@@ -148,7 +148,7 @@ class EmbeddedBody:
         self._tick, self._internal_state = answer["tick"], answer["internal_state"]
 
     def set_state(self, snapshot: Snapshot) -> None:
-        """Be as the snapshot says, by changing only what differs; no frames are sent."""
+        """Set the state to a snapshot by changing only what differs; no frames are sent."""
         before = self.snapshot()
         self._channel.request(
             "apply", region=self._region, tick=snapshot.tick, **_difference(before, snapshot)
@@ -157,14 +157,14 @@ class EmbeddedBody:
         self._agents = frozenset(snapshot.agents)
 
     def close(self) -> None:
-        """Give the region up; a second call does nothing."""
+        """Remove the region; a second call does nothing."""
         if self._closed or self.lost:
             return
         self._closed = True
         try:
             self._channel.request("destroy_region", region=self._region)
         except BodyError:
-            # Nor can a new region take its place there.
+            # Kill Node: no new region can use the place of one that it failed to remove.
             self._channel.kill()
         else:
             self._on_close()
@@ -178,11 +178,13 @@ class EmbeddedBody:
 
 
 class EmbeddedWorld(Owned):
-    """A Node process, or the next one after it ended; it is started with the first body.
+    """World of one Node process; a process that ended is replaced for the next body.
+
+    The first process starts with the first body.
 
     Args:
-        seed: Drives the random numbers of the world itself.
-        limits: What Node may take.
+        seed: Seed of the world's own random numbers.
+        limits: Limits of Node.
     """
 
     def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
@@ -197,7 +199,7 @@ class EmbeddedWorld(Owned):
 
     @classmethod
     def start(cls, seed: int, limits: ProcessLimits | None = None) -> Self:
-        """Start Node with an empty world, now.
+        """Start Node with an empty world at once.
 
         Raises:
             BodyError: Node or the bundle is missing, or the start failed.
@@ -213,23 +215,23 @@ class EmbeddedWorld(Owned):
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """Program to version, of what runs; the channel's protocol among them."""
+        """Versions of the running programs by name, including the channel's protocol."""
         return self._versions
 
     @property
     def pid(self) -> int:
-        """Process id of Node; it is started if it has not been."""
+        """Process id of Node, which is started if necessary."""
         return (self._channel or self._live()).pid
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
-        """Make a region, fill it, and let the bots of its agents log in.
+        """Create a region, fill it, and let the bots of its agents join.
 
-        If Node has ended, another one is started.
+        If Node has ended, another process is started.
         """
         channel = self._live()
         if name in self._names:
             raise WorldError(f"there is a body {name!r} already")
-        # In a belief somebody may be missing whom one can speak of all the same.
+        # Programs may mention agents that are absent from this belief.
         self.knows(snapshot.agents)
         names, known = self._names, sorted(self._agents)
         body = EmbeddedBody.opened(
@@ -239,11 +241,11 @@ class EmbeddedWorld(Owned):
         return body
 
     def knows(self, agents: Iterable[str]) -> None:
-        """Take note of agents that can be spoken of in any body, also where they are not."""
+        """Add agents that programs may mention in any body, also where they are absent."""
         self._agents |= set(agents)
 
     def another(self) -> "EmbeddedWorld":
-        """Return one more, with a process of its own."""
+        """Return another world with a process of its own."""
         other = EmbeddedWorld(self._seed, self._limits)
         other._agents |= self._agents
         return other
@@ -279,14 +281,14 @@ def started(
     writable: Path | None = None,
     **more: Any,
 ) -> tuple[Channel, Mapping[str, str]]:
-    """Return a channel to a new Node with an empty world, and the versions of what runs there.
+    """Start Node with an empty world; return the channel to it, and the running versions.
 
     Args:
-        seed: Drives the random numbers of the world itself.
-        limits: What Node may take.
-        program: Name of what it runs.
-        writable: The only folder in which it may write.
-        more: What that is told besides.
+        seed: Seed of the world's own random numbers.
+        limits: Limits of Node.
+        program: Name of the bundled program.
+        writable: The only folder to which it may write.
+        more: Further arguments of the first request.
 
     Raises:
         BodyError: Node or the bundle is missing, or the start failed.
@@ -304,12 +306,12 @@ def started(
 
 
 def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
-    """What has to change for one snapshot to become another, as arguments of `apply`."""
+    """Return the changes from one snapshot to another, as arguments of `apply`."""
     low = after.box.low
     other = before.blocks != after.blocks
     places = np.argwhere(other).tolist()
     gone = before.containers.keys() - after.containers.keys()
-    # A container that is put in place of another one begins empty.
+    # A container that replaces another one begins empty.
     contents = {
         place: items
         for place, items in after.containers.items()

@@ -1,8 +1,9 @@
-"""JavaScript engines of the scripted world, and which programs may have one that was used.
+"""JavaScript engines of the scripted world, and the rule which programs may share one.
 
-An engine takes a millisecond to make, and what one program leaves in it, the next could find. So
-each program gets a new one, but for those that only call skills one after the other with plain
-values: they read nothing there and change nothing, and one engine serves any number of them.
+Creating an engine takes a millisecond, and a program could read data that an earlier program left
+in it. Therefore each program gets a new engine. The exception are programs that only call skills
+one after the other with plain values: they read and change nothing in the engine, so that they can
+share one.
 """
 
 import hashlib
@@ -18,11 +19,11 @@ from typing import Any
 __all__ = ["MEMORY_BYTES", "Engines", "JavaScriptEngine", "leaves_nothing"]
 
 MEMORY_BYTES = 64 << 20
-"""What a program may take."""
+"""Memory limit of a program."""
 _STACK_BYTES = 512 << 10
 _SECONDS = 2
 
-# Whatever ends a line for JavaScript ends a comment, and is in no text.
+# JavaScript's line ends: each ends a comment, and a string literal contains none.
 _ENDS = r"\n\r\u2028\u2029"
 _GAP = rf"(?:\s|//[^{_ENDS}]*+(?:[{_ENDS}]|\Z))*+"
 _WORD = r"[A-Za-z]\w*+"
@@ -37,7 +38,7 @@ _END = re.compile(_GAP, re.ASCII)
 
 
 def leaves_nothing(code: str, skills: Collection[str]) -> bool:
-    """Whether a program is nothing but calls of skills with plain values, one after the other."""
+    """Return True if a program consists only of successive skill calls with plain values."""
     at = 0
     while call := _CALL.match(code, at):
         if call[1] not in skills:
@@ -47,22 +48,22 @@ def leaves_nothing(code: str, skills: Collection[str]) -> bool:
 
 
 class JavaScriptEngine:
-    """An engine of JavaScript, and what a program finds in scope.
+    """JavaScript engine with the scope of a program.
 
     Args:
         username: The agent that runs the program.
         skills: Names of the skills in scope.
-        seed: Decides about random numbers.
+        seed: Seed of its random numbers.
 
     Attributes:
-        call: Given the name of a part of the prelude and its arguments, calls it.
+        call: Function that calls a part of the prelude, given its name and arguments.
         skills: Names of the skills in scope.
-        names: What is in scope, with commas between.
-        failed: What is raised where JavaScript fails.
+        names: Names in scope, separated by commas.
+        failed: Exception that is raised if JavaScript fails.
     """
 
     def __init__(self, username: str, skills: Collection[str], seed: str) -> None:
-        import quickjs  # takes 10 ms, and most nests run no such program
+        import quickjs  # Import here: it takes 10 ms, and most nests run no such program.
 
         self.failed: type[Exception] = quickjs.JSException
         self._context = quickjs.Context()
@@ -76,22 +77,22 @@ class JavaScriptEngine:
         self.names: str = ", ".join(json.loads(self.call("names")))
 
     def read(self, text: str) -> Any:
-        """Return the value of a program's text; raises `failed`."""
+        """Evaluate a program's text and return its value; raises `failed`."""
         return self._context.eval(text)
 
     def advance(self) -> bool:
-        """Do one thing that waits to be done; whether there was any. Raises `failed`."""
+        """Run one pending job; return whether there was any. Raises `failed`."""
         return bool(self._context.execute_pending_job())
 
 
 class Engines:
-    """Engines that programs had which leave nothing behind, kept for the next of them."""
+    """Pool of engines whose programs left nothing behind."""
 
     def __init__(self) -> None:
         self._free: list[JavaScriptEngine] = []
 
     def take(self, username: str, skills: Collection[str]) -> JavaScriptEngine:
-        """An engine for an agent's program that leaves nothing behind, and draws no numbers."""
+        """Return an engine for a program that leaves nothing behind and draws no random numbers."""
         try:
             engine = self._free.pop()
         except IndexError:
@@ -108,10 +109,11 @@ class Engines:
 
 @cache
 def _text() -> str:
-    """What calls a part of the prelude: a function of what `JavaScriptEngine` gives it, as JSON.
+    """Return JavaScript that calls a part of the prelude: a function of arguments as JSON.
 
-    The engine's own clock goes: it tells how long this machine takes. No function is in brackets:
-    those that open with one are read twice, to see whether an arrow comes after them.
+    The engine's own clock stays, because it measures real computing time. No function is in
+    brackets: the engine reads text after an opening bracket twice, to find out whether an arrow
+    follows.
     """
     prelude = (files("beliefnest.bodies") / "scripted_prelude.js").read_text(encoding="utf-8")
     return f"""{{
@@ -133,7 +135,7 @@ given => {{
 
 
 def _shared(name: str, given: str) -> str:
-    """Return a function that gives what a module of the bots' sandbox does, too."""
+    """Return JavaScript of a function that a module of the bots' sandbox exports."""
     built = Path(str(files("beliefnest"))) / "_bundle" / f"{name}.js"
     text = built.read_text(encoding="utf-8")
     return f"() => {{ const module = {{}}, env = {{}};\n{text}\nreturn {given} }}"

@@ -1,7 +1,7 @@
-"""What embodied simulators show to people who visit them, and where.
+"""Exhibits: views of embodied simulators for visitors, and their places in Minecraft.
 
-An exhibit stands in Minecraft as a simulator's state says, beyond view distance of reality and of
-other exhibits. Nothing happens in it by itself, and nothing people do there reaches a simulator.
+An exhibit shows a simulator's state, beyond view distance of reality and of other exhibits. Nothing
+happens in it by itself, and no act of visitors reaches a simulator.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -19,22 +19,22 @@ __all__ = ["Exhibit", "Plot", "Shown", "display_names", "origin_of"]
 
 _CHUNK = 16
 _GAP_CHUNKS = 64
-"""Between two exhibits: more than twice what a game shows at most, 32 chunks."""
+"""Distance between exhibits: more than twice the largest view distance, 32 chunks."""
 _LONGEST_NAME = 16
 
 Contents = tuple[Items, bool]
-"""What is known to be in a container, and whether that is all."""
+"""Known items of a container, and whether they are all."""
 
 
 @dataclass(frozen=True, eq=False)
 class Shown:
-    """What there is to be seen in an exhibit.
+    """Content of an exhibit.
 
     Attributes:
-        blocks: Block states of the box; what is unknown is already what it is to be shown as.
-        containers: What is known of contents.
-        signs: Texts of those that are written on.
-        agents: Who is known to be where, by the name that is shown.
+        blocks: Block states of the box; unknown blocks are replaced by those that represent them.
+        containers: Known contents of containers.
+        signs: Texts of the signs that have one.
+        agents: Agents whose pose is known, by the displayed name.
     """
 
     blocks: BlockGrid
@@ -43,7 +43,7 @@ class Shown:
     agents: Mapping[str, AgentState]
 
     def whole(self) -> dict[str, Any]:
-        """Return all of it as a message."""
+        """Return the whole content as a message."""
         return {
             "blocks": self.blocks.astype("<i4").tobytes(),
             "containers": _rows(self.containers.items()),
@@ -52,7 +52,7 @@ class Shown:
         }
 
     def changes(self, before: "Shown", low: Position) -> dict[str, Any] | None:
-        """What differs from before as a message, None if nothing; `low` is the box's corner."""
+        """Return the changes as a message, None if there are none; `low` is the box's corner."""
         places = np.argwhere(before.blocks != self.blocks).tolist()
         gone = before.containers.keys() - self.containers.keys()
         contents = [
@@ -79,12 +79,12 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """Where an exhibit stands.
+    """Place of an exhibit.
 
     Attributes:
         box: Its box, in scenario coordinates.
-        origin: Where scenario (0, y, 0) lies in Minecraft: x and z.
-        stand: Where one stands well among what it shows, in blocks of Minecraft.
+        origin: Position of scenario (0, y, 0) in Minecraft: x and z.
+        stand: Good position for a visitor, in blocks of Minecraft.
     """
 
     box: Box
@@ -93,13 +93,13 @@ class Plot:
 
     @property
     def corners(self) -> tuple[Position, Position]:
-        """Its box's corners in Minecraft."""
+        """Corners of the box in Minecraft."""
         (x, z), low, high = self.origin, self.box.low, self.box.high
         return (low[0] + x, low[1], low[2] + z), (high[0] + x, high[1], high[2] + z)
 
 
 class Exhibit:
-    """What a simulator holds, as it stands in Minecraft; open one with `Exhibit.opened`."""
+    """View of a simulator in Minecraft; opened by `Exhibit.opened`."""
 
     def __init__(self, channel: Channel, name: str, low: Position, shown: Shown) -> None:
         self._channel = channel
@@ -109,7 +109,7 @@ class Exhibit:
 
     @classmethod
     def opened(cls, channel: Channel, name: str, plot: Plot, shown: Shown) -> Self:
-        """Build it."""
+        """Build the exhibit."""
         channel.request(
             "exhibit",
             exhibit=name,
@@ -122,13 +122,13 @@ class Exhibit:
 
     @property
     def lost(self) -> bool:
-        """True if the process that shows it has ended."""
+        """True if the process that shows the exhibit has ended."""
         return self._channel.lost
 
     def show(self, shown: Shown, tick: int) -> None:
-        """Let it be this, as of a tick of reality.
+        """Change the content, as of a tick of reality.
 
-        Only what is another than before is sent, and no answer awaited.
+        Only changes are sent, and no answer is awaited.
         """
         changes = shown.changes(self._shown, self._low)
         self._shown = shown
@@ -136,13 +136,13 @@ class Exhibit:
             self._channel.post("show", exhibit=self._name, tick=tick, **changes)
 
     def close(self) -> None:
-        """Take it down; on a server there is again what was there before."""
+        """Remove the exhibit; a server gets its former blocks back."""
         if not self.lost:
             self._channel.request("close_exhibit", exhibit=self._name)
 
 
 def origin_of(number: int, box: Box, reality: tuple[int, int]) -> tuple[int, int]:
-    """Where scenario (0, y, 0) of the exhibit of a number, from 1, lies in Minecraft: x and z.
+    """Return where scenario (0, y, 0) of the exhibit with a number, from 1, lies: x and z.
 
     Exhibits stand side by side, away from the border of the world.
     """
@@ -152,10 +152,10 @@ def origin_of(number: int, box: Box, reality: tuple[int, int]) -> tuple[int, int
 
 
 def display_names(agents: Iterable[str], number: int, taken: Collection[str]) -> dict[str, str]:
-    """Return the name that each agent has in the exhibit of a number: its own, with that number.
+    """Return each agent's name in the exhibit with a number: its own name and that number.
 
-    A long one loses letters in its middle. No two are the same, and none is a taken one, capitals
-    or not.
+    A long name loses letters in its middle. All names differ from each other and from the taken
+    ones, also without regard to capitals.
     """
     names: dict[str, str] = {}
     used = {name.lower() for name in taken}

@@ -1,4 +1,4 @@
-"""Ways on foot in the scripted world: from one free cell to the next, one step a tick."""
+"""Paths on foot in the scripted world: from one free cell to the next, one step a tick."""
 
 import heapq
 import math
@@ -24,39 +24,40 @@ _CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 _MOST_CELLS = 100_000
 _MARGIN = 2
 _MOST_WAYS = 1000
-"""That a ground remembers."""
+"""Largest number of paths that a ground caches."""
 
 
 @dataclass(frozen=True, slots=True)
 class Near:
-    """Standing no further from a block than so many blocks.
+    """Goal of standing within a distance of a block.
 
     Attributes:
-        block: Its position.
-        within: Distance between the block's cell and the one stood in.
+        block: Position of the block.
+        within: Largest distance between the block's cell and the agent's.
     """
 
     block: Position
     within: float
 
     def is_met(self, cell: Position) -> bool:
-        """Return True if a cell is near enough."""
+        """Return True if a cell meets the goal."""
         return math.dist(cell, self.block) <= self.within
 
     def steps_left(self, cell: Position) -> float:
-        """How many steps it is to such a cell at least."""
+        """Return a lower bound of the steps from a cell to the goal."""
         return max(0.0, math.dist(cell, self.block) - self.within)
 
 
 @dataclass(frozen=True, slots=True)
 class InReach:
-    """Standing where a hand reaches a block.
+    """Goal of standing where a hand reaches a block.
 
     Attributes:
-        block: Its position.
-        reach: Distance between eyes and the block's middle.
-        beside: Whether one must not stand in it, neither with the feet nor with the head.
-        has_free_line: Given eyes and a block, whether the hand's way there is free; None: always.
+        block: Position of the block.
+        reach: Largest distance between the eyes and the block's middle.
+        beside: Whether feet and head must be outside the block.
+        has_free_line: Function of eyes and a block that returns whether the line between them is
+            free; None if lines are always free.
     """
 
     block: Position
@@ -76,7 +77,7 @@ class InReach:
         return self.has_free_line is None or self.has_free_line(eye, self.block)
 
     def steps_left(self, cell: Position) -> float:
-        """How many steps it is to such a cell at least."""
+        """Return a lower bound of the steps from a cell to the goal."""
         return max(0.0, math.dist(cell, self.block) - self.reach)
 
     def _is_within(self, cell: Position) -> bool:
@@ -85,25 +86,25 @@ class InReach:
 
 
 Goal = Near | InReach
-"""Where a way is to lead."""
+"""Goal of a path."""
 
 
 def feet_in(cell: Position) -> Point:
-    """Where the feet are of somebody who stands in a cell."""
+    """Return the position of the feet of an agent that stands in a cell."""
     return (cell[0] + 0.5, float(cell[1]), cell[2] + 0.5)
 
 
 class Ground:
-    """Where one can stand: two free cells above one another, and below them something solid.
+    """Cells in which agents can stand: two free cells above one another, with a solid one below.
 
-    What is not known is free, and holds whoever stands on it. Open doors and gates are free, and
-    gone through straight on.
+    Unknown cells count as free to walk through and solid to stand on. Open doors and gates are
+    free, but can only be crossed straight.
 
     Args:
         registry: Shapes of blocks.
-        box: The part of space.
+        box: The known part of space.
         blocks: Block state ids, -1 is unknown.
-        opens: Whether doors and gates that are moved by hand are as good as open.
+        opens: Whether doors and gates that can be opened by hand count as open.
     """
 
     def __init__(
@@ -117,7 +118,7 @@ class Ground:
         x, y, z = box.low
         doors = np.argwhere(np.isin(blocks, list(ways))).tolist() if ways else []
         self._doorways = {(x + i, y + j, z + k): ways[int(blocks[i, j, k])] for i, j, k in doors}
-        # A margin all around, so that whatever lies a step away has a place; above the box is air.
+        # Add a margin, so that every neighbour of a cell has an index; above the box is air.
         passing, holding = _widened(free), _widened((blocks < 0) | ~free)
         passing[1:-1, _MARGIN + blocks.shape[1], 1:-1] = True
         standing = np.zeros_like(passing)
@@ -132,23 +133,23 @@ class Ground:
         self._met: dict[tuple[int, Goal], bool] = {}
 
     def stands(self, cell: Position) -> bool:
-        """Return True if somebody can stand in a cell."""
+        """Return True if an agent can stand in a cell."""
         return self._at(self._standing, cell)
 
     def may_hold(self, place: Position) -> bool:
-        """Whether there may be a container at a position: there is one, or it is not known."""
+        """Return True if a position has a container or is unknown."""
         if place not in self._box:
             return False
         state = int(self._blocks[self._box.index(place)])
         return state < 0 or self._registry.is_container(self._registry.name(state))
 
     def is_sign(self, place: Position) -> bool | None:
-        """Return True if there is a sign at a position; None: what is there is not known."""
+        """Return True if there is a sign at a position; None if the position is unknown."""
         state = int(self._blocks[self._box.index(place)]) if place in self._box else AIR
         return None if state < 0 else is_sign(self._registry.name(state))
 
     def steps(self, cell: Position) -> tuple[Position, ...]:
-        """Return the cells that one step leads to: aside, up one block, or down up to three."""
+        """Return the cells that one step leads to: sideways, up one block, or down up to three."""
         found = self._steps.get(cell)
         if found is None:
             steps = self._steps_from(cell)
@@ -159,16 +160,16 @@ class Ground:
 
     @cached_property
     def with_doors_opened(self) -> "Ground":
-        """The same for who opens doors and gates by hand."""
+        """Return the same ground for agents that open doors and gates by hand."""
         return Ground(self._registry, self._box, self._blocks, opens=True)
 
     @property
     def has_doorways(self) -> bool:
-        """True if there is a door or gate that is open, or as good as open."""
+        """True if there is a door or gate that is open or counts as open."""
         return bool(self._doorways)
 
     def _is_way(self, state: int) -> bool:
-        """Return True if a block is a door or gate that can be gone through."""
+        """Return True if a block is a door or gate that can be crossed."""
         if state < 0 or not is_doorway(name := self._registry.name(state)):
             return False
         by_hand = self._opens and moves_by_hand(name)
@@ -187,8 +188,9 @@ class Ground:
     def way(
         self, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
     ) -> tuple[Position, ...] | None:
-        """Return the way that `find_way` finds, looked for once where nothing is to be avoided."""
-        # What somebody knows of free lines is not kept: it changes, and is no matter of the ground.
+        """Return the path of `find_way`, cached if no cells are to be avoided."""
+        # Do not cache by what an agent knows of free lines: it changes, and does not belong to the
+        # ground.
         if avoiding or (isinstance(goal, InReach) and goal.has_free_line is not None):
             return find_way(self, start, goal, avoiding)
         wanted = (start, goal)
@@ -201,14 +203,16 @@ class Ground:
             else:
                 self._ways[wanted] = found = find_way(self, start, goal)
                 if found is None and not known:
-                    # Who asks next from there need not look for a way through all of it.
+                    # Remember the area, so that the next search from there need not explore all of
+                    # it.
                     self._areas.append(self._area(start))
         return self._ways[wanted]
 
     def may_lead(self, start: Position, goal: Goal) -> bool:
-        """Return True if a way may lead somewhere; False: none does.
+        """Return True if a path to a goal may exist; False if none does.
 
-        The goal is met in a part of the ground that has all cells in it that can be got to.
+        The known areas contain all cells that can be reached from one another. A path exists only
+        if one of the cells in the area of `start` meets the goal.
         """
         number = next((n for n, area in enumerate(self._areas) if start in area), None)
         if number is None:
@@ -220,7 +224,7 @@ class Ground:
         return self._met[asked]
 
     def _area(self, start: Position) -> frozenset[Position]:
-        """Return all cells that can be got to from one, as far as ways are looked for."""
+        """Return all cells that can be reached from a cell, within the limit of searches."""
         area, waiting = {start}, [start]
         while waiting and len(area) < _MOST_CELLS:
             for cell in self.steps(waiting.pop()):
@@ -273,16 +277,16 @@ def _widened(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
 def find_way(
     ground: Ground, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
 ) -> tuple[Position, ...] | None:
-    """Return the shortest way on foot; of several the same one each time.
+    """Return the shortest path on foot; among several always the same one.
 
     Args:
-        ground: Where one can stand.
-        start: The cell one stands in.
-        goal: Where the way is to lead.
-        avoiding: Cells that it must not lead through.
+        ground: Cells in which agents can stand.
+        start: Cell in which the agent stands.
+        goal: Goal of the path.
+        avoiding: Cells that the path must not contain.
 
     Returns:
-        The cells after `start`, in order; None: there is no way.
+        The cells after `start`, in order; None if there is no path.
     """
     came: dict[Position, Position | None] = {start: None}
     costs: dict[Position, float] = {start: 0.0}

@@ -1,4 +1,4 @@
-"""What programs of the scripted world read of its blocks, made once for each grid."""
+"""Data that programs of the scripted world read of blocks, computed once for each grid."""
 
 import json
 from dataclasses import dataclass
@@ -20,11 +20,11 @@ _Value = TypeVar("_Value")
 
 @dataclass(frozen=True, slots=True)
 class KnownBlocks:
-    """The blocks of a box as programs get them.
+    """Blocks of a box in the forms that programs use.
 
     Attributes:
-        text: All of them, as JSON.
-        ground: Where one can stand among them.
+        text: All blocks as JSON.
+        ground: Cells in which agents can stand.
     """
 
     text: str
@@ -32,7 +32,7 @@ class KnownBlocks:
 
 
 class Grounds:
-    """The latest grids of blocks that programs read; equal ones are the same, in any body."""
+    """Cache of the latest grids that programs read. Bodies with equal grids share an entry."""
 
     def __init__(self) -> None:
         self._registry = Registry.load()
@@ -40,7 +40,7 @@ class Grounds:
         self._equal: dict[tuple[Box, bytes], KnownBlocks] = {}
 
     def of(self, box: Box, grid: BlockGrid) -> KnownBlocks:
-        """What programs read of a grid, which does not change any more."""
+        """Return the data of a grid, which must not change any more."""
         same = self._same.get(id(grid))
         if same is not None and same[0] is grid:
             return same[1]
@@ -49,7 +49,7 @@ class Grounds:
         if known is None:
             known = KnownBlocks(self._text(box, grid), Ground(self._registry, box, grid))
             self._equal[content] = known
-        # The grid is kept with them, so that no other one gets its number.
+        # Keep the grid alive, so that no other one gets its id.
         self._same[id(grid)] = (grid, known)
         _keep_latest(self._same)
         _keep_latest(self._equal)

@@ -1,4 +1,4 @@
-"""The embedded world in real time, where people are agents as well; beliefs in another process."""
+"""Embedded world in real time, in which people can play agents; beliefs in another process."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -17,12 +17,12 @@ __all__ = ["HostedWorld"]
 
 
 class HostedWorld(RealtimeWorld):
-    """A process for the real world, which people can join, and another one for all beliefs.
+    """Process for the real world, which people can join, and another one for all beliefs.
 
     Args:
-        address: Where people come in.
-        seed: Drives the random numbers of beliefs' bodies.
-        limits: What each process may take.
+        address: Address on which people join.
+        seed: Seed of the random numbers of beliefs' bodies.
+        limits: Limits of each process.
     """
 
     def __init__(
@@ -34,10 +34,10 @@ class HostedWorld(RealtimeWorld):
 
     @classmethod
     def start(cls, address: ListenAddress, seed: int, limits: ProcessLimits | None = None) -> Self:
-        """Start the process of the real world and listen, now.
+        """Start the process of the real world and listen, at once.
 
         Raises:
-            BodyError: Node or the bundle is missing, or the port cannot be had.
+            BodyError: Node or the bundle is missing, or the port is not available.
         """
         world = cls(address, seed, limits)
         world._live()
@@ -45,50 +45,50 @@ class HostedWorld(RealtimeWorld):
 
     @property
     def address(self) -> str:
-        """Where a Minecraft client joins: `HOST:PORT`."""
+        """Address for Minecraft clients: `HOST:PORT`."""
         return str(self._address)
 
     @property
     def origin(self) -> tuple[int, int]:
-        """People are told the scenario's coordinates."""
+        """Origin (0, 0): people see the scenario's coordinates."""
         return (0, 0)
 
     @property
     def shows_reality(self) -> bool:
-        """False: only who is an agent is in it."""
+        """False: only agents can enter it."""
         return False
 
     @property
     def minecraft(self) -> str:
-        """The version that it has to be."""
+        """Minecraft version of the clients."""
         return MINECRAFT
 
     def pause(self, *, paused: bool) -> None:
-        """Let time stand still in the real world, or go on."""
+        """Stop or resume time in the real world."""
         self._paused = paused
         self._live().request("pause", paused=paused)
 
     def hearing(self, *, everybody: bool) -> None:
-        """Say whether all people hear whatever is said aloud, so that nothing has to wait."""
+        """Set whether all people hear everything said aloud, so that lines need not wait."""
         self._live().post("hearing", **{"global": everybody})
 
     def heard(self, tick: int, agents: Sequence[Sequence[str]]) -> None:
-        """Say who heard what was said aloud in a tick; people are told no more than that.
+        """Report the hearers of a tick's utterances; people receive only the lines they heard.
 
         Args:
             tick: The tick.
-            agents: For each thing said in it, in order, the names of who heard it.
+            agents: For each utterance, in order, the names of its hearers.
         """
         self._live().post("hear", tick=tick, heard=[list(names) for names in agents])
 
     def close(self) -> None:
-        """End both processes; people are told that it is over."""
+        """End both processes; people get a message that the run is over."""
         self._closed = True
         self._beliefs.close()
         channel, self._channel = self._channel, None
         if channel is None:
             return
-        # Where the process has ended already, everybody is gone.
+        # If the process has ended already, nobody is left to be told.
         with suppress(BodyError):
             if not channel.lost:
                 channel.request("shutdown")
@@ -104,6 +104,6 @@ class HostedWorld(RealtimeWorld):
         except BodyError:
             channel.close()
             raise
-        # Where any port would do, people come back to the one they know.
+        # If any port was allowed, keep the one that people know.
         self._address = replace(self._address, port=told["port"])
         return channel

@@ -1,7 +1,7 @@
-"""One agent program of the scripted world, in a JavaScript engine of its own.
+"""Agent program of the scripted world, in a JavaScript engine of its own.
 
-The engine is the one that the sandbox of bots has, here in this process. A program reaches nothing
-but the values it is given, has 64 MB, and computes for two seconds at most between two ticks.
+The engine is that of the bots' sandbox, inside this process. A program can use only the values it
+is given. It has 64 MB of memory and at most two seconds of computing time between two ticks.
 """
 
 import json
@@ -17,20 +17,23 @@ __all__ = ["JavaScriptProgram"]
 _MOST_JOBS = 100_000
 _NOTHING: Mapping[str, Any] = {"log": [], "done": None, "waiting": 0, "listens": False}
 _FIRST_LINE = 1000
-"""Lines before a program's own: the engine names no files, so that they tell its places apart."""
+"""Line number of a program's first line.
+
+The engine reports no file names, so that large line numbers mark the program.
+"""
 _PLACE = re.compile(r"<input>:(\d+)(?::(\d+))?")
 _WHOLE = re.compile(r"\s*(?:async\s+)?function\b")
 
 
 class JavaScriptProgram:
-    """A program, begun with `start`.
+    """Program that begins with `start`.
 
     Args:
         username: The agent that runs it.
         skills: Names of the skills in its scope.
         code: Its text.
-        seed: Decides about its random numbers.
-        engines: Those that may be used again.
+        seed: Seed of its random numbers.
+        engines: Pool of engines to share.
     """
 
     def __init__(
@@ -56,11 +59,11 @@ class JavaScriptProgram:
 
     @property
     def reads(self) -> bool:
-        """True if it can read anything of the world."""
+        """True if the program can read anything of the world."""
         return not self._leaves_nothing
 
     def start(self) -> None:
-        """Begin it, and run it until it waits."""
+        """Start the program, and run it until it waits."""
         code = self._code
         whole = _WHOLE.match(code) is not None
         lines = "\n" * _FIRST_LINE
@@ -74,25 +77,25 @@ class JavaScriptProgram:
             self._fault = _fault_of(str(error), kind="syntax")
 
     def end(self) -> None:
-        """Leave the engine to others, if it is as it was; the program is not to go on."""
+        """Return a shareable engine to the pool; the program must not continue."""
         is_over = self._taken["done"] is not None and self._is_stuck and self._fault is None
         if self._leaves_nothing and is_over:
             self._engines.give_back(self._engine)
 
     def see(self, told: Mapping[str, object], blocks: str) -> None:
-        """Tell what the program reads of the world from now on."""
-        # A text that is a map of the world takes long to hand over.
+        """Set what the program reads of the world from now on."""
+        # Convert only a new text: handing over a large map takes long.
         new = blocks != self._blocks
         self._blocks = blocks
         self._call("see", json.dumps(told), blocks if new else None)
 
     @property
     def listens(self) -> bool:
-        """True if it wants to be told what is said."""
+        """True if the program listens for speech."""
         return bool(self._taken["listens"])
 
     def hear(self, heard: Sequence[tuple[str, str, str | None]]) -> None:
-        """Tell what its agent heard: speaker, text, and to whom it was whispered."""
+        """Report what its agent heard: speaker, text, and the recipient of a whisper."""
         self._turn("hear", json.dumps(heard))
 
     def settle(self, number: int, *, ok: bool, value: object) -> None:
@@ -108,24 +111,24 @@ class JavaScriptProgram:
             self._fault = _fault_of(str(error), kind="error")
 
     def calls(self) -> list[tuple[int, str, list[Any]]]:
-        """Number, name and arguments of the skills it has called since this was asked last."""
+        """Return number, name and arguments of the skill calls since the last request."""
         called = [(number, name, args) for number, name, args in self._taken["calls"]]
         self._taken["calls"] = []
         return called
 
     @property
     def log(self) -> tuple[str, ...]:
-        """What it wrote to its console."""
+        """Lines that the program wrote to its console."""
         return tuple(self._taken["log"])
 
     @property
     def ended(self) -> bool:
-        """True if it has ended, well or not, or can never end."""
+        """True if the program has ended or can never end."""
         return self._fault is not None or self._taken["done"] is not None or self._is_stuck
 
     @property
     def fault(self) -> Fault | None:
-        """Why it failed; None if it did not, or goes on."""
+        """Reason of its failure; None if it has not failed."""
         if self._fault is not None:
             return self._fault
         done = self._taken["done"]

@@ -1,4 +1,4 @@
-"""How much the process behind a world may take."""
+"""Limits of the process behind a world."""
 
 from dataclasses import dataclass
 
@@ -9,20 +9,21 @@ __all__ = ["ProcessLimits"]
 
 @dataclass(frozen=True, slots=True)
 class ProcessLimits:
-    """What Node may take; beyond that it is killed or ends, and another one takes its place.
+    """Limits of Node; a process that exceeds them is killed or ends, and is then replaced.
 
-    Programs have budgets of their own, which are far below (SECURITY.md). These bounds are for
-    what those budgets did not stop, so they are generous: no slow machine comes near them.
+    Programs have budgets of their own, which are far lower (SECURITY.md). These limits are for
+    failures that the budgets did not stop. They are generous, so that no slow machine comes near
+    them.
 
     Attributes:
-        silence: Seconds without any sign of life while a request is under way. Frames,
-            ticks that pass and programs that compute within their budget are signs of life.
+        silence: Seconds without a heartbeat during a request. Frames, ticks that pass and programs
+            that compute within their budget count as heartbeats.
         heap: Megabytes of JavaScript objects.
-        memory: Megabytes of writable memory in all, about a thousand of which V8 reserves without
-            using them; held by the operating system, on Linux only.
+        memory: Megabytes of writable memory in total, about a thousand of which V8 reserves without
+            using them; enforced by the operating system, on Linux only.
 
     Raises:
-        InputError: A limit is too small for Node to live with.
+        InputError: A limit is too small for Node.
     """
 
     silence: float = 60.0

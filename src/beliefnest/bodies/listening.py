@@ -1,4 +1,4 @@
-"""Where people come into the embedded world in real time, whose name is `embedded://HOST:PORT`."""
+"""Address on which people join the embedded world in real time: `embedded://HOST:PORT`."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -9,10 +9,10 @@ from beliefnest.errors import InputError
 __all__ = ["DEFAULT_PORT", "LOOPBACK", "ListenAddress", "is_hosted"]
 
 LOOPBACK = "127.0.0.1"
-"""Where only people at this machine come in."""
+"""Address for people at this machine only."""
 
 DEFAULT_PORT = 25565
-"""Where Minecraft looks for a server."""
+"""Port on which Minecraft expects a server."""
 
 _SCHEME = "embedded"
 _HIGHEST = 65535
@@ -25,11 +25,11 @@ def is_hosted(world: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ListenAddress:
-    """Where an embedded world in real time lets people in.
+    """Address on which an embedded world in real time listens.
 
     Attributes:
         host: Address of this machine.
-        port: Port; 0: any that is free.
+        port: Port; 0 for any free one.
     """
 
     host: str = LOOPBACK
@@ -37,10 +37,10 @@ class ListenAddress:
 
     @classmethod
     def of(cls, listen: int | str) -> "ListenAddress":
-        """Return the address that is meant by a port of the loopback, or by `HOST:PORT`.
+        """Return the address for a port of the loopback, or for `HOST:PORT`.
 
         Raises:
-            InputError: It is neither.
+            InputError: The value is neither.
         """
         if isinstance(listen, int):
             return cls._checked(LOOPBACK, listen, listen)
@@ -58,7 +58,7 @@ class ListenAddress:
         """Return the address in the name of a world.
 
         Raises:
-            InputError: There is none.
+            InputError: The name contains no valid address.
         """
         return cls.of(world.removeprefix(f"{_SCHEME}://"))
 
@@ -72,12 +72,12 @@ class ListenAddress:
 
     @property
     def told(self) -> dict[str, Any]:
-        """What the Minecraft side is told of it."""
+        """Return the message about it to the Minecraft side."""
         return asdict(self)
 
     @property
     def world(self) -> str:
-        """The name of the world."""
+        """Name of the world."""
         return f"{_SCHEME}://{self}"
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""The channel's messages as Python values, and back (design/channel.md)."""
+"""Conversion of the channel's messages to Python values and back (design/channel.md)."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -69,10 +69,10 @@ class _Result(msgspec.Struct, frozen=True):
 
 
 def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
-    """Region and frame of a frame message.
+    """Return region and frame of a frame message.
 
     Raises:
-        BodyError: The message is not of the agreed form.
+        BodyError: The message is malformed.
     """
     got = _converted(message, _Frame)
     return got.region, Frame(
@@ -86,10 +86,10 @@ def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
 
 
 def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
-    """Return a snapshot message of a box as a value.
+    """Return the snapshot in a message about a box.
 
     Raises:
-        BodyError: The message is not of the agreed form.
+        BodyError: The message is malformed.
     """
     got = _converted(message, _Snapshot)
     if len(got.blocks) != 4 * box.shape[0] * box.shape[1] * box.shape[2]:
@@ -121,17 +121,17 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
 
 
 def signs_message(signs: Mapping[Position, str]) -> dict[str, Any]:
-    """What is written on signs, as a further part of a message; nothing if nothing is."""
+    """Return the texts on signs as a further part of a message; empty if there are none."""
     return {"signs": [[*place, text] for place, text in sorted(signs.items())]} if signs else {}
 
 
 def items_message(items: Mapping[int, DroppedItem]) -> dict[str, Any]:
-    """Dropped items by number as a message."""
+    """Return dropped items by number as a message."""
     return {str(number): item for number, item in sorted(items.items())}
 
 
 def contents_message(containers: Mapping[Position, Items]) -> list[list[Any]]:
-    """Container contents as rows of x, y, z, items."""
+    """Return container contents as rows of x, y, z, items."""
     return [[*place, dict(items)] for place, items in sorted(containers.items())]
 
 
@@ -150,7 +150,7 @@ def agent_message(agent: AgentState) -> dict[str, Any]:
 
 
 def percepts_message(sensed: Sensed) -> dict[str, Any]:
-    """PERCEPTS of an agent whose program begins: all that it knows."""
+    """Return PERCEPTS of an agent whose program begins: everything that it knows."""
     return {
         "states": sensed.blocks.astype("<i4").tobytes(),
         "agents": {name: pose_message(agent) for name, agent in sensed.agents.items()},
@@ -161,7 +161,7 @@ def percepts_message(sensed: Sensed) -> dict[str, Any]:
 
 
 def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, Any]:
-    """PERCEPTS of an agent: what it knows now and did not; `low` is the box's lowest corner."""
+    """Return PERCEPTS of an agent's new knowledge; `low` is the box's lowest corner."""
     places = np.argwhere(before.blocks != after.blocks).tolist()
     agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
     for name, agent in after.agents.items():
@@ -186,7 +186,7 @@ def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, 
 
 
 def pose_message(agent: AgentState) -> dict[str, Any]:
-    """What others see of an agent as a message."""
+    """Return the visible part of an agent's state as a message."""
     return {
         "position": agent.position,
         "yaw": agent.yaw,
@@ -199,10 +199,10 @@ def pose_message(agent: AgentState) -> dict[str, Any]:
 def results_of(
     message: Mapping[str, Any], happened: tuple[tuple[int, Event], ...]
 ) -> Mapping[str, ProgramResult]:
-    """Results of programs by agent; what happened in the run, by tick, belongs to all of them.
+    """Return results of programs by agent; the events of the run, by tick, belong to all.
 
     Raises:
-        BodyError: The message is not of the agreed form.
+        BodyError: The message is malformed.
     """
     got = _converted(message, dict[str, _Result])
     return {
@@ -223,17 +223,17 @@ def results_of(
 
 
 def _block(row: list[int | str]) -> tuple[Position, Block]:
-    """Position and block of a row x, y, z, state, with the text of a sign that has one."""
+    """Return position and block of a row x, y, z, state, and a sign's text if it has one."""
     match row:
         case [int(x), int(y), int(z), int(state)]:
             return (x, y, z), state
         case [int(x), int(y), int(z), int(state), str(text)]:
             return (x, y, z), Sign(state, text)
-    raise BodyError(f"Node sent a block that is not of the agreed form: {row}")
+    raise BodyError(f"Node sent a malformed block: {row}")
 
 
 def _frozen(event: Event) -> Event:
-    """Return the event with tuples in its detail, and claims as they are kept."""
+    """Return the event with tuples in its detail, and claims in their stored form."""
     detail = {
         key: tuple(value) if isinstance(value, list) else value
         for key, value in event.detail.items()
@@ -247,11 +247,11 @@ def _claims(told: Any) -> tuple[Claim, ...]:
     try:
         return claims_from_plain(told)
     except BeliefNestError as fault:
-        raise BodyError(f"Node sent claims that are none: {fault}") from fault
+        raise BodyError(f"Node sent malformed claims: {fault}") from fault
 
 
 def _converted(message: Any, kind: type[Any]) -> Any:
     try:
         return msgspec.convert(message, kind, strict=False)
     except msgspec.ValidationError as error:
-        raise BodyError(f"Node sent a message that is not of the agreed form: {error}") from error
+        raise BodyError(f"Node sent a malformed message: {error}") from error

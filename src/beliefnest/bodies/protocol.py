@@ -1,4 +1,4 @@
-"""What a world and the bodies in it can do, whichever world it is."""
+"""Interfaces of a world and the bodies in it, for all kinds of worlds."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -34,29 +34,29 @@ __all__ = [
 ]
 
 Sink = Callable[[Frame], None]
-"""Takes the frames of a body as they come, in order of tick."""
+"""Receiver of a body's frames, in order of tick."""
 
 
 KILLED = "killed"
-"""Kind of failure of a program under which the process behind the world ended."""
+"""Kind of failure of a program whose world's process ended."""
 
 NO_WAY = "no_way"
-"""Reason of a failure: what the program made for cannot be reached on foot."""
+"""Reason of a failure: the target cannot be reached on foot."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Why a program failed, for its writer.
+    """Failure of a program, described for its author.
 
     Attributes:
         message: What went wrong and what to do.
-        kind: Kind of failure, as `error`, `skill`, `syntax`, `timeout`, `fuel`, `bot` (all of
-            them are in docs/programs.md), or `killed`: the process behind the world ended, and
-            nothing of the program was kept.
-        line: Line in the program's own text, from 1; None where there is none.
+        kind: Kind of failure, such as `error`, `skill`, `syntax`, `timeout`, `fuel`, `bot`
+            (docs/programs.md lists all), or `killed`: the process behind the world ended, and no
+            effect of the program was kept.
+        line: Line in the program's own text, from 1; None if unknown.
         column: Column in that line, from 1.
         skill: The skill that failed, if one did.
-        reason: What sort of failure of a skill it is, as `NO_WAY`; None: none that is told apart.
+        reason: Reason of a skill's failure, such as `NO_WAY`; None for all others.
     """
 
     message: str
@@ -76,14 +76,14 @@ _NO_DEEDS = (EventKind.CHAT, EventKind.THINK, EventKind.BLOCK_UPDATE)
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """What a program asked its bot to make for, whatever came of it.
+    """Target that a program asked its bot to walk to or to use, whether or not it succeeded.
 
     Attributes:
-        tick: When it asked.
-        call: The skill or call of the bot that it asked with.
-        place: Where, in blocks; None where it named none, as for a goal of another kind.
-        agent: Whom, if it asked for an agent; None: none.
-        uses: Whether it asked to use what is there (open, dig, press); False: to walk there.
+        tick: Tick of the call.
+        call: The skill, or the bot's method.
+        place: Position in blocks; None if the call names none, as for another kind of goal.
+        agent: Agent that is the target; None if it is none.
+        uses: True if the call uses the target (opens, digs, presses); False if it only walks there.
     """
 
     tick: int
@@ -95,11 +95,11 @@ class Aim:
 
 @dataclass(frozen=True, slots=True)
 class Unfinished:
-    """What was still going on when a program ended, and was stopped then.
+    """Activity that was unfinished at the end of a program and was stopped.
 
     Attributes:
-        what: The skill or call that was not waited for, the timer, or what the bot was doing.
-        line: Line that began it; None where no call of the program is known for it.
+        what: The skill or call that was not awaited, the timer, or the bot's activity.
+        line: Line that began it; None if it belongs to no known call of the program.
     """
 
     what: str
@@ -107,7 +107,7 @@ class Unfinished:
 
     @property
     def is_call(self) -> bool:
-        """True if it is a skill or a call of the bot, which `await` would have waited for."""
+        """True if it is a call of a skill or of the bot, for which `await` is missing."""
         return " " not in self.what and self.what not in ("setTimeout", "setInterval")
 
     def __str__(self) -> str:
@@ -116,14 +116,14 @@ class Unfinished:
 
 @dataclass(frozen=True, slots=True)
 class Called:
-    """A call that a program made: of a skill, or of its bot to speak.
+    """Recorded call of a program: of a skill, or of its bot to speak.
 
     Attributes:
-        name: What it called.
-        given: With which arguments, as JSON.
-        answer: What came of it, as JSON: `{"ok", "value"}`; None: it was under way in the end.
-        ticks: For how long it was under way; 0 if it is over.
-        since: The tick at which it was called first.
+        name: Name of the skill or method.
+        given: Arguments as JSON.
+        answer: Result as JSON: `{"ok", "value"}`; None if the call had not finished.
+        ticks: Number of ticks for which an unfinished call had run; 0 if it has finished.
+        since: Tick of the call.
     """
 
     name: str
@@ -135,16 +135,16 @@ class Called:
 
 @dataclass(frozen=True, slots=True)
 class ProgramPast:
-    """What a program had done when it was cut, from where it goes on.
+    """Record of a program up to its interruption, with which it can be resumed.
 
-    Its text is run again, and the calls that were over give what they gave, without being done
-    once more; the one that was under way is begun anew. From where it calls something else, since
-    it reads another world now, it does whatever it calls.
+    The program's text runs again. Calls that had finished return their recorded results without
+    being executed again; an unfinished call begins anew. As soon as the program makes another call
+    than recorded, because it reads another world now, its calls are executed normally.
 
     Attributes:
-        tick: The tick at which it began at first, which its random numbers hang on.
-        calls: In the order in which it made them.
-        until: The tick at which it was cut.
+        tick: Tick at which the program first began; its random numbers depend on it.
+        calls: Its calls in order.
+        until: Tick of the interruption.
     """
 
     tick: int
@@ -153,9 +153,10 @@ class ProgramPast:
 
     @property
     def heard_until(self) -> int:
-        """The tick up to which it knows what was said: later words are told when it goes on.
+        """Last tick whose speech the program has heard; later lines are reported on resumption.
 
-        Whoever waited for words had got none yet. In the tick in which it is cut it hears nothing.
+        A program that waited for speech had heard none yet. In the tick of its interruption a
+        program hears nothing.
         """
         waits = [c.since for c in self.calls if c.name == "waitForChat" and c.answer is None]
         return min([*waits, self.until - 1])
@@ -163,20 +164,20 @@ class ProgramPast:
 
 @dataclass(frozen=True, slots=True)
 class ProgramResult:
-    """What became of a program.
+    """Result of a program.
 
     Attributes:
-        agent: Who ran it.
+        agent: Agent that ran it.
         ok: Whether it ended without an error.
-        error: Why it failed; None if it did not.
-        ticks: How many ticks it ran.
-        happened: What happened in the simulator meanwhile, whoever did it, in order: (tick, event).
-        lines: Lines of its text that ran, from 1, rising.
-        log: What it wrote to its console, bounded.
-        unfinished: What was stopped because it was still going on at the program's end.
-        aims: What it asked its bot to make for, in order, bounded.
-        calls: What it called, in order; empty where that was too much to go on from.
-        placed: What the body had to place otherwise than believed; see `Simulator.placed`.
+        error: Reason of its failure; None if it did not fail.
+        ticks: Number of ticks that it ran.
+        happened: All events in the simulator during the run, by any agent, in order: (tick, event).
+        lines: Executed lines of its text, from 1, ascending.
+        log: Lines that it wrote to its console, limited in length.
+        unfinished: Activities that were stopped at the program's end.
+        aims: Targets that it asked its bot for, in order, limited in number.
+        calls: Its calls, in order; empty if there are too many to resume from.
+        placed: Things that the body had to place otherwise than believed; see `Simulator.placed`.
     """
 
     agent: str
@@ -201,7 +202,7 @@ class ProgramResult:
 
     @property
     def hint(self) -> str | None:
-        """Says so if it ended well while calls went on that nothing waited for; else None."""
+        """Hint that a successful program left calls unfinished for lack of `await`; else None."""
         calls = [str(each) for each in self.unfinished if each.is_call]
         if not self.ok or not calls:
             return None
@@ -209,12 +210,12 @@ class ProgramResult:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """What happened in the simulator meanwhile, whoever did it, in order."""
+        """All events in the simulator during the run, by any agent, in order."""
         return tuple(event for _, event in self.happened)
 
     @property
     def actions(self) -> tuple[Event, ...]:
-        """What the program's agent did, in order; what it said and thought is no deed."""
+        """Acts of the program's agent, in order; speech and thoughts are not among them."""
         return tuple(
             event
             for _, event in self.happened
@@ -223,7 +224,7 @@ class ProgramResult:
 
     @property
     def said(self) -> tuple[tuple[int, str], ...]:
-        """What the program's agent said aloud or to one, in order: (tick, text)."""
+        """Utterances of the program's agent, said aloud or whispered, in order: (tick, text)."""
         return tuple(
             (tick, event.detail["text"])
             for tick, event in self.happened
@@ -232,22 +233,22 @@ class ProgramResult:
 
     @property
     def killed(self) -> bool:
-        """True if the process behind the world ended under it; then nothing of it was kept."""
+        """True if the process behind the world ended; then no effect of the run was kept."""
         return self.error is not None and self.error.kind == KILLED
 
 
 @dataclass(frozen=True)
 class Sensed:
-    """What a program may read of the world.
+    """Knowledge of the world that a program may read.
 
     Attributes:
         blocks: Block state ids of the box, -1 is unknown.
-        agents: The other agents that its own perceives now; of itself it knows by its body.
-        items: Dropped items by number, where they were seen last.
-        heard: What was heard in the latest tick: speaker, text, and to whom it was whispered.
-        signs: What is written on signs, by position; a sign that is not among them is blank.
-        has_free_line: Given eyes and a block, whether nothing that it knows of hides the block
-            from there; None: nothing ever does.
+        agents: The other agents that its own perceives now; its own state it knows by its body.
+        items: Dropped items by number, at their last seen positions.
+        heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
+        signs: Known texts of signs, by position; all other signs are blank.
+        has_free_line: Function of eyes and a block that returns whether no known block hides it;
+            None if nothing is ever hidden.
     """
 
     blocks: BlockGrid
@@ -259,20 +260,20 @@ class Sensed:
 
 
 FreeLine = Callable[[Point, Position], bool]
-"""Given eyes and a block: whether the block can be seen from there."""
+"""Function of eyes and a block that returns whether the block can be seen from there."""
 
 Sense = Callable[[], Sensed]
-"""What a program may read of the world as of the latest tick that is over."""
+"""Function that returns what a program may read, as of the latest tick that has ended."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunRules:
-    """How programs run in a body.
+    """Rules of running programs in a body.
 
     Attributes:
-        speech_ticks: Ticks that it takes to say something; 0: it is said in the next tick.
-        remembers: Whether results tell what programs called, so that they can go on when cut.
-        past: Of agents whose programs go on where they were cut.
+        speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
+        remembers: Whether results contain the calls of programs, so that these can be resumed.
+        past: Records of the programs that are resumed, by agent.
     """
 
     speech_ticks: int = 0
@@ -281,15 +282,15 @@ class RunRules:
 
 
 AS_USUAL = RunRules()
-"""The rules of who says nothing about them."""
+"""Default rules."""
 
 
 class Body(Protocol):
-    """One simulator's part of a world; its clock stands still between the calls, or it `goes_on`.
+    """One simulator's part of a world; its clock stops between calls unless it `goes_on`.
 
-    Any call but `close` may raise BodyLostError: the process behind the world ended. What was
-    asked for has not happened, whatever frames it sent; the body and all others of that
-    process are of no more use, and the world can be asked for new ones.
+    Any call but `close` may raise BodyLostError: the process behind the world ended. The requested
+    changes have then not happened, whatever frames were sent. The body and all others of that
+    process are unusable; the world can open new ones.
     """
 
     @property
@@ -298,18 +299,18 @@ class Body(Protocol):
 
     @property
     def goes_on(self) -> bool:
-        """True if time passes in it between the calls; the next call tells what happened."""
+        """True if time passes in it between calls; the next call reports the events."""
 
     @property
     def tick(self) -> int:
-        """The body's latest tick."""
+        """Latest tick of the body."""
 
     @property
     def internal_state(self) -> bytes:
-        """What goes on in it besides its snapshot's facts, as of the end of the last call."""
+        """State of processes that its snapshot does not contain, at the end of the last call."""
 
     def snapshot(self) -> Snapshot:
-        """Return all there is in it now."""
+        """Return the present state."""
 
     def run(
         self,
@@ -321,14 +322,14 @@ class Body(Protocol):
         """Run programs by agent, together, until the last has ended.
 
         Args:
-            programs: Their texts.
-            timeout_ticks: Ticks after which they are stopped.
-            senses: Of agents whose programs may read no more than they are told by this.
-            rules: How they run.
+            programs: Texts of the programs.
+            timeout_ticks: Number of ticks after which they are stopped.
+            senses: Knowledge, by agent, for the programs that may read nothing else.
+            rules: Rules of the run.
 
         Raises:
-            WorldError: An agent is not in this body, or the world cannot run such programs;
-                nothing was changed.
+            WorldError: An agent is not in this body, or the world cannot run such programs; nothing
+                was changed.
             BodyError: The Minecraft side failed.
         """
 
@@ -336,14 +337,14 @@ class Body(Protocol):
         """Let ticks pass without programs."""
 
     def set_state(self, snapshot: Snapshot) -> None:
-        """Be as the snapshot says, by changing only what differs; no frames are sent."""
+        """Set the state to a snapshot by changing only what differs; no frames are sent."""
 
     def close(self) -> None:
-        """Give the body up, also if it is lost; a second call does nothing."""
+        """Close the body, also if it is lost; a second call does nothing."""
 
 
 class World(Protocol):
-    """Where bodies live. If its process has ended, the next body is opened in a new one."""
+    """Place where bodies live. If its process has ended, the next body starts a new one."""
 
     @property
     def has_physics(self) -> bool:
@@ -351,16 +352,16 @@ class World(Protocol):
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """Program to version, of what runs."""
+        """Versions of the running programs by name."""
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
-        """Make a body and fill it.
+        """Create a body and fill it.
 
         Args:
             name: Name of the body in this world, unique.
             seed: Seed of all its random numbers.
-            snapshot: What it is filled with.
-            sink: Takes its frames.
+            snapshot: Initial state.
+            sink: Receiver of its frames.
 
         Raises:
             BodyLostError: The process behind the world ended meanwhile.
@@ -368,10 +369,10 @@ class World(Protocol):
         """
 
     def another(self) -> "World":
-        """One more world of the kind, with nothing in it; it is started with its first body."""
+        """Return another empty world of the same kind; it starts with its first body."""
 
     def interrupt(self) -> None:
-        """End what it is doing for another thread, and all its bodies; they are lost."""
+        """Interrupt its work for another thread, and close all its bodies; they are lost."""
 
     def close(self) -> None:
-        """End the world and all its bodies."""
+        """Close the world and all its bodies."""

@@ -1,4 +1,4 @@
-"""Reality in real time, in a process of its own that has sockets; beliefs in the embedded world."""
+"""Real world in real time, in a process with sockets; beliefs in the embedded world."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
@@ -18,9 +18,9 @@ _REALITY = "/"
 
 
 class RealtimeBody(EmbeddedBody):
-    """The real world in real time: a call first tells what has happened since the last one.
+    """Real world in real time: a call first reports the events since the last one.
 
-    `set_state` makes the place what is asked for, whatever happened there meanwhile.
+    `set_state` sets the requested state, whatever happened in the meantime.
     """
 
     @property
@@ -30,14 +30,14 @@ class RealtimeBody(EmbeddedBody):
 
 
 class RealtimeWorld(Owned, ABC):
-    """A process for the real world, and an embedded world for all others.
+    """Process for the real world, and an embedded world for all others.
 
-    Two processes of Node: the one that plays the real world opens sockets, the one in which
-    beliefs are acted out does not. Both are started when they are first needed.
+    There are two processes of Node: the one that plays the real world opens sockets; the one in
+    which beliefs are acted out does not. Each starts when it is first needed.
 
     Args:
-        seed: Drives the random numbers of beliefs' bodies.
-        limits: What each process may take.
+        seed: Seed of the random numbers of beliefs' bodies.
+        limits: Limits of each process.
     """
 
     def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
@@ -53,29 +53,29 @@ class RealtimeWorld(Owned, ABC):
     @property
     @abstractmethod
     def address(self) -> str:
-        """Where a Minecraft client joins: `HOST:PORT`."""
+        """Address for Minecraft clients: `HOST:PORT`."""
 
     @property
     @abstractmethod
     def minecraft(self) -> str:
-        """The version that it has to be."""
+        """Minecraft version of the clients."""
 
     @property
     def invited(self) -> frozenset[str]:
-        """Who may join."""
+        """Names of the people who may join."""
         return self._invited
 
     def invite(self, people: Iterable[str]) -> None:
-        """Say who may join; one who is there and may no longer be is sent away.
+        """Set the people who may join; disconnect others who are there.
 
         Raises:
-            WorldError: A server's operator cannot send people away.
+            WorldError: A server's operator may not kick people.
         """
         self._invited = frozenset(people)
         self.here()
 
     def here(self) -> frozenset[str]:
-        """Return the people who are there now."""
+        """Return the names of the people who play now."""
         told = self._live().request("people", invited=sorted(self._invited))
         return frozenset(told["here"])
 
@@ -86,15 +86,15 @@ class RealtimeWorld(Owned, ABC):
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """Program to version, of what runs."""
+        """Versions of the running programs by name."""
         return {**self._beliefs.versions, **self._versions}
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
-        """Make the real world's body in real time, any other one in the embedded world.
+        """Open the real world's body in real time, and all others in the embedded world.
 
         Raises:
-            WorldError: A server's place holds other blocks, or does not become as asked for.
-            InputError: An agent has the name of another player, as the operator of a server.
+            WorldError: A server's place holds other blocks, or the server builds something else.
+            InputError: An agent has the name of another player, such as the operator of a server.
         """
         for taken in sorted(self.players & snapshot.agents.keys()):
             raise InputError(
@@ -108,22 +108,22 @@ class RealtimeWorld(Owned, ABC):
         return RealtimeBody.opened(self._live(), name, seed, snapshot, sink, known)
 
     def another(self) -> EmbeddedWorld:
-        """Return an embedded world: what is tried out goes as fast as it can, where nobody sees it.
+        """Return an embedded world, for trials at full speed that nobody sees.
 
-        What is tried from reality begins there as reality is.
+        A trial that starts from reality begins with its present state.
         """
         return self._beliefs.another()
 
     @abstractmethod
     def pause(self, *, paused: bool) -> None:
-        """Let time stand still in the real world, or go on.
+        """Stop or resume time in the real world.
 
         Raises:
-            WorldError: It is on a server elsewhere, which nobody here can stop.
+            WorldError: It is on a server, whose time cannot be stopped.
         """
 
     def interrupt(self) -> None:
-        """Kill both processes; what was built on a server stays there."""
+        """Kill both processes; blocks that were built on a server stay there."""
         self._beliefs.interrupt()
         if self._channel is not None:
             self._channel.kill()
@@ -131,12 +131,12 @@ class RealtimeWorld(Owned, ABC):
     @property
     @abstractmethod
     def origin(self) -> tuple[int, int]:
-        """Where scenario (0, y, 0) of reality lies in Minecraft: x and z."""
+        """Position of scenario (0, y, 0) of reality in Minecraft: x and z."""
 
     @property
     @abstractmethod
     def shows_reality(self) -> bool:
-        """True if visitors see reality itself; if not, they need to be shown it as beliefs are."""
+        """True if visitors see reality itself; False if it is shown to them by an exhibit."""
 
     @property
     def players(self) -> frozenset[str]:
@@ -144,16 +144,16 @@ class RealtimeWorld(Owned, ABC):
         return frozenset()
 
     def open_exhibit(self, name: str, plot: Plot, shown: Shown) -> Exhibit:
-        """Let people see what a simulator holds, at a place of its own.
+        """Show the content of a simulator to people, at a place of its own.
 
         Raises:
             WorldError: The place on a server holds other blocks.
-            BodyError: It could not be built.
+            BodyError: The exhibit could not be built.
         """
         return Exhibit.opened(self._live(), name, plot, shown)
 
     def lags(self) -> Mapping[str, int]:
-        """By how many ticks what changed in exhibits was shown later, at most, by name."""
+        """Return the largest delay of changes in each exhibit, in ticks, by name."""
         lags: Mapping[str, int] = self._live().request("lags")
         return lags
 

@@ -13,10 +13,10 @@ __all__ = ["ScriptedBodies", "ScriptedBody"]
 
 
 class ScriptedBody:
-    """A simulator's part of the scripted world; it is acted in through `world`.
+    """Simulator's part of the scripted world; users act in it through `world`.
 
     Attributes:
-        world: The world to tell what happens.
+        world: The world, to which users report events.
     """
 
     def __init__(
@@ -32,26 +32,26 @@ class ScriptedBody:
 
     @property
     def lost(self) -> bool:
-        """False: no process is behind it."""
+        """False: there is no process behind it."""
         return False
 
     @property
     def goes_on(self) -> bool:
-        """False: its clock stands still between the calls."""
+        """False: its clock stands still between calls."""
         return False
 
     @property
     def tick(self) -> int:
-        """The body's latest tick."""
+        """Latest tick of the body."""
         return self.world.now
 
     @property
     def internal_state(self) -> bytes:
-        """Which buttons come out again, and when."""
+        """Pressed buttons, and when they come out again."""
         return self.world.under_way
 
     def snapshot(self) -> Snapshot:
-        """Return all there is in it now."""
+        """Return the present state."""
         return self.world.snapshot()
 
     def run(
@@ -84,7 +84,7 @@ class ScriptedBody:
         self.world.step(ticks)
 
     def set_state(self, snapshot: Snapshot) -> None:
-        """Be as the snapshot says; no frames are sent."""
+        """Set the state to a snapshot; no frames are sent."""
         self.world.set_state(snapshot)
 
     def close(self) -> None:
@@ -95,7 +95,7 @@ class ScriptedBody:
 
 
 class ScriptedBodies:
-    """The world of scripted bodies; `first` becomes the first body, the real world's."""
+    """World of scripted bodies; `first` becomes the first body, the real world's."""
 
     def __init__(self, first: ScriptedWorld | None = None) -> None:
         self._first = first
@@ -109,21 +109,24 @@ class ScriptedBodies:
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """Nothing runs but this package."""
+        """Empty: only this package runs."""
         return {}
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> ScriptedBody:
-        """Make a body; its name plays no part, and its seed in what its programs draw alone."""
+        """Create a body.
+
+        Its name has no effect; its seed affects only its programs' random numbers.
+        """
         world, self._first = self._first, None
         world = world or ScriptedWorld.from_snapshot(snapshot)
         return ScriptedBody(world, sink, seed, self._grounds, self._engines)
 
     def another(self) -> "ScriptedBodies":
-        """Return one more, with nothing in it."""
+        """Return another empty world."""
         return ScriptedBodies()
 
     def interrupt(self) -> None:
-        """Nothing goes on for long."""
+        """Do nothing: no call takes long."""
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Do nothing: the world holds no resources."""

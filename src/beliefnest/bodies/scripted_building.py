@@ -1,4 +1,4 @@
-"""Skills of the scripted world that change blocks: switching, pressing, breaking and putting."""
+"""Skills of the scripted world that change blocks: switching, pressing, breaking, placing."""
 
 from collections.abc import Callable
 from typing import Any
@@ -21,7 +21,7 @@ _MOST_WAITED = 40
 
 
 def switch_lever(*, powered: bool) -> Callable[..., Doing]:
-    """Return the skill that brings a lever into a state; nothing if it is in it already."""
+    """Return the skill that switches a lever; it does nothing if the lever is in that state."""
 
     def switch(hand: Hand, position: Any) -> Doing:
         place = block_in(position)
@@ -29,7 +29,7 @@ def switch_lever(*, powered: bool) -> Callable[..., Doing]:
         if _is_powered(hand, place, "lever") is powered:
             return
         yield
-        # Somebody else may have done it in this very tick.
+        # Another agent may have switched it in this very tick.
         if _is_powered(hand, place, "lever") is not powered:
             hand.world.use_lever(hand.name, place, powered=powered)
 
@@ -37,7 +37,7 @@ def switch_lever(*, powered: bool) -> Callable[..., Doing]:
 
 
 def press_button(hand: Hand, position: Any) -> Doing:
-    """Return the skill that presses a button; one that is pressed already is waited for first."""
+    """Press a button; if it is pressed already, first wait until it comes out."""
     place = block_in(position)
     yield from walk_to_use(hand, place)
     yield
@@ -49,7 +49,7 @@ def press_button(hand: Hand, position: Any) -> Doing:
 
 
 def mine_block(hand: Hand, position: Any, name: Any) -> Doing:
-    """Return the skill that breaks a block and takes what it drops."""
+    """Break a block and take its drops."""
     place, wanted = block_in(position), text_in(name)
     yield from walk_to_use(hand, place)
     yield
@@ -60,7 +60,7 @@ def mine_block(hand: Hand, position: Any, name: Any) -> Doing:
 
 
 def place_item(hand: Hand, name: Any, position: Any) -> Doing:
-    """Return the skill that puts a block of the inventory somewhere, from beside that place."""
+    """Place a block of the inventory, from a position next to it."""
     place, item = block_in(position), text_in(name)
     if not hand.world.agents[hand.name].inventory.get(item, 0):
         raise SkillError(f"there is no {item} in the inventory")
@@ -70,7 +70,7 @@ def place_item(hand: Hand, name: Any, position: Any) -> Doing:
 
 
 def _is_powered(hand: Hand, place: Position, kind: str) -> bool:
-    """Return True if a switch is on; fails if there is none."""
+    """Return True if a switch is on; raises SkillError if there is none."""
     registry, there = Registry.load(), _name_at(hand, place)
     if not there.endswith(kind):
         called = kind.strip("_")

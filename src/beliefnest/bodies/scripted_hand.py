@@ -1,4 +1,4 @@
-"""Agents that act in a scripted world: what they may know, how they walk, what they are told to do.
+"""Agents that act in a scripted world: their knowledge, walking, and arguments of skills.
 
 Walking takes one tick for each cell.
 """
@@ -35,16 +35,16 @@ __all__ = [
 ]
 
 REACH = 4.0
-"""Blocks between the eyes of somebody and the middle of a block that it can use."""
+"""Largest distance, in blocks, between the eyes and the middle of a block in use."""
 Doing = Generator[None, None, Any]
-"""A skill under way: advanced once in each tick, until it returns."""
+"""Skill in progress: advanced once in each tick, until it returns."""
 
 
 class SkillError(BeliefNestError):
-    """A skill could not do what it was asked for.
+    """Failure of a skill.
 
     Attributes:
-        reason: As that of `Fault`.
+        reason: Reason, as in `Fault`.
     """
 
     def __init__(self, message: str, reason: str | None = None) -> None:
@@ -54,20 +54,20 @@ class SkillError(BeliefNestError):
 
 @dataclass(frozen=True)
 class Hand:
-    """An agent that acts in a scripted world.
+    """Agent that acts in a scripted world.
 
     Attributes:
-        name: Who it is.
-        world: Where it acts.
-        known: The ground as far as the agent may know it, which ways are looked for on.
-        others: The agents that it knows to be there.
-        signs: What it may know to be written on signs.
-        ground: The ground as it is, which carries and stops a body.
-        speech_ticks: Ticks that it takes it to say something; 0: it is said in the next one.
-        mouth: What it is about to say, in order.
-        heard: What it heard in the latest tick: speaker, text, and to whom it was whispered.
-        has_free_line: Given eyes and a block, whether nothing that the agent knows of lies between;
-            None: it reaches through everything.
+        name: Name of the agent.
+        world: World in which it acts.
+        known: Ground as far as the agent may know it; paths are planned on it.
+        others: The agents that it knows to be present.
+        signs: Texts of signs that it may know.
+        ground: True ground, which carries and stops the body.
+        speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
+        mouth: Utterances that it is about to make, in order.
+        heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
+        has_free_line: Function of eyes and a block that returns whether no known block lies
+            between; None if the agent reaches through everything.
     """
 
     name: str
@@ -82,17 +82,17 @@ class Hand:
     has_free_line: FreeLine | None = None
 
     def reach(self, place: Position, *, beside: bool = False) -> InReach:
-        """Standing where it reaches a block; `beside` as there."""
+        """Return the goal of standing where the agent reaches a block; `beside` as in `InReach`."""
         return InReach(place, REACH, beside, self.has_free_line)
 
     @property
     def feet(self) -> Point:
-        """Where it stands."""
+        """Position of the feet."""
         return self.world.agent(self.name).position
 
     @property
     def cell(self) -> Position:
-        """The cell it stands in."""
+        """Cell in which the agent stands."""
         return cell_of(self.feet)
 
 
@@ -103,11 +103,11 @@ def walk_to_use(hand: Hand, place: Position) -> Doing:
 
 @dataclass(frozen=True, slots=True)
 class Doors:
-    """What somebody who walks does with doors and gates that are moved by hand.
+    """Treatment of doors and gates that can be moved by hand.
 
     Attributes:
-        opens: Whether it opens shut ones where no other way leads.
-        closes: Whether it shuts those it went through, also those that stood open.
+        opens: Whether to open shut ones if no other path exists.
+        closes: Whether to shut them afterwards, including those that stood open.
     """
 
     opens: bool = True
@@ -118,7 +118,7 @@ _ANY_DOOR = Doors()
 
 
 def doors_in(value: Any) -> Doors:
-    """What a program says about doors; SkillError if that is nothing."""
+    """Return a program's argument about doors; raises SkillError if it is malformed."""
     given = {} if value is None else value
     names = ("openDoors", "closeDoors")
     if not isinstance(given, dict) or not all(
@@ -133,7 +133,7 @@ def doors_in(value: Any) -> Doors:
 def _way(
     hand: Hand, goal: Goal, doors: Doors, bumped: AbstractSet[Position]
 ) -> tuple[Position, ...] | None:
-    """Return a way that opens no door, or one that does; round what the body has bumped into."""
+    """Return a path that opens no door, or else one that does; avoid cells bumped into."""
     known = hand.known()
     way = known.way(hand.cell, goal, bumped)
     if way is None and doors.opens and known.with_doors_opened.has_doorways:
@@ -142,7 +142,7 @@ def _way(
 
 
 def _bring(hand: Hand, cell: Position, *, opens: bool) -> Doing:
-    """Open or shut the door in a cell that is moved by hand, if it is not so: a tick."""
+    """Open or shut the door in a cell in one tick, if needed and if it moves by hand."""
     world, registry = hand.world, Registry.load()
 
     def is_to_move() -> bool:
@@ -152,13 +152,13 @@ def _bring(hand: Hand, cell: Position, *, opens: bool) -> Doing:
 
     if is_to_move():
         yield
-        # Somebody else may have done it in this very tick.
+        # Another agent may have moved it in this very tick.
         if is_to_move():
             world.use_door(hand.name, cell, open=opens)
 
 
 def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_DOOR) -> Doing:
-    """Walk until a cell is reached that is good enough, one cell a tick; whether it walked."""
+    """Walk until the goal is met, one cell a tick; return whether the agent walked."""
     moved = False
     bumped: set[Position] = set()
     while not goal.is_met(hand.cell):
@@ -185,7 +185,7 @@ def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_D
 
 
 def _step_to(hand: Hand, cell: Position) -> None:
-    """One step, looking ahead."""
+    """Take one step, with the view ahead."""
     x, _, z = hand.feet
     feet = feet_in(cell)
     yaw = math.atan2(-(feet[0] - x), -(feet[2] - z))
@@ -193,24 +193,24 @@ def _step_to(hand: Hand, cell: Position) -> None:
 
 
 def point_in(name: str, value: Any) -> Point:
-    """Return a point that a program gave; SkillError if it is none."""
+    """Return a program's point; raises SkillError if it is not valid."""
     if not (isinstance(value, list | tuple) and len(value) == 3 and all(map(_is_number, value))):
         raise SkillError(f"{name} must be a Vec3 of three finite numbers; it is {value!r}")
     return (float(value[0]), float(value[1]), float(value[2]))
 
 
 def block_in(value: Any) -> Position:
-    """Return the block that a point lies in; SkillError if it is none."""
+    """Return the position of the block that contains a point; raises SkillError if not valid."""
     return cell_of(point_in("position", value))
 
 
 def cell_of(point: Point) -> Position:
-    """Return the cell that a point lies in."""
+    """Return the cell that contains a point."""
     return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
 
 
 def items_in(value: Any) -> dict[str, int]:
-    """Return items and how many of each; SkillError if they are none."""
+    """Return items and their counts; raises SkillError if they are not valid."""
     registry = Registry.load()
     if not isinstance(value, dict) or not value:
         raise SkillError(f"items must say how many of which, like {{diamond: 1}}; it is {value!r}")
@@ -222,14 +222,14 @@ def items_in(value: Any) -> dict[str, int]:
 
 
 def text_in(value: Any) -> str:
-    """Return a text that is not empty; SkillError if it is none."""
+    """Return a text that is not empty; raises SkillError otherwise."""
     if not isinstance(value, str) or not value.strip():
         raise SkillError(f"a text is wanted that is not empty; it is {value!r}")
     return value
 
 
 def number_in(name: str, value: Any) -> float:
-    """Return a number of at least 0; SkillError if it is none."""
+    """Return a number of at least 0; raises SkillError otherwise."""
     if not _is_number(value) or value < 0:
         raise SkillError(f"{name} must be a number of at least 0; it is {value!r}")
     return float(value)

@@ -1,4 +1,4 @@
-"""What a program of the scripted world has called, so that it can go on where it was cut."""
+"""Memory of a scripted-world program's calls, with which an interrupted program can continue."""
 
 import json
 from collections.abc import Iterable
@@ -10,13 +10,13 @@ from beliefnest.bodies.protocol import Called
 __all__ = ["Memory"]
 
 _MOST = 2000
-"""Calls that are remembered; a program that makes more is begun anew."""
+"""Largest number of remembered calls; a program with more begins anew."""
 _WAITS = "waitTicks"
 
 
 @dataclass
 class _Entry:
-    """A call, and since when it is under way."""
+    """Call, with the tick at which it began."""
 
     call: Called
     begun: int
@@ -24,10 +24,10 @@ class _Entry:
 
 
 class Memory:
-    """The calls of one program.
+    """Calls of one program.
 
     Args:
-        past: Those that it made before it was cut, in order.
+        past: The calls before its interruption, in order.
     """
 
     def __init__(self, past: Iterable[Called] = ()) -> None:
@@ -35,11 +35,11 @@ class Memory:
         self._entries: dict[int, _Entry] = {}
 
     def called(self, number: int, name: str, args: list[Any], tick: int) -> tuple[bool, Any] | None:
-        """Take note of a call; what came of it if it was over before the cut, else None."""
+        """Record a call; return its result from before the interruption, or None."""
         given = json.dumps(args)
         known = self._past.pop(0) if self._past else None
         if known is not None and (known.name, known.given) != (name, given):
-            # From here on it does something else.
+            # From here on the program takes another course.
             self._past.clear()
             known = None
         before = 0 if known is None else known.ticks
@@ -53,20 +53,20 @@ class Memory:
         return told["ok"], told["value"]
 
     def left(self, number: int, args: list[Any]) -> list[Any]:
-        """Return the arguments of a call that was under way: who waits has waited for some time."""
+        """Return the arguments of an interrupted call; a wait continues with the ticks left."""
         entry = self._entries[number]
         if entry.call.name != _WAITS or not entry.before:
             return args
         return [max(0, args[0] - entry.before)]
 
     def answered(self, number: int, *, ok: bool, value: object) -> None:
-        """Take note of what came of a call."""
+        """Record the result of a call."""
         entry = self._entries[number]
         answer = json.dumps({"ok": ok, "value": value})
         entry.call = replace(entry.call, answer=answer)
 
     def calls(self, tick: int) -> tuple[Called, ...]:
-        """Return all of them, as of a tick; none if they are too many."""
+        """Return all calls, as of a tick; empty if there are too many."""
         if len(self._entries) > _MOST:
             return ()
         return tuple(

@@ -1,6 +1,6 @@
-// What programs of the scripted world find in scope. Evaluates to a function of (Vec3, hints, time, skills, username)
-// that gives what Python calls: again, names, start, take, settle, see, hear. Nothing here calls Python: it takes what is asked for
-// after each turn.
+// Scope of programs of the scripted world. The file evaluates to a function of (Vec3, hints, time, skills, username)
+// that returns the functions for Python: again, names, start, take, settle, see, hear. No code here calls Python:
+// Python takes the program's requests after each turn.
 (Vec3, hints, time, skills, username) => {
   'use strict'
   const { parse, stringify } = JSON
@@ -14,13 +14,13 @@
   let blocks = null
   let grid = null
 
-  // Minecraft's data have these as truth values, and all else as texts.
+  // Minecraft's data have booleans for these values, and texts for all others.
   const TRUTH = { true: true, false: false }
 
-  // Calls that failed, whose errors the program may still be about to hear of.
+  // Failed calls whose errors the program may still handle.
   const failed = []
 
-  /** What a call gives; it knows whether anything waits for it. */
+  /** Promise of a call's result, which records whether anything waits for it. */
   class Answer extends Promise {
     static get [Symbol.species] () { return Promise }
 
@@ -82,7 +82,7 @@
     return offering({ containerItems: () => items, close: () => undefined }, 'the window of a container')
   }
 
-  // Of what happens a program can listen to what is said.
+  // A program can listen only to speech.
   const EVENTS = ['chat', 'whisper', 'messagestr']
   const listeners = []
 
@@ -163,7 +163,7 @@
   }
 
   return {
-    // As for a new program, after one that has changed nothing in scope.
+    // Reset the state for a new program, after one that has changed nothing in scope.
     again (name) {
       username = name
       waiting.clear()

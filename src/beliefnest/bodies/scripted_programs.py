@@ -1,7 +1,7 @@
-"""Programs of agents in a scripted world, together, tick by tick.
+"""Runner of agents' programs in a scripted world, together, tick by tick.
 
-What a program does before its first wait belongs to the first tick. A skill that is called in one
-tick acts in the next ones. Agents act in the order in which their programs are given.
+A program's code before its first wait belongs to the first tick. A skill that is called in one tick
+acts in the next ones. Agents act in the order of their programs.
 """
 
 import math
@@ -46,7 +46,7 @@ _USING = {
 }
 _MOST_AIMS = 100
 _EPOCH_MS = 1_704_067_200_000
-"""When Minecraft's worlds begin here, too: 2024-01-01, in UTC."""
+"""Start of the worlds' time, as in Minecraft's: 2024-01-01, in UTC."""
 _TICK_MS = 50
 _DOINGS = {**SKILLS, **CALLS}
 _ENDS_WITH_PROGRAM = SKILLS.keys() - UTTERANCES
@@ -54,7 +54,7 @@ _ENDS_WITH_PROGRAM = SKILLS.keys() - UTTERANCES
 
 @dataclass
 class _Run:
-    """A program under way."""
+    """Running program."""
 
     hand: Hand
     program: JavaScriptProgram
@@ -81,14 +81,15 @@ def run_programs(
     """Run programs by agent until the last has ended.
 
     Args:
-        world: Where they act.
+        world: World in which they act.
         programs: JavaScript by agent.
-        timeout_ticks: Ticks after which they are ended.
-        senses: By agent, what its program may read now; those left out read what is the case.
-        rules: How they run.
-        seed: Decides about random numbers.
-        grounds: What was made of grids of blocks already.
-        engines: Engines of programs that may be used again.
+        timeout_ticks: Number of ticks after which they are ended.
+        senses: Knowledge, by agent, for programs that may read nothing else; others read the true
+            state.
+        rules: Rules of the run.
+        seed: Seed of random numbers.
+        grounds: Cache of the data of grids.
+        engines: Pool of engines to share.
     """
     first = world.now
     happened: list[tuple[int, Event]] = []
@@ -127,7 +128,7 @@ def _until_over(world: ScriptedWorld, runs: Sequence[_Run], grounds: Grounds, la
     while True:
         with world.tick():
             done = [(run, _act(run)) for run in runs]
-        # What came of the tick can be perceived now that it is over.
+        # The effects of the tick can be perceived now that it has ended.
         for run in runs:
             _hear(run, grounds)
         for run, answers in done:
@@ -144,7 +145,7 @@ def _until_over(world: ScriptedWorld, runs: Sequence[_Run], grounds: Grounds, la
 
 
 def _begin_of(rules: RunRules, agent: str, now: int) -> int:
-    """Return the tick at which a program began at first."""
+    """Return the tick at which a program first began."""
     past = rules.past.get(agent)
     return now if past is None else past.tick
 
@@ -169,7 +170,7 @@ def _begun(
     hand = Hand(
         agent,
         world,
-        # All of it is the ground as it is, without a map of all agents at each step.
+        # For full knowledge use the true ground, which needs no map of all agents at each step.
         known=_known(world.box, sense, grounds) if agent in senses else ground,
         others=lambda: sense().agents,
         signs=lambda: sense().signs,
@@ -201,19 +202,19 @@ def _known(box: Box, sense: Sense, grounds: Grounds) -> Callable[[], Ground]:
 
 
 def _heard_by(agent: str, events: Sequence[Event]) -> tuple[tuple[str, str, str | None], ...]:
-    """What was said in a tick and not whispered to others."""
+    """Return the speech of a tick that an agent heard: all of it but whispers to others."""
     said = (event for event in events if event.kind is EventKind.CHAT)
     words = [(e.actor or "", str(e.detail["text"]), e.detail.get("to")) for e in said]
     return tuple(each for each in words if each[2] is None or agent in (each[0], each[2]))
 
 
 def _listens(run: _Run) -> bool:
-    """Return True if a program is told what its agent hears, or its agent waits for that."""
+    """Return True if a program listens for speech, or its agent waits for it."""
     return run.program.listens or any(name == "waitForChat" for name, _ in run.doing.values())
 
 
 def _hear(run: _Run, grounds: Grounds) -> None:
-    """Tell an agent, and its program, what was heard in the tick that is over."""
+    """Report the speech of the tick that has ended to an agent and its program."""
     run.hand.heard.clear()
     if not _listens(run) or run.end_tick is not None:
         return
@@ -230,10 +231,10 @@ def _hear(run: _Run, grounds: Grounds) -> None:
 
 
 def _act(run: _Run) -> list[tuple[int, bool, object]]:
-    """Advance what a program's agent does by a tick; the calls that end with that: how."""
+    """Advance an agent's acts by a tick; return the calls that ended, with their outcome."""
     ended: list[tuple[int, bool, object]] = []
     for number, (name, doing) in run.doing.items():
-        # What is said without waiting is said, also if the program has ended by then.
+        # Utterances without `await` are made even if the program has ended by then.
         if run.program.ended and name in _ENDS_WITH_PROGRAM:
             continue
         try:
@@ -246,7 +247,7 @@ def _act(run: _Run) -> list[tuple[int, bool, object]]:
 
 
 def _goes_on(run: _Run) -> bool:
-    """Return True if something is done still that goes on without its program."""
+    """Return True if an act is in progress that continues without its program."""
     return any(name not in _ENDS_WITH_PROGRAM for name, _ in run.doing.values())
 
 
@@ -263,7 +264,7 @@ def _answer(run: _Run, number: int, *, ok: bool, value: object) -> None:
 
 
 def _take_calls(run: _Run) -> None:
-    """Begin what a program has called; what cannot be begun fails at once."""
+    """Begin the calls of a program; a call that cannot begin fails at once."""
     calls = run.program.calls()
     while calls:
         for number, name, args in calls:
@@ -282,7 +283,7 @@ def _take_calls(run: _Run) -> None:
                 _answer(run, number, ok=False, value=_told(error))
         calls = run.program.calls()
     if _listens(run) and run.read is None:
-        # What was heard before it listened is none of its.
+        # A new listener gets no earlier speech.
         run.read = run.sense()
 
 

@@ -1,7 +1,7 @@
-"""The skills of the scripted world, each a generator that is advanced once a tick.
+"""Skills of the scripted world, each a generator that is advanced once a tick.
 
-Walking takes one tick for each cell; opening, taking, putting, turning to look, speaking, thinking,
-handing over, switching, breaking and putting blocks take one tick each.
+Walking takes one tick for each cell. Opening, taking, putting, turning to look, speaking, thinking,
+handing over, switching, breaking and placing blocks take one tick each.
 """
 
 import math
@@ -152,7 +152,7 @@ def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
 
 
 def _speak(hand: Hand) -> Doing:
-    """Return the ticks that it takes to say something; who says several things does so in turn."""
+    """Wait for the ticks that an utterance takes; several utterances take turns."""
     if not hand.speech_ticks:
         yield
         return
@@ -221,17 +221,17 @@ SKILLS: Mapping[str, Callable[..., Doing]] = {
     "waitForChat": _wait_for_chat,
     "doNothing": _do_nothing,
 }
-"""By name."""
+"""Skills by name."""
 
 CALLS: Mapping[str, Callable[..., Doing]] = {
     "openContainer": _open_container,
     "bot.chat": _say,
     "bot.whisper": _whisper,
 }
-"""What a program asks of its bot itself."""
+"""Methods of the bot by name."""
 
 UTTERANCES = frozenset(("say", "whisper", "think"))
-"""Skills whose deed is done by calling them, as in Minecraft, whether or not the program waits."""
+"""Skills that take effect by the call itself, as in Minecraft, without `await` as well."""
 
 
 def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:

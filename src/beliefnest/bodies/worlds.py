@@ -1,4 +1,4 @@
-"""The worlds a nest can be opened in, by name."""
+"""Worlds in which a nest can be opened, by name."""
 
 from collections.abc import Mapping
 from types import TracebackType
@@ -28,8 +28,11 @@ __all__ = [
 ]
 
 WORLDS = ("embedded", "scripted")
-"""Names of the worlds; any other one is the address of a server, `minecraft://HOST:PORT`, or of
-the embedded world in real time, `embedded://HOST:PORT`."""
+"""Names of the worlds.
+
+Any other name is the address of a server, `minecraft://HOST:PORT`, or of the embedded world in real
+time, `embedded://HOST:PORT`.
+"""
 
 _WITHOUT_PHYSICS = frozenset({"scripted"})
 
@@ -39,11 +42,11 @@ def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> Wor
 
     Args:
         name: Name of the world.
-        seed: Drives every random number.
-        limits: What its process may take.
+        seed: Seed of every random number.
+        limits: Limits of its process.
 
     Raises:
-        BodyError: It could not be started.
+        BodyError: The world could not be started.
         UnknownNameError: There is no world of that name.
     """
     check_world(name)
@@ -65,15 +68,15 @@ def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> Wor
 
 
 def check_world(name: str, *, servers: bool = True) -> None:
-    """Refuse the name of a world that there is not, before anything is started.
+    """Refuse an unknown name of a world before anything is started.
 
     Args:
         name: The name.
-        servers: Whether it may be one in real time, in which one run plays at a time.
+        servers: Whether it may be a world in real time, which plays one run at a time.
 
     Raises:
         UnknownNameError: There is no world of that name.
-        InputError: It is the address of a server and not of the right form.
+        InputError: It is a malformed address of a server.
     """
     if is_server(name) or is_hosted(name):
         if is_server(name):
@@ -82,8 +85,8 @@ def check_world(name: str, *, servers: bool = True) -> None:
             ListenAddress.parse(name)
         if not servers:
             raise InputError(
-                f"in {name} one run plays at a time, in real time; `beliefnest run` and "
-                f"Nest.open play there, all else in the worlds {', '.join(WORLDS)}"
+                f"{name} plays one run at a time, in real time; use it with `beliefnest run` or "
+                f"Nest.open, and one of the worlds {', '.join(WORLDS)} for all else"
             )
     elif name not in WORLDS:
         raise UnknownNameError(
@@ -92,24 +95,26 @@ def check_world(name: str, *, servers: bool = True) -> None:
 
 
 def world_name(world: str, *, realtime: bool, listen: int | str | None) -> str:
-    """The name of a world, in real time if that is asked for; `listen` says where people join.
+    """Return the name of a world, in real time if requested; `listen` is the port for people.
 
     Raises:
-        InputError: It is not the embedded one, or `listen` is no port, or no use.
+        InputError: It is not the embedded one, or `listen` is not a valid port or has no use.
     """
     if not realtime:
         if listen is not None:
             raise InputError(
-                "people join worlds in real time only: give realtime=True (--realtime) as well"
+                "people can join only worlds in real time: give realtime=True (--realtime) as well"
             )
         return world
     if world != "embedded":
-        raise InputError(f"the world {world!r} has no choice of time; realtime is for embedded")
+        raise InputError(
+            f"the world {world!r} has no real time; realtime is for the world embedded"
+        )
     return ListenAddress.of(DEFAULT_PORT if listen is None else listen).world
 
 
 def joined_of(world: World) -> RealtimeWorld | None:
-    """Return the world that people can join, also if it is lent; None if it is of another kind."""
+    """Return the world that people can join, also if it is lent; None for another kind."""
     match world:
         case RealtimeWorld():
             return world
@@ -120,10 +125,10 @@ def joined_of(world: World) -> RealtimeWorld | None:
 
 
 def realtime_of(world: World) -> RealtimeWorld | None:
-    """The world that goes on in real time, also if it is lent; None if it is of another kind.
+    """Return the world that runs in real time, also if it is lent; None for another kind.
 
     Raises:
-        BodyError: It had not been started, and cannot be.
+        BodyError: The world had not been started, and the start failed.
     """
     match world:
         case RealtimeWorld():
@@ -137,7 +142,7 @@ def realtime_of(world: World) -> RealtimeWorld | None:
 
 
 def hosted_of(world: World) -> HostedWorld | None:
-    """The embedded world that people join, also if it is lent; None if it is of another kind.
+    """Return the embedded world that people join, also if it is lent; None for another kind.
 
     Raises:
         BodyError: As for `realtime_of`.
@@ -147,7 +152,7 @@ def hosted_of(world: World) -> HostedWorld | None:
 
 
 def is_real_time(world: World) -> bool:
-    """Whether the real world goes on between calls, in real time; also if it has not begun."""
+    """Return True if the real world runs on between calls in real time, or will once started."""
     match world:
         case RealtimeWorld():
             return True
@@ -160,12 +165,12 @@ def is_real_time(world: World) -> bool:
 
 
 class LazyWorld:
-    """A world that is started when its first body is opened.
+    """World that is started when its first body is opened.
 
     Args:
         name: Name of the world.
-        seed: Drives every random number.
-        limits: What its process may take.
+        seed: Seed of every random number.
+        limits: Limits of its process.
 
     Raises:
         UnknownNameError: There is no world of that name.
@@ -185,16 +190,16 @@ class LazyWorld:
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """Program to version, of what runs; nothing runs before the first body."""
+        """Versions of the running programs by name; empty before the first body."""
         return {} if self._world is None else self._world.versions
 
     @property
     def inner(self) -> World | None:
-        """The world itself, if it was started."""
+        """The wrapped world, if it was started."""
         return self._world
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
-        """Make a body, in a world that is started if it is the first.
+        """Create a body; the first one starts the world.
 
         Raises:
             BodyError: The world could not be started.
@@ -203,44 +208,43 @@ class LazyWorld:
 
     @property
     def is_realtime(self) -> bool:
-        """True if it goes on in real time, where people can stand in it."""
+        """True if it runs in real time, where people can play."""
         return is_server(self._name) or is_hosted(self._name)
 
     def started(self) -> World:
-        """Return the world itself, started if it is not yet.
+        """Return the wrapped world, and start it if necessary.
 
         Raises:
-            BodyError: It could not be started.
+            BodyError: The world could not be started.
         """
         if self._world is None:
             self._world = open_world(self._name, self._seed, self._limits)
         return self._world
 
     def another(self) -> World:
-        """Return one more world of the kind, started with its first body."""
+        """Return another world of the same kind, which starts with its first body."""
         return LazyWorld(self._name, self._seed, self._limits)
 
     def interrupt(self) -> None:
-        """End what it is doing for another thread."""
+        """Interrupt its work for another thread."""
         if self._world is not None:
             self._world.interrupt()
 
     def close(self) -> None:
-        """End the world if it was started."""
+        """Close the world if it was started."""
         if self._world is not None:
             self._world.close()
 
 
 class Worlds:
-    """Worlds that nests live in one after the other, so that each is started once.
+    """Worlds that are shared by successive nests, so that each is started once.
 
-    What happens in one nest does not depend on those before it: bodies are isolated, and
-    each has its own seed. A process that ended is started again for the next body. Use it
-    in a `with` block.
+    Events in one nest do not depend on earlier ones: bodies are isolated, and each has its own
+    seed. A process that ended is started again for the next body. Use it in a `with` block.
 
     Args:
-        seed: Drives the random numbers of the worlds themselves.
-        limits: What the process of each may take.
+        seed: Seed of the worlds' own random numbers.
+        limits: Limits of the process of each world.
     """
 
     def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
@@ -262,10 +266,10 @@ class Worlds:
         self._worlds.clear()
 
     def lend(self, name: str) -> World:
-        """Return a world whose `close` gives up the bodies that were opened in it, not the world.
+        """Return a world whose `close` closes only the bodies opened in it.
 
         Raises:
-            BodyError: It could not be started.
+            BodyError: The world could not be started.
             UnknownNameError: There is no world of that name.
         """
         if name not in self._worlds:
@@ -274,7 +278,7 @@ class Worlds:
 
 
 class _SharedWorld:
-    """A world for one nest only."""
+    """World for one nest only."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -287,30 +291,30 @@ class _SharedWorld:
 
     @property
     def versions(self) -> Mapping[str, str]:
-        """Program to version, of what runs."""
+        """Versions of the running programs by name."""
         return self._world.versions
 
     @property
     def inner(self) -> World:
-        """The world itself."""
+        """The wrapped world."""
         return self._world
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
-        """Make a body that is given up with the nest at the latest."""
+        """Create a body that is closed with the nest at the latest."""
         body = self._world.open_body(name, seed, snapshot, sink)
         self._bodies.append(body)
         return body
 
     def another(self) -> World:
-        """Return one more world of the kind, for this nest alone."""
+        """Return another world of the same kind, for this nest alone."""
         return self._world.another()
 
     def interrupt(self) -> None:
-        """End what it is doing for another thread."""
+        """Interrupt its work for another thread."""
         self._world.interrupt()
 
     def close(self) -> None:
-        """Give up all bodies."""
+        """Close all bodies."""
         for body in self._bodies:
             body.close()
         self._bodies.clear()

@@ -1,1 +1,1 @@
-"""The page: a nest over time, as data that a browser plays back, and the page around it."""
+"""Page that plays back a nest over time: its data, and the HTML around it."""

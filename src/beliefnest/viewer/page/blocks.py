@@ -1,4 +1,4 @@
-"""How blocks look on the page: plain colours of our own, and their shapes."""
+"""Appearance of blocks on the page: plain colours of our own, and shapes."""
 
 import zlib
 from typing import Any
@@ -61,7 +61,7 @@ _COLOURS = (
     ("concrete", "#b9b6b0"),
     ("stone", "#b4b2ad"),
 )
-"""The first part of a name that fits decides."""
+"""Colours by part of a name; the first matching part decides."""
 
 _DYES = {
     "white": "#eceae6",
@@ -84,10 +84,10 @@ _DYES = {
 
 
 class BlockPalette:
-    """Numbers blocks in the order in which they are met.
+    """Numbers of blocks, in the order in which they first appear.
 
     Attributes:
-        entries: By number: text, name, colour, boxes in 1/32 of a block, and what it is.
+        entries: By number: text, name, colour, boxes in 1/32 of a block, and kind.
     """
 
     def __init__(self, context: BeliefContext) -> None:
@@ -96,7 +96,7 @@ class BlockPalette:
         self.entries: list[dict[str, Any]] = []
 
     def number(self, state: int) -> int:
-        """Return the number here of a block that arrays know by `state`; -1 for unknown."""
+        """Return the number of a block with the given state id; -1 for unknown."""
         if state < 0:
             return -1
         if state not in self._numbers:
@@ -110,7 +110,7 @@ class BlockPalette:
         name = registry.name(state)
         boxes = [[round(32 * edge) for edge in box] for box in registry.boxes(state)]
         if not boxes and not name.endswith("air"):
-            # What nobody bumps into is still to be seen.
+            # Show blocks without a collision shape as a small box.
             boxes = [[12, 0, 12, 20, 20, 20]]
         return {
             "text": registry.text(state),
@@ -132,6 +132,6 @@ def _colour(name: str) -> str:
     for part, colour in _COLOURS:
         if part in name:
             return colour
-    # Any other block has a quiet colour that is the same in every run.
+    # Give any other block a quiet colour that is the same in every run.
     tone = zlib.crc32(name.encode()) % 5
     return ("#b3aca4", "#a9aba6", "#b0a9b0", "#a7adb0", "#b5b0a3")[tone]

@@ -1,4 +1,4 @@
-"""Claims on the page: what was said, whether it was false or a lie, what became of it in nodes."""
+"""Claims on the page: their content, whether they were false or lies, and their outcome."""
 
 from collections.abc import Iterator
 
@@ -12,14 +12,14 @@ __all__ = ["claims_at", "kind_of"]
 
 
 def claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim]]:
-    """Yield the claims of the entry that a forest is at.
+    """Yield the claims of the forest's present entry.
 
     Args:
-        forest: At the entry.
+        forest: Forest at the entry.
         first: Number of the entry's first event on the timeline.
 
     Yields:
-        Number of the event, and of the claim in it; who made it; the claim.
+        Number of the event, number of the claim in it, speaker, and claim.
     """
     if not forest.position or not forest.columns.has_claims(forest.position - 1):
         return
@@ -30,12 +30,12 @@ def claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim
 
 
 def kind_of(forest: Forest, own: BeliefPath, speaker: str, claim: Claim) -> str:
-    """Return True if a claim that was just made is `a lie` or `false`; empty: neither.
+    """Return `a lie` or `false` for a claim that was just made; empty if it is neither.
 
     Args:
-        forest: At the entry in which it was made.
+        forest: Forest at the entry of the claim.
         own: Path of the simulator in whose world it was made.
-        speaker: Who made it; what it believes is in the forest.
+        speaker: Agent that made it; the forest contains its beliefs.
         claim: The claim.
     """
     if says_otherwise(NodeView(forest, normalised((*own, speaker))), forest.context, claim):

@@ -1,4 +1,4 @@
-"""The page as one HTML text: program, style and data inlined, nothing fetched from anywhere."""
+"""Page as one HTML text, with program, style and data inlined; it fetches nothing."""
 
 import base64
 import hashlib
@@ -40,9 +40,9 @@ def page_html(title: str, content: Mapping[str, Any], *, served: bool) -> str:
     """Return the page.
 
     Args:
-        title: For the browser's tab.
-        content: The page's data: packed into it, with deflate, as base64.
-        served: Whether it is to talk to the server it comes from.
+        title: Title of the browser's tab.
+        content: Data of the page; it is compressed with deflate and encoded as base64.
+        served: Whether the page talks to the server it comes from.
 
     Raises:
         InputError: The page was not built with the package.
@@ -54,14 +54,14 @@ def page_html(title: str, content: Mapping[str, Any], *, served: bool) -> str:
         policy=html.escape(_policy(style, program, served=served)),
         title=html.escape(on_one_line(title)),
         style=style,
-        # Base64 has no `<`: nothing in the data can end the element.
+        # Base64 has no `<`, so that nothing in the data can end the element.
         data=json.dumps({"served": served, "packed": packed}),
         program=program,
     )
 
 
 def _policy(style: str, program: str, *, served: bool) -> str:
-    """What the page may do: run what it carries, and talk to its own server if it has one."""
+    """Return the page's content security policy: run its own code, talk to its own server."""
     connect = "'self'" if served else "'none'"
     return (
         f"default-src 'none'; script-src {_digest(program)}; style-src {_digest(style)}; "
@@ -78,5 +78,5 @@ def _part(name: str) -> str:
     if not file.is_file():
         raise InputError(f"the page is missing at {file}: run `pip install .` to build it")
     text = file.read_text(encoding="utf-8")
-    # Texts that a browser would take for the end of the element, in strings of the program.
+    # Escape texts in the program's strings that would end the element.
     return text.replace("</script", "<\\/script").replace("<!--", "<\\!--")

@@ -1,4 +1,4 @@
-"""The page inside a notebook."""
+"""Page inside a notebook."""
 
 import html
 from collections.abc import Callable, Mapping
@@ -12,19 +12,19 @@ from beliefnest.viewer.page.static import still_page
 
 __all__ = ["PageView"]
 
-# Notebooks take frames out of what they do not trust; what is left is this.
+# Notebooks remove frames of untrusted content; only this text then remains.
 _UNTRUSTED = "The page is shown once this notebook is trusted: File, Trust Notebook."
 
 
 @dataclass(frozen=True)
 class PageView:
-    """A nest as it was when this was first shown, as a page in a frame of its own.
+    """Page of a nest at the time of its first display, in a frame of its own.
 
     Attributes:
-        reader: Where to read.
-        depth: How deep all beliefs go.
-        height: Of the frame, pixels.
-        episode: Gives the rounds of the nest's episode, as for `About`.
+        reader: Reader of the nest.
+        depth: Depth of the beliefs that are included.
+        height: Height of the frame in pixels.
+        episode: Function that returns the rounds of the nest's episode, as for `About`.
     """
 
     reader: Reader
@@ -34,7 +34,7 @@ class PageView:
 
     @cached_property
     def page(self) -> str:
-        """The page's text.
+        """Text of the page.
 
         Raises:
             InputError: The depth is not from 0 to 4, or the page was not built with the package.
@@ -51,7 +51,7 @@ class PageView:
         return f"<page of {self._title!r}, beliefs to depth {self.depth}; a notebook shows it>"
 
     def _repr_html_(self) -> str:
-        # The frame has no origin: what is in it can reach nothing of the notebook's.
+        # The frame has no origin, so that its content cannot access the notebook.
         return (
             f'<iframe sandbox="allow-scripts allow-popups" title="{html.escape(self._title)}" '
             f'srcdoc="{html.escape(self.page)}" style="width: 100%; height: {self.height}px; '

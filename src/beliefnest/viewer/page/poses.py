@@ -1,4 +1,4 @@
-"""Where agents stood in the world of a timeline, and what they held, tick by tick."""
+"""Poses of agents in the world of a timeline, tick by tick."""
 
 from bisect import bisect_right
 from dataclasses import dataclass, field
@@ -11,19 +11,19 @@ Pose = tuple[float, float, float, float, float]
 
 @dataclass
 class Stand:
-    """One agent: from which tick on it stood how; None: it was not there."""
+    """Poses of one agent: each with its first tick; None while the agent was absent."""
 
     ticks: list[int] = field(default_factory=list)
     poses: list[Pose | None] = field(default_factory=list)
 
 
 class PoseBook:
-    """Poses of all agents in the world of one timeline, and before it in that of its base.
+    """Poses of all agents in the world of one timeline, and earlier in that of its base.
 
     Args:
-        agents: How many agents there are.
-        start: The timeline's first tick.
-        base: The book of the timeline it was forked from; None: it was not.
+        agents: Number of agents.
+        start: First tick of the timeline.
+        base: Poses of the timeline from which it was forked; None if it was not.
     """
 
     def __init__(self, agents: int, start: int, base: "PoseBook | None") -> None:
@@ -31,7 +31,7 @@ class PoseBook:
         self._start, self._base = start, base
 
     def add(self, agent: int, tick: int, pose: Pose | None) -> None:
-        """Note how an agent stands from a tick on."""
+        """Add the pose of an agent from a tick on."""
         stand = self.stands[agent]
         if stand.ticks and stand.ticks[-1] == tick:
             stand.poses[-1] = pose
@@ -40,7 +40,7 @@ class PoseBook:
             stand.poses.append(pose)
 
     def at(self, agent: int, tick: int) -> Pose | None:
-        """How an agent stood at a tick; None: not there, or not known here."""
+        """Return the pose of an agent at a tick; None if it was absent or is not known here."""
         if tick < self._start and self._base is not None:
             return self._base.at(agent, tick)
         stand = self.stands[agent]

@@ -1,4 +1,4 @@
-"""Explanations and looks: one when it is asked for, or many ahead, for a page without a server."""
+"""Explanations and lines of sight: single ones on request, or many in advance for a file."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -39,31 +39,31 @@ _DEEDS = frozenset(
 )
 
 _EXPLANATIONS = 36
-"""How many explanations a page without a server carries, at most; each takes some 0.1 s."""
+"""Largest number of explanations in a page without a server; each takes some 0.1 s."""
 
 _ENTRIES = 6000
-"""How many entries may be folded for them in all: in long runs they are left to the server."""
+"""Largest number of entries folded for explanations; beyond it only a server explains."""
 
 _LOOKS = 6000
-"""How many looks of agents at each other in a timeline such a page knows, at most."""
+"""Largest number of lines of sight between agents per timeline in such a page."""
 
 _ALL_AROUND = 360.0
-"""Field of view, in degrees, of who sees all around."""
+"""Field of view, in degrees, of an agent that sees in all directions."""
 
 _NODES = 12
-"""In how many nodes of a timeline it knows that."""
+"""Largest number of nodes per timeline with lines of sight in such a page."""
 
 
 def explanation_of(
     reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, thing: str
 ) -> dict[str, Any]:
-    """Why a node holds what it holds of a thing, in words.
+    """Return the reasons for a node's belief about a thing, in words.
 
     Args:
-        reader: Where to read.
-        key: The timeline.
-        path: The node.
-        tick: When.
+        reader: Reader of the nest.
+        key: Key of the timeline.
+        path: Path of the node.
+        tick: Tick of the belief.
         thing: `a1`, agent number 1; `c7`, contents of cell 7; `b7`, block of cell 7.
 
     Raises:
@@ -83,18 +83,18 @@ def explanation_of(
 def look_of(
     reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, viewer: str, target: str
 ) -> list[Any] | None:
-    """Return the look of an agent at a thing in a node: `[how it ended, distance, blocker]`.
+    """Return an agent's line of sight to a thing in a node: `[outcome, distance, blocker]`.
 
     Args:
-        reader: Where to read.
-        key: The timeline.
-        path: The node.
-        tick: When.
-        viewer: Name of who looks.
+        reader: Reader of the nest.
+        key: Key of the timeline.
+        path: Path of the node.
+        tick: Tick of the view.
+        viewer: Name of the agent that looks.
         target: `a1` or `b7`, as for `explanation_of`.
 
     Returns:
-        None where the viewer's pose is unknown.
+        None if the viewer's pose is unknown.
     """
     kind, number = _named(target)
     what = _agent(reader, number) if kind == "a" else _place(reader, number)
@@ -102,25 +102,25 @@ def look_of(
 
 
 def _named(thing: str) -> tuple[str, int]:
-    """Return the kind and the number of a thing; InputError if it is none."""
+    """Return the kind and the number of a thing; raises InputError if it is malformed."""
     found = _THING.fullmatch(thing)
     if found is None:
-        raise InputError(f"{thing[:50]!r} is no thing; write a, b or c and a number")
+        raise InputError(f"{thing[:50]!r} is not a thing; write a, b or c and a number")
     return found[1], int(found[2])
 
 
 def sight_of(
     reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, viewer: str
 ) -> list[int]:
-    """What an agent sees in a node: lengths of runs of cells, unseen first, then seen, ..."""
+    """Return an agent's view in a node as lengths of runs of cells: unseen, seen, unseen, ..."""
     return _runs(reader.simulator(key, path, tick).visible_blocks(viewer).ravel())
 
 
 def ahead(reader: Reader, about: About, depth: int) -> dict[str, Any]:
-    """A run's data as it is now, with explanations, looks and views, as far as there is room.
+    """Return a run's present data, with explanations, lines of sight and views.
 
-    Looks and views are told where they change. Where there are more than there is room for,
-    only some ticks are looked at.
+    Lines of sight and views are given where they change. If there are too many, only some ticks are
+    examined.
     """
     views = _Views(reader)
     data = RunData(reader, about, depth, views.onlooker)
@@ -134,18 +134,18 @@ def ahead(reader: Reader, about: About, depth: int) -> dict[str, Any]:
 
 
 class _Views:
-    """Who sees what in the nodes of some timelines, where it changes."""
+    """Collector of the views in the nodes of some timelines, at the ticks where they change."""
 
     def __init__(self, reader: Reader) -> None:
         self._reader = reader
-        # The same place, seen from the same place in the same surroundings, is seen the same way.
+        # Cache by position and surroundings: the same ones give the same view.
         self._known: dict[Any, Any] = {}
         self._all_around = reader.setting.perception.field_of_view >= _ALL_AROUND
         self.looks: dict[str, list[Any]] = {}
         self.sights: dict[str, list[Any]] = {}
 
     def onlooker(self, info: TimelineInfo, paths: Sequence[BeliefPath]) -> Onlooker:
-        """Who looks at some nodes of a timeline, at some ticks."""
+        """Return an onlooker that records the views in some nodes of a timeline, at some ticks."""
         reader, some = self._reader, paths[:_NODES]
         room = _LOOKS // (len(some) * max(1, len(reader.agents)) ** 2)
         ticks: dict[int, int] = {}
@@ -179,7 +179,10 @@ class _Views:
                 _add(self.looks, f"{name} c{cell}", tick, look)
 
     def _standing(self, reading: NodeView, name: str) -> Any:
-        """What an agent's view depends on; who sees all around may turn as it likes."""
+        """Return everything on which an agent's view depends.
+
+        With a view in all directions, its direction does not matter.
+        """
         agent = reading.agents[name]
         if agent.position is None or self._all_around:
             return agent.position
@@ -237,7 +240,7 @@ def _explanations(
 
 
 def _deeds(reader: Reader, info: TimelineInfo) -> list[int]:
-    """Return ticks at which something was done that beliefs are about, and the last one."""
+    """Return the ticks of acts about which beliefs are, and the last tick."""
     ticks = {
         entry.tick
         for entry in reader.entries(info.key, 0, info.entries)
@@ -254,20 +257,20 @@ def _things(reader: Reader, kind: str) -> Iterator[str]:
 
 
 def _some(ticks: range, count: int) -> list[int]:
-    """At most so many of some ticks, evenly spread, the last one among them."""
+    """Return at most `count` of some ticks, evenly spread, with the last one among them."""
     step = -(-len(ticks) // count)
     return [*ticks[:-1:step], ticks[-1]]
 
 
 def _runs(flags: npt.NDArray[np.bool_]) -> list[int]:
-    """Lengths of runs of equal flags, the first of them false."""
+    """Return lengths of runs of equal flags, beginning with a run of false ones."""
     edges = np.flatnonzero(np.diff(flags, prepend=False, append=not flags[-1]))
     lengths: list[int] = np.diff(edges, prepend=0).tolist()
     return lengths
 
 
 def name_of(key: TimelineKey, path: BeliefPath) -> str:
-    """What the page calls a node of a timeline."""
+    """Return the page's name of a node of a timeline."""
     return " ".join((path_text(key.path), path_text(path), key.branch))
 
 

@@ -1,4 +1,4 @@
-"""Tracks as rows of plain data, each sent once: at first all, later what is new."""
+"""Tracks as rows of plain data: at first all rows, later the new ones."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,15 +13,15 @@ _THOUSAND = 1000
 
 
 class _Sent:
-    """How much of each list was sent, and its last row."""
+    """Number of rows of each list that were sent, and the last one."""
 
     def __init__(self) -> None:
         self._done: dict[str, tuple[int, Any]] = {}
 
     def fresh(self, name: str, rows: Sequence[Any]) -> tuple[int, Sequence[Any]] | None:
-        """Return the number of the first row that is new, and these rows; None: there are none."""
+        """Return the number of the first new row, and the new rows; None if there are none."""
         count, last = self._done.get(name, (0, None))
-        # Of several changes in one tick the last one counts, so the last row may be another now.
+        # Of several changes in one tick the last one counts, so that the last row may have changed.
         first = count - 1 if count and rows[count - 1] != last else count
         if first == len(rows):
             return None
@@ -30,14 +30,14 @@ class _Sent:
 
 
 def fresh_rows(sent: dict[str, int], name: str, rows: Sequence[Any]) -> list[Any] | None:
-    """Of a list that only grows: the number of the first new row, and the new ones."""
+    """Return the number of the first new row of a list that only grows, and its new rows."""
     first = sent.get(name, 0)
     sent[name] = len(rows)
     return [first, list(rows[first:])] if first < len(rows) else None
 
 
 class TrackRows:
-    """Says what is new in one track."""
+    """Updates of one track."""
 
     def __init__(self, track: Track, palette: BlockPalette) -> None:
         self._track, self._palette = track, palette
@@ -45,7 +45,7 @@ class TrackRows:
         self._begun = False
 
     def update(self) -> dict[str, Any]:
-        """What is new: by list `[number of its first row, rows]`; empty if nothing is."""
+        """Return the new rows by list: `[number of its first row, rows]`; empty if none."""
         track = self._track
         told: dict[str, Any] = {}
         if not self._begun:
@@ -81,7 +81,7 @@ class TrackRows:
         return [self._palette.number(value) if at % 2 else value for at, value in enumerate(pairs)]
 
     def _runs(self, grid: Sequence[int]) -> list[int]:
-        """Return the grid as [state, how often, state, how often, ...]."""
+        """Return the grid as [state, count, state, count, ...]."""
         runs: list[int] = []
         last = None
         for state in grid:
@@ -94,17 +94,17 @@ class TrackRows:
 
 
 class StandRows:
-    """Says what is new of where one agent stood, in columns of differences."""
+    """Updates of one agent's poses, in columns of differences."""
 
     def __init__(self, stand: Stand) -> None:
         self._stand = stand
         self._sent = 0
 
     def update(self) -> Mapping[str, Any] | None:
-        """Return columns `t`, `x`, `y`, `z`, `yaw`, `pitch` (thousandths); None: nothing is new.
+        """Return columns `t`, `x`, `y`, `z`, `yaw`, `pitch` (thousandths); None if nothing is new.
 
-        Each number but the first is the difference from the one before. `gone` numbers the rows
-        of the columns in which the agent is not there.
+        Each number except the first is the difference from the one before. `gone` lists the rows in
+        which the agent is absent.
         """
         first, ticks = self._sent, self._stand.ticks
         if first == len(ticks):

@@ -1,4 +1,4 @@
-"""One run as the page's data: everything at first, then what is new."""
+"""Run as the page's data: everything at first, then the updates."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -26,20 +26,20 @@ _SPEECH = (EventKind.CHAT, EventKind.THINK)
 
 @dataclass(frozen=True, slots=True)
 class About:
-    """What people call a run and the things in it.
+    """Names and texts about a run, for people.
 
     Attributes:
         title: Name of the scenario.
-        subtitle: What is special about it, as its condition.
-        description: What it is about.
-        labels: What people call containers and places.
+        subtitle: Distinguishing feature of the run, such as its condition.
+        description: Subject of the scenario.
+        labels: Names of containers and places.
         paths: Beliefs that the scenario asks about; they are shown from the start.
-        episode: Gives the rounds of the run's episode by now, as plain values: `task`, `instance`,
-            `start` (a tick), `rounds` (how many there may be), and `branches` by name, each with
-            `policies`, `goal` (words, whether it must never come true, tick or None), `reached`,
-            `violated` (ticks or None) and `parts` (`round`, `t`, `end`, `agents` with `agent`,
-            `program`, `goes_on`, `fault`, `ended`, `message`, `reason`). None where there is
-            none.
+        episode: Function that returns the present rounds of the run's episode as plain values, or
+            None if there is none: `task`, `instance`, `start` (a tick), `rounds` (the largest
+            number), and `branches` by name, each with `policies`, `goal` (words, whether it must
+            never come true, tick or None), `reached`, `violated` (ticks or None) and `parts`
+            (`round`, `t`, `end`, `agents` with `agent`, `program`, `goes_on`, `fault`, `ended`,
+            `message`, `reason`).
     """
 
     title: str
@@ -52,7 +52,7 @@ class About:
 
 @dataclass
 class _Line:
-    """A timeline that is recorded: its recorders, and what was told of it."""
+    """Recorded timeline: its recorders, and what was sent of it."""
 
     info: TimelineInfo
     book: PoseBook
@@ -70,10 +70,10 @@ class RunData:
     """Data of one run for one page, which grows with the run.
 
     Args:
-        reader: Where to read.
-        about: What people call it.
-        depth: How deep beliefs of the real world are recorded from the start.
-        onlookers: Makes who is shown the first nodes of a timeline while they are recorded.
+        reader: Reader of the nest.
+        about: Names and texts about the run.
+        depth: Depth of the real world's beliefs that are recorded from the start.
+        onlookers: Makes onlookers, which see the first nodes of a timeline while they are recorded.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class RunData:
         self._episode: Mapping[str, Any] | None = None
 
     def update(self) -> dict[str, Any]:
-        """What is new since the last call; at first everything. Empty if nothing is."""
+        """Return the updates since the last call, at first everything; empty if there are none."""
         new: dict[str, Any] = {}
         lines = {}
         infos = self.reader.timelines()
@@ -113,7 +113,7 @@ class RunData:
         return new
 
     def deepen(self, key: TimelineKey, path: BeliefPath) -> None:
-        """Record one more node of a timeline from now on; the next update tells all of it."""
+        """Record one more node of a timeline from now on; the next update contains all of it."""
         line = self._lines[key]
         if path not in line.tracks:
             recorder = TrackRecorder(self.reader, key, [path], line.book, fills=False)
@@ -121,7 +121,7 @@ class RunData:
             line.tracks[path] = TrackRows(recorder.tracks[0], self._palette)
 
     def nodes(self) -> Iterable[tuple[TimelineInfo, BeliefPath]]:
-        """Return all that is recorded: each timeline with each node of it, shallow ones first."""
+        """Return everything recorded: each timeline with each of its nodes, shallow ones first."""
         for line in self._lines.values():
             for path in line.tracks:
                 yield line.info, path
@@ -158,7 +158,7 @@ class RunData:
         return self._lines[info.key]
 
     def keys(self) -> Sequence[TimelineKey]:
-        """Return the timelines, by the numbers that the page knows them by."""
+        """Return the timelines, in the order of the page's numbers."""
         return list(self._lines)
 
     def _line_update(self, line: _Line) -> dict[str, Any]:

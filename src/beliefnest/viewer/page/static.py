@@ -1,4 +1,4 @@
-"""A page that needs no server: one file with all there is to see."""
+"""Page that needs no server: one file with all its data."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -14,20 +14,22 @@ __all__ = ["check_depth", "still_page", "write_still_page"]
 
 
 def check_depth(depth: int) -> None:
-    """That a page can hold all beliefs to a depth; InputError if it is not from 0 to 4."""
+    """Raise InputError if a page cannot hold all beliefs to a depth: it must be from 0 to 4."""
     if not 0 <= depth <= 4:
-        raise InputError(f"depth is {depth}; give 0 to 4, and deeper beliefs one by one as paths")
+        raise InputError(
+            f"depth is {depth}; give 0 to 4, and add deeper beliefs one by one as paths"
+        )
 
 
 def still_page(
     runs: Iterable[tuple[Reader, About]], depth: int = 2, first: Mapping[str, Any] | None = None
 ) -> str:
-    """Return the text of a page that shows some runs as they are now, for instance all conditions.
+    """Return the text of a page that shows the present state of some runs.
 
     Args:
-        runs: Each with what people call it.
-        depth: How deep all beliefs go; those that `About.paths` names are there beside.
-        first: What is shown before anything is chosen: `at`, a path; `tick`.
+        runs: Runs, such as all conditions, each with texts about it.
+        depth: Depth of the beliefs that are included; those of `About.paths` are added.
+        first: Initial selection: `at`, a path; `tick`.
 
     Raises:
         InputError: The depth is not from 0 to 4, or the page was not built with the package.
@@ -50,7 +52,7 @@ def write_still_page(
     """Write `still_page` to a file.
 
     Raises:
-        InputError: As there, or the file cannot be written.
+        InputError: As for `still_page`, or the file cannot be written.
     """
     text = still_page(runs, depth, first)
     try:

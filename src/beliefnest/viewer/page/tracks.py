@@ -1,9 +1,9 @@
-"""Nodes of one timeline over its ticks, as changes: what the page plays back.
+"""Nodes of one timeline over its ticks, as changes that the page plays back.
 
-A track says what one node holds from which tick on. Nothing in it is worked out anew: values,
-and whether they are current, are those of the belief room; what is false is what
-`false_beliefs` says. Where an agent is believed to be is told by the tick at which it stood there
-in the timeline's own world, which makes tracks of long runs short.
+A track contains what one node holds, and from which tick on. It computes nothing anew: values and
+their currency come from the beliefs, falsehood from `false_beliefs`. The believed pose of an agent
+is given as the tick at which the agent had it in the timeline's own world, which makes tracks of
+long runs short.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,33 +28,33 @@ from beliefnest.world.paths import BeliefPath
 __all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Onlooker", "Track", "TrackRecorder"]
 
 UNKNOWN, CURRENT, STALE, PLACED = 0, 1, 2, 3
-"""Agents: of unknown pose, as in the timeline's world now, as there at a past tick, elsewhere."""
+"""Kinds of an agent's pose: unknown, as in the timeline's world now, as at a past tick, other."""
 
 Row = list[Any]
 Onlooker = Callable[[Forest], None]
-"""Looks at a forest as it is at this entry."""
+"""Function that is called with a forest at each entry."""
 
 
 @dataclass
 class Track:
-    """What one node holds over the ticks of one timeline, in rows that begin with a tick.
+    """Content of one node over the ticks of one timeline, in rows that begin with a tick.
 
     Attributes:
-        path: The node.
-        grid: Block states at first, flat, -1 unknown.
+        path: Path of the node.
+        grid: Block states at the beginning, flat, -1 unknown.
         blocks: [tick, cell, state, cell, state, ...].
-        agents: By agent number: [tick, UNKNOWN | CURRENT], [tick, STALE, observed at] or
-            [tick, PLACED, observed at, pose, source, current, item in the main hand, speaker].
-        holds: By agent number: [tick, item in the main hand or None]; of the timeline's own
-            node alone, since what is believed to be held goes with where it is believed to be.
+        agents: By agent number: [tick, UNKNOWN | CURRENT], [tick, STALE, observed at] or [tick,
+            PLACED, observed at, pose, source, current, item in the main hand, speaker].
+        holds: By agent number: [tick, item in the main hand or None]; only of the timeline's own
+            node, because other nodes store a believed item together with the believed pose.
         owns: By agent number: [tick, items, complete].
-        contents: By cell:
-            [tick, items or None, complete, current, observed at, source, event, speaker].
+        contents: By cell: [tick, items or None, complete, current, observed at, source, event,
+            speaker].
         items: [tick, number, None | [name, count, x, y, z]]: dropped items.
         wrong: [tick, things that are false from then on].
-        heard: Numbers of the events that were perceived.
-        claims: [number of the event, of the claim in it, whether it was believed, condition that
-            decided]; of those that were heard, where claims change beliefs.
+        heard: Numbers of the perceived events.
+        claims: [number of the event, number of the claim in it, whether it was believed, deciding
+            condition]; of the claims that were heard, where claims change beliefs.
     """
 
     path: BeliefPath
@@ -72,7 +72,7 @@ class Track:
 
 @dataclass
 class _Last:
-    """What was recorded of all nodes last, to find what changed."""
+    """Last recorded content of all nodes, for finding changes."""
 
     blocks: npt.NDArray[np.int16]
     code: npt.NDArray[np.int8]
@@ -85,18 +85,18 @@ class _Last:
 
 
 class TrackRecorder:
-    """Records tracks of some nodes of a timeline, as far as it goes, and on when it goes on.
+    """Recorder of the tracks of some nodes of a timeline, which may grow.
 
     Args:
-        reader: Where to read.
-        key: The timeline.
-        paths: Nodes of it; its own comes first.
-        book: Where agents stood in the world of the timeline; filled here if `fills`.
-        fills: Whether this recorder is the one that fills the book and tells of claims.
-        onlooker: Is shown the nodes at the beginning and after each entry.
+        reader: Reader of the nest.
+        key: Key of the timeline.
+        paths: Paths of its nodes; its own comes first.
+        book: Poses of agents in the world of the timeline; filled here if `fills`.
+        fills: Whether this recorder fills the book and records claims.
+        onlooker: Called with the nodes at the beginning and after each entry.
 
     Attributes:
-        claims: What was claimed: number of the event, the claim, whether it is false or a lie.
+        claims: Claims: number of the event, the claim, and whether it is false or a lie.
     """
 
     def __init__(
@@ -143,7 +143,7 @@ class TrackRecorder:
 
     @property
     def position(self) -> int:
-        """Entries of the timeline that it has recorded."""
+        """Number of recorded entries of the timeline."""
         return self._forest.position
 
     def advance(self, entries: int) -> None:
@@ -235,7 +235,7 @@ class TrackRecorder:
         last.code, last.seen_at = code, stale
 
     def _stands_there(self, pose_id: npt.NDArray[np.int32]) -> npt.NDArray[np.bool_]:
-        """Return True if poses are those of the timeline's own node."""
+        """Return True for poses that equal those of the timeline's own node."""
         own = self._forest.table.nodes().pose[0]
         there: npt.NDArray[np.bool_] = (pose_id >= 0) & (own >= 0)
         for table in self._forest.poses.arrays():
@@ -244,7 +244,7 @@ class TrackRecorder:
         return there
 
     def _stale(self, at: int, agent: int, tick: int, *, current: bool) -> Row:
-        """Return the row of an agent that is not where it stands in the timeline's world now."""
+        """Return the row of an agent whose pose differs from that in the timeline's world now."""
         table, poses = self._forest.table, self._forest.poses
         number = self._numbers[at]
         pose_id = table.pose(number, agent)
@@ -299,10 +299,10 @@ class TrackRecorder:
                 _put(rows, [tick, held])
 
     def _owners(self) -> set[int]:
-        """Return numbers of the nodes in which possessions of agents may have changed."""
+        """Return the numbers of nodes in which agents' possessions may have changed."""
         forest, last = self._forest, self._last
         looks = [forest.table.details_of(0, agent) for agent in range(len(last.looks))]
-        # An agent's own possessions are what the parent node holds of them.
+        # Beliefs about an agent's own possessions come from the parent node.
         everywhere = looks != last.looks
         last.looks = list(looks)
         changed = set()
@@ -329,7 +329,7 @@ def _empty(agents: int) -> list[list[Row]]:
 
 
 def _put(rows: list[Row], row: Row) -> None:
-    """Add a row; of several of one tick the last one counts."""
+    """Add a row; among several of one tick the last one counts."""
     if rows and rows[-1][0] == row[0]:
         rows[-1] = row
     else:

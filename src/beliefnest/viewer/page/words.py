@@ -1,4 +1,4 @@
-"""What happened, in words: one line for each event, on the page as in reports."""
+"""Events in words: one line for each event, on the page as in reports."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -35,8 +35,8 @@ def event_text(event: Event, labels: Mapping[Position, str]) -> str:
     """Return an event as one line.
 
     Args:
-        event: What happened.
-        labels: What people call places.
+        event: The event.
+        labels: Names of places.
     """
     detail = event.detail
     actor = event.actor or ""
@@ -64,7 +64,7 @@ def event_text(event: Event, labels: Mapping[Position, str]) -> str:
 
 
 def is_lid(event: Event) -> bool:
-    """Return True if an event is a barrel's lid that moves: that it is opened is told already."""
+    """Return True if an event is a barrel's moving lid, which repeats the event of its opening."""
     if event.kind is not EventKind.BLOCK_UPDATE or event.actor is not None:
         return False
     name = str(event.detail.get("block", "")).partition("[")[0]
@@ -72,7 +72,7 @@ def is_lid(event: Event) -> bool:
 
 
 def place_name(place: Any, labels: Mapping[Position, str]) -> str:
-    """What people call a block's place."""
+    """Return the name of a block's place."""
     if place is None:
         return "somewhere"
     x, y, z = place

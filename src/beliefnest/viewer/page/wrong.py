@@ -1,4 +1,4 @@
-"""What nodes hold otherwise than the world of their timeline does, entry by entry."""
+"""False beliefs in nodes: differences from the world of their timeline, entry by entry."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -16,13 +16,13 @@ Things = tuple[str, ...]
 
 
 class WrongThings:
-    """Follows a forest; the rules are those of `false_beliefs`.
+    """Judge of the false beliefs along a forest, by the rules of `false_beliefs`.
 
-    Only what changed since the last look is judged again.
+    It judges again only what changed since the last call.
 
     Args:
-        forest: What is followed.
-        numbers: The nodes that are asked about.
+        forest: The forest.
+        numbers: Numbers of the judged nodes.
     """
 
     def __init__(self, forest: Forest, numbers: Sequence[int]) -> None:
@@ -35,7 +35,7 @@ class WrongThings:
         self._owner_things: list[Things] = [() for _ in numbers]
 
     def found(self, owned_changed: set[int]) -> list[Things]:
-        """What is false in each node after the entry the forest is at.
+        """Return the false things in each node after the forest's present entry.
 
         Args:
             owned_changed: Numbers of the nodes in which an inventory changed.

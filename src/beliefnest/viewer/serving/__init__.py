@@ -1,1 +1,1 @@
-"""The page over HTTP, live."""
+"""Live page over HTTP."""

@@ -1,4 +1,4 @@
-"""The routes: the page, what is new, and answers to what the page asks."""
+"""Routes of the server: the page, updates, and answers to the page's queries."""
 
 import asyncio
 import json
@@ -23,10 +23,10 @@ from beliefnest.world.texts import visible_json
 __all__ = ["page_app"]
 
 _PAUSE = 0.025
-"""Seconds between two looks for what is new; a change is to be on the page within 0.1 s."""
+"""Seconds between checks for updates; a change should be on the page within 0.1 s."""
 
 _DISCOVERY = 20
-"""Looks between two searches for new runs."""
+"""Number of checks between two searches for new runs."""
 
 _HEARTBEAT = 15.0
 _AFTER_FAULT = 2.0
@@ -34,10 +34,10 @@ _LOG = logging.getLogger("uvicorn.error")
 
 
 class _News:
-    """Wakes who waits for updates, at last to be told that there are no more.
+    """Notifier of requests that wait for updates, or for the end of the server.
 
     Args:
-        host: Who looks for them.
+        host: Host whose updates are checked.
         is_ending: Whether the server has been told to stop.
     """
 
@@ -46,7 +46,7 @@ class _News:
         self._woken = asyncio.Condition()
 
     async def run(self) -> None:
-        """Look for what is new, until the server is told to stop."""
+        """Check for updates until the server is told to stop."""
         looks, count = 0, len(self._host.told)
         while not self.is_ending():
             try:
@@ -69,7 +69,7 @@ class _News:
             self._woken.notify_all()
 
     async def after(self, number: int) -> bool:
-        """Wait until there are more updates than that; False: nothing came for a while, or will."""
+        """Wait for more than `number` updates; return False after a while or at the end."""
         async with self._woken:
             with suppress(TimeoutError):
                 async with asyncio.timeout(_HEARTBEAT):
@@ -89,10 +89,11 @@ def page_app(
     """Return the application.
 
     Args:
-        host: What is shown.
-        hosts: Names and ports under which it may be asked for.
-        token: What who asks has to know; None: nothing.
-        is_ending: Whether the server has been told to stop: pages that listen are let go then.
+        host: Host of the runs.
+        hosts: Names and ports by which the server may be addressed.
+        token: Token that requests must have; None for no token.
+        is_ending: Returns True when the server has been told to stop; listening pages are then
+            released.
     """
     news: list[_News] = []
 
@@ -143,7 +144,7 @@ def page_app(
 
 
 def _refused(_: Request, error: Exception) -> Response:
-    """Say in one line what is wrong with a question."""
+    """Return a response that says in one line why a query is refused."""
     return _answered({"error": str(error)}, 400)
 
 
@@ -163,7 +164,7 @@ def _page(host: Host) -> Response:
 
 
 async def _updates(host: Host, news: _News, first: int) -> AsyncIterator[str]:
-    """Updates from number `first` on, as server-sent events."""
+    """Yield the updates from number `first` on, as server-sent events."""
     number = first
     while not news.is_ending():
         for run, update in host.told[number:]:
@@ -175,7 +176,7 @@ async def _updates(host: Host, news: _News, first: int) -> AsyncIterator[str]:
 
 
 def _answer(ask: Callable[[Mapping[str, str]], Any]) -> Callable[[Request], Response]:
-    """Return a route that asks in a thread."""
+    """Return a route that computes its answer in a thread."""
 
     def answer(request: Request) -> Response:
         return _answered(ask(request.query_params))
@@ -197,7 +198,7 @@ def _when(query: Mapping[str, str]) -> tuple[int]:
 
 def _text(query: Mapping[str, str], name: str) -> str:
     if name not in query:
-        raise InputError(f"the question has no {name}")
+        raise InputError(f"the query lacks {name}")
     return query[name]
 
 

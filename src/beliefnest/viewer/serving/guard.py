@@ -1,4 +1,4 @@
-"""Who may ask: requests of other sites, of other names and without the token are turned away."""
+"""Guard that refuses requests from other sites, for other host names, and without the token."""
 
 import hmac
 from collections.abc import Collection
@@ -22,23 +22,23 @@ _HEADERS = (
 
 
 class Guard:
-    """Turns away what does not come from the page itself.
+    """Middleware that refuses requests that do not come from the page itself.
 
-    A name that a stranger's site had resolve to this machine is not among `hosts` (DNS
-    rebinding); the browser says of a request of another site that it is one.
+    A host name of a stranger's site that resolves to this machine (DNS rebinding) is not among
+    `hosts`. For a request that another site makes, the browser names that site.
 
     Args:
-        app: What is guarded.
-        hosts: What `Host` may be.
-        token: What has to be known, by the query `token` or by the cookie that it was once
-            exchanged for; None: nothing.
+        app: The guarded application.
+        hosts: Allowed values of the header `Host`.
+        token: Required token, given by the query `token` or by the cookie for which it was
+            exchanged; None for no token.
     """
 
     def __init__(self, app: ASGIApp, hosts: Collection[str], token: str | None) -> None:
         self._app, self._hosts, self._token = app, frozenset(hosts), token
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on, or turn it away with what to do."""
+        """Pass a request on, or refuse it with advice."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -88,5 +88,5 @@ class Guard:
 
 
 def _same(one: str, other: str) -> bool:
-    """Return True if two texts are equal, in a time that does not tell how far they are."""
+    """Return True if two texts are equal; the time taken does not reveal how far they agree."""
     return hmac.compare_digest(one.encode(), other.encode())

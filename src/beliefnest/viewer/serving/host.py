@@ -1,4 +1,4 @@
-"""The runs that a server shows, and all that was told of them so far."""
+"""Runs that a server shows, and all their updates so far."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -20,12 +20,12 @@ Path_ = tuple[str, ...]
 
 @dataclass(frozen=True, slots=True)
 class OpenRun:
-    """A run that is open for reading.
+    """Run that is open for reading.
 
     Attributes:
-        reader: Reads it, also while it goes on.
-        about: What people call it.
-        close: Closes it.
+        reader: Reader of the run, which may still grow.
+        about: Names and texts about the run.
+        close: Function that closes it.
     """
 
     reader: Reader
@@ -35,16 +35,16 @@ class OpenRun:
 
 @dataclass
 class Host:
-    """Follows runs that may go on, and answers questions about them. One thread at a time.
+    """Host of runs that may grow; it answers queries about them. Use it in one thread at a time.
 
     Args:
-        find: Lists the files of the runs there are now.
-        open: Opens one of them.
-        depth: How deep beliefs are recorded from the start.
+        find: Lists the files of the present runs.
+        open: Opens a run.
+        depth: Depth of the beliefs that are recorded from the start.
 
     Attributes:
-        told: All updates so far, each with the number of its run, in order. Who comes late
-            takes all of them.
+        told: All updates so far, each with the number of its run, in order. A page that connects
+            late gets all of them.
     """
 
     find: Callable[[], Sequence[Path]]
@@ -57,7 +57,7 @@ class Host:
     _turn: RLock = field(default_factory=RLock)
 
     def discover(self) -> list[StoreError]:
-        """Take up runs that have begun since; returns why others cannot be read as yet."""
+        """Open runs that have begun since; return why others cannot be read yet."""
         faults = []
         with self._turn:
             for file in self.find():
@@ -69,12 +69,12 @@ class Host:
                     self._opened.append(opened)
                     self._data.append(RunData(opened.reader, opened.about, self.depth))
                 except StoreError as fault:
-                    # A run that has only just begun can be read a moment later.
+                    # A run that has just begun may be readable a moment later.
                     faults.append(fault)
         return faults
 
     def follow(self) -> int:
-        """Read what is new in all runs; returns how many updates there are now."""
+        """Read the updates of all runs; return the number of updates so far."""
         with self._turn:
             for number, data in enumerate(self._data):
                 update = data.update()
@@ -83,7 +83,7 @@ class Host:
             return len(self.told)
 
     def deepen(self, run: int, on: int, path: str) -> str:
-        """Record one more node from now on; returns its path.
+        """Record one more node from now on; return its path.
 
         Raises:
             InputError: There is no such run or timeline, or the path is not below the timeline's.
@@ -99,20 +99,20 @@ class Host:
             return path_text(node)
 
     def explain(self, run: int, on: int, path: str, tick: int, thing: str) -> dict[str, Any]:
-        """As `explanation_of`."""
+        """Return the answer of `explanation_of`."""
         with self._turn:
             reader, key, node = self._named(run, on, path)
             return explanation_of(reader, key, node, tick, thing)
 
     def look(self, run: int, on: int, path: str, tick: int, viewer: str, thing: str) -> Any:
-        """As `look_of`."""
+        """Return the answer of `look_of`."""
         with self._turn:
             reader, key, node = self._named(run, on, path)
             parse_path(f"/{viewer}", reader.agents)
             return look_of(reader, key, node, tick, viewer, thing)
 
     def sight(self, run: int, on: int, path: str, tick: int, viewer: str) -> list[int]:
-        """As `sight_of`."""
+        """Return the answer of `sight_of`."""
         with self._turn:
             reader, key, node = self._named(run, on, path)
             parse_path(f"/{viewer}", reader.agents)
@@ -137,4 +137,4 @@ class Host:
 
 
 _DEEPEST = 8
-"""Agents in the path of a belief that is asked for over the network."""
+"""Largest number of agents in a path that is requested over the network."""
