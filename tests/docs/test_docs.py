@@ -36,7 +36,7 @@ def test_the_scenario_of_the_guide_does_as_it_expects(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     guide = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
-    (text,) = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    text, _ = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     Path("boxes.yaml").write_text(text, encoding="utf-8")
     assert run_command_line(["run", "boxes.yaml", "--out", "run"]) == 0

@@ -21,6 +21,7 @@ CONDITIONS = [
         "lie": 3,
         "knowledge-access": 2,
         "double-bluff": 2,
+        "food-trucks": 3,
     }.items()
     for condition in range(1, count + 1)
 ]

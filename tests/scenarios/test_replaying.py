@@ -36,6 +36,6 @@ def test_a_replay_finds_no_difference(name, others, tmp_path, capsys, monkeypatc
     assert told["same"]
     conditions = Scenario.load_all(name)
     assert len({row["store"] for row in told["timelines"]}) == len(conditions)
-    probes = sum(len(scenario.probes) for scenario in conditions)
+    probes = sum(probe.asks_model for scenario in conditions for probe in scenario.probes)
     assert len(told["timelines"]) >= len(conditions) + probes
     assert all(row["programs"] > 0 for row in told["timelines"])

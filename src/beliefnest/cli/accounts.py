@@ -11,6 +11,7 @@ from beliefnest.scenarios.expected import (
     Arrives,
     Believes,
     Holds,
+    Infers,
     Intends,
     Judge,
     Opens,
@@ -100,6 +101,8 @@ def _judged(outcome: ProbeOutcome, judged: Judgement, scenario: Scenario) -> str
             f"that is {verdict}."
         )
     told = "" if judged.ok else f": {judged.why_not}"
+    if isinstance(expect, Infers):
+        return f"Judged by the posterior mean of {expect.factor}; that is {verdict}{told}."
     return f"Judged by {_GROUNDS[type(expect)]}; that is {verdict}{told}."
 
 

@@ -11,7 +11,8 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.overview import Card, ConditionPicture, Note
 from beliefnest.pictures.palette import Mark, age_text
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores
-from beliefnest.scenarios.expected import Arrives, Hears, Stands
+from beliefnest.scenarios.expected import Arrives, Hears, Infers, Stands
+from beliefnest.scenarios.inferring import means_text
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import Journal
@@ -186,7 +187,10 @@ def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
     """Return a card with the prediction of a probe, and if it is as expected."""
     probe = outcome.probe
     agent = titled(probe.agent or "reality")
-    if outcome.trial is None:
+    if outcome.inferred is not None:
+        factors = [each.factor for each in probe.expect if isinstance(each, Infers)]
+        deed = means_text(outcome.inferred.means, factors)
+    elif outcome.trial is None:
         answers = [repr(reply.answer) for reply in outcome.replies if reply.answer]
         deed = f"{agent} answers {' and '.join(answers) or 'nothing'}"
     elif any(isinstance(each, Arrives) for each in probe.expect):
@@ -199,13 +203,12 @@ def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
     reported = f"{scenario.reported_by} reports" if scenario.reported_by else "expected"
     judged = {True: f", as {reported}", False: f", not as {reported}", None: ""}[outcome.ok]
     label = f"Probe: {probe.label}" if probe.label else "Probe"
-    asked = probe.task or " ".join(each.question for each in probe.questions)
-    task = " ".join(asked.split())
+    task = " ".join(probe.asked.split())
     return Card(
         title=label,
-        path=f"asked of {probe.path}"
+        path=f"{'asked of' if probe.asks_model else 'inferred from'} {probe.path}"
         + (f", acted out in {probe.acts_in}" if probe.asks_for_program else ""),
         ok=outcome.ok,
-        notes=(Note(f"\u201c{task}\u201d"), Note(f"{deed}{judged}")),
+        notes=(Note(f"\u201c{task}\u201d" if probe.asks_model else task), Note(f"{deed}{judged}")),
         prediction=True,
     )

@@ -24,6 +24,7 @@ from beliefnest.scenarios.expected import (
     Expected,
     Hears,
     Holds,
+    Infers,
     Intends,
     Is,
     Judge,
@@ -32,6 +33,7 @@ from beliefnest.scenarios.expected import (
     Says,
     Takes,
 )
+from beliefnest.scenarios.inferring import means_text
 from beliefnest.scenarios.judging import OUTCOMES, places_of
 from beliefnest.scenarios.naming import items_text
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
@@ -313,12 +315,27 @@ def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
     text = "; ".join(_deeds(outcome, scenario))
     if outcome.outcome not in ("ok", "wrong"):
         text += f" ({outcome.outcome.replace('_', ' ')})"
+    if outcome.inferred is not None:
+        return f"inferred of {probe.agent} from {probe.path}", _marked(
+            escape(_means(outcome)), outcome.ok
+        )
     kinds = {type(each) for each in probe.expect}
     verb = "opens" if kinds <= {Opens} else "arrives at" if kinds == {Arrives} else "does"
     heading = f"predicted {probe.agent} {verb}"
     if not probe.asks_for_program:
         heading = f"answers from {probe.path}"
     return heading, _marked(escape(text), outcome.ok)
+
+
+def _means(outcome: ProbeOutcome) -> str:
+    """Return the means that something was expected of, or all, in words."""
+    assert outcome.inferred is not None
+    factors: dict[str, None] = {}
+    for each in outcome.probe.expect:
+        if isinstance(each, Infers):
+            named = [each.factor, each.above, each.below]
+            factors |= dict.fromkeys(name for name in named if isinstance(name, str))
+    return outcome.inferred.impossible or means_text(outcome.inferred.means, tuple(factors))
 
 
 def _deeds(outcome: ProbeOutcome, scenario: Scenario) -> list[str]:

@@ -80,7 +80,8 @@ def _run(run: Mapping[str, Any], conditions: Mapping[int, str]) -> dict[str, Any
             }
             for count, reply in enumerate(probe["replies"], start=1)
         ]
-        probes.append({**probe, **words, **texts, "replies": replies})
+        # Results of earlier versions have no inferred means.
+        probes.append({"inferred": None, **probe, **words, **texts, "replies": replies})
     return {
         **run,
         "title": "run" if number is None else f"condition {number}",

@@ -19,7 +19,8 @@ from beliefnest.inspect.stories import suite_task
 from beliefnest.inspect.tasks import belief_prompt, in_the_belief, scenario_task
 from beliefnest.llm.messages import Message, Sampling
 from beliefnest.llm.offline import OfflineModel
-from beliefnest.scenarios.loading import builtin_names, read_document
+from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.scenario import Scenario
 
 __all__ = ["belief_prompt", "episode", "hi_tom", "in_the_belief", "scenario", "stories"]
 
@@ -111,8 +112,8 @@ def _register(name: str) -> None:
 
 
 for _name in builtin_names():
-    # A scenario without probes has nothing to score.
-    if "probes" in read_document(_name).root.value:
+    # A scenario that asks no model has nothing to score.
+    if any(probe.asks_model for probe in Scenario.load(_name).probes):
         _register(_name)
 for _name in builtin_tasks():
     _register_episodes(_name)

@@ -29,6 +29,8 @@ def requests_of(scenario: Scenario) -> list[Probe]:
     """
     found = []
     for probe in scenario.probes:
+        if not probe.asks_model:
+            continue
         told = tuple(each for each in probe.expect if not isinstance(each, Answers))
         if told:
             found.append(replace(probe, expect=told))

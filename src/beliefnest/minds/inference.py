@@ -137,14 +137,7 @@ class Inference:
     @property
     def factors(self) -> tuple[str, ...]:
         """Names of all factors."""
-        model = self.model
-        names = [f"utility.{goal}" for goal in model.goals]
-        if model.doubt is not None:
-            for kind in ("credence", "credence_now", "actual"):
-                names += [f"{kind}.{name}" for name in model.alternative_names]
-        if len(model.rationalities) > 1:
-            names.append("rationality")
-        return (*names, "cell")
+        return (*self.model.factors, "cell")
 
     @property
     def impossible(self) -> Impossible | None:

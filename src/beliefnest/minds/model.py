@@ -190,6 +190,21 @@ class MindModel:
         return tuple(each.name for each in self.alternatives)
 
     @property
+    def factors(self) -> tuple[str, ...]:
+        """Names of the factors that have numbers as values, in order.
+
+        These are `utility.GOAL`; with a doubt `credence.ALTERNATIVE`, `credence_now.ALTERNATIVE`
+        and `actual.ALTERNATIVE`; and `rationality` if several are considered.
+        """
+        names = [f"utility.{goal}" for goal in self.goals]
+        if self.doubt is not None:
+            for kind in ("credence", "credence_now", "actual"):
+                names += [f"{kind}.{name}" for name in self.alternative_names]
+        if len(self.rationalities) > 1:
+            names.append("rationality")
+        return tuple(names)
+
+    @property
     def observer_doubts(self) -> bool:
         """True if the observer's own values of the doubted elements are ignored."""
         return not (self.actual is None or isinstance(self.actual, str)) or self.actual == "unknown"

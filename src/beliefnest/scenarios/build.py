@@ -23,6 +23,7 @@ from beliefnest.scenarios.expected import (
     Expected,
     Hears,
     Holds,
+    Infers,
     Intends,
     Is,
     Opens,
@@ -44,6 +45,7 @@ from beliefnest.scenarios.format import (
     StepEntry,
 )
 from beliefnest.scenarios.functions import judge_of
+from beliefnest.scenarios.inferring import build_inferring, build_infers
 from beliefnest.scenarios.people import build_agents
 from beliefnest.scenarios.reading import template_text
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_condition, check_rules
@@ -183,6 +185,12 @@ class _Builder:
         """Return one probe with the text of its template."""
         path = ("probes", number)
         believers = self._check_belief_path((*path, "path"), entry.path)
+        if entry.infer is not None:
+            return self._inferring(path, entry)
+        if entry.expect is not None and entry.expect.inferred is not None:
+            raise self._document.fault(
+                (*path, "expect", "inferred"), "is for probes that infer; give 'infer', too"
+            )
         if entry.acts_in is not None:
             self._check_belief_path((*path, "acts_in"), entry.acts_in)
         if entry.agent is not None:
@@ -202,6 +210,35 @@ class _Builder:
             label=entry.label,
             timeout_ticks=entry.timeout_ticks,
             senses=entry.senses or self._file.senses,
+        )
+
+    def _inferring(self, path: KeyPath, entry: ProbeEntry) -> Probe:
+        """Return a probe that infers in place of asking a model."""
+        assert entry.infer is not None
+        usual = ProbeEntry(path=entry.path)
+        for key in ("acts_in", "agent", "task", "template", "senses", "timeout_ticks"):
+            if getattr(entry, key) != getattr(usual, key):
+                raise self._document.fault(
+                    (*path, key), "is for probes that ask a model; remove it, or 'infer'"
+                )
+        infer = build_inferring(self._document, (*path, "infer"), entry.infer, self._snapshot)
+        expect: list[Infers] = []
+        if entry.expect is not None:
+            for key in entry.expect.__struct_fields__:
+                if key not in ("inferred", "within") and getattr(entry.expect, key) is not None:
+                    raise self._document.fault(
+                        (*path, "expect", key), "is for probes that ask a model; give 'inferred'"
+                    )
+            place = (*path, "expect", "inferred")
+            expect = build_infers(self._document, place, entry.expect.inferred or {}, infer.model)
+        return Probe(
+            path=entry.path,
+            acts_in=entry.path,
+            agent=infer.model.agent,
+            task="",
+            expect=tuple(expect),
+            label=entry.label,
+            infer=infer,
         )
 
     def _expect(self, path: KeyPath, entry: ExpectEntry) -> tuple[Expected, ...]:
@@ -238,7 +275,9 @@ class _Builder:
             with self._document.naming((*path, "function")):
                 expected.append(judge_of(entry.function))
         if not expected:
-            keys = ", ".join(field for field in entry.__struct_fields__ if field != "within")
+            keys = ", ".join(
+                field for field in entry.__struct_fields__ if field not in ("within", "inferred")
+            )
             raise self._document.fault(path, f"expects nothing; give at least one of {keys}")
         return tuple(expected)
 

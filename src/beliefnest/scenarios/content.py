@@ -6,6 +6,7 @@ from typing import Any
 
 from beliefnest.nest.past.setting import Senses, Setting
 from beliefnest.scenarios.expected import Answers, Expectation, Expected
+from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world.values import Position
 
@@ -17,7 +18,7 @@ class Probe:
     """Request to a model, with a prompt from one belief.
 
     The model's program runs in a simulator and is judged there. If only answers are expected, the
-    model is not asked for a program.
+    model is not asked for a program. A probe that infers asks no model.
 
     Attributes:
         path: Path of the belief from which the prompt is rendered.
@@ -29,6 +30,7 @@ class Probe:
         label: Name for tables.
         timeout_ticks: Ticks of 50 ms after which the program fails.
         senses: Source of what the program reads: the world, or its agent's percepts.
+        infer: Inference from `path`, which takes the place of the request; None: none.
     """
 
     path: str
@@ -40,6 +42,7 @@ class Probe:
     label: str = ""
     timeout_ticks: int = 1200
     senses: Senses = "world"
+    infer: Inferring | None = None
 
     @property
     def questions(self) -> tuple[Answers, ...]:
@@ -49,7 +52,21 @@ class Probe:
     @property
     def asks_for_program(self) -> bool:
         """Return True if the model is asked for a program."""
+        if self.infer is not None:
+            return False
         return not self.expect or len(self.questions) < len(self.expect)
+
+    @property
+    def asks_model(self) -> bool:
+        """Return True if a model is asked for anything."""
+        return self.infer is None
+
+    @property
+    def asked(self) -> str:
+        """Return the request in words."""
+        if self.infer is not None:
+            return f"what {self.infer.model.agent} wants, and believed at first"
+        return self.task or " ".join(each.question for each in self.questions)
 
 
 @dataclass(frozen=True)

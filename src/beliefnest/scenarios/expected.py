@@ -18,6 +18,7 @@ __all__ = [
     "Expected",
     "Hears",
     "Holds",
+    "Infers",
     "Intends",
     "Is",
     "Judge",
@@ -215,5 +216,21 @@ class Believes:
 Tells = Opens | Arrives | Intends | Takes | Says | Believes | Judge
 """Expectations that are judged by a program's run."""
 
-Expected = Tells | Answers
+
+@dataclass(frozen=True, slots=True)
+class Infers:
+    """Expectation about the posterior mean of a factor: above or below something.
+
+    Attributes:
+        factor: The factor, such as `utility.K`.
+        above: A number, or another factor whose mean is lower; None: any.
+        below: A number, or another factor whose mean is higher; None: any.
+    """
+
+    factor: str
+    above: float | str | None = None
+    below: float | str | None = None
+
+
+Expected = Tells | Answers | Infers
 """Expectations about a probe."""

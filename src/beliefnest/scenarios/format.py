@@ -19,10 +19,15 @@ __all__ = [
     "BelievedSignEntry",
     "BlockEntry",
     "ContainerEntry",
+    "DoubtEntry",
     "EquipmentEntry",
     "ExpectEntry",
     "ExpectationEntry",
+    "GridEntry",
+    "InferEntry",
+    "InferredEntry",
     "InitialBeliefEntry",
+    "LevelsEntry",
     "ParameterEntry",
     "PerceptionEntry",
     "ProbeEntry",
@@ -273,6 +278,13 @@ class ExpectationEntry(_Entry, frozen=True):
     ] = 2.0
 
 
+class InferredEntry(_Entry, frozen=True):
+    """What a posterior mean should be: above something, below something, or both."""
+
+    above: Annotated[float | str | None, _note("A number, or a factor with a lower mean.")] = None
+    below: Annotated[float | str | None, _note("A number, or a factor with a higher mean.")] = None
+
+
 class ExpectEntry(_Entry, frozen=True):
     """What should come of a probe: at least one of these, all of them together."""
 
@@ -297,6 +309,10 @@ class ExpectEntry(_Entry, frozen=True):
         ExpectationEntry | list[ExpectationEntry] | None,
         _note("What a belief holds once the program has ended."),
     ] = None
+    inferred: Annotated[
+        dict[str, InferredEntry] | None,
+        _note("Factor, such as utility.K or credence.L, to what its posterior mean should be."),
+    ] = None
     function: Annotated[
         Any,
         _note(
@@ -306,10 +322,110 @@ class ExpectEntry(_Entry, frozen=True):
     ] = None
 
 
+class _MindGoalEntry(_Entry, frozen=True):
+    """What an agent may want to reach; exactly one of the keys."""
+
+    at: Annotated[Position | None, _note("The cell in which to stand.")] = None
+    block: Annotated[str | None, _note("Name of the block on which to stand.")] = None
+    item: Annotated[str | None, _note("Name of the item to take.")] = None
+
+
+class LevelsEntry(_Entry, frozen=True):
+    """Utilities to consider: all values of a range."""
+
+    range: Annotated[tuple[float, float], _note("Lowest and highest value.")]
+    step: Annotated[float, msgspec.Meta(gt=0, description="Between values.")] = 1.0
+
+
+class GridEntry(_Entry, frozen=True):
+    """Initial credences to consider: a grid over the alternatives."""
+
+    grid: Annotated[int, msgspec.Meta(ge=1, le=1000, description="Steps from 0 to 1.")]
+    smoothing: Annotated[
+        float, msgspec.Meta(ge=0, le=1, description="Weight of the uniform credence in each.")
+    ] = 0.0
+
+
+class _DoubtedBlockEntry(_Entry, frozen=True):
+    """A block in an alternative."""
+
+    at: Annotated[Position, _note("Its position.")]
+    block: Annotated[str, _note("A block state: name or name[property=value,...].")]
+
+
+class _DoubtedContainerEntry(_Entry, frozen=True):
+    """The complete contents of a container in an alternative."""
+
+    at: Annotated[Position, _note("Its position.")]
+    items: _ItemsField = {}
+
+
+class DoubtEntry(_Entry, frozen=True):
+    """An alternative: one way the world could be, which sets the same as all others do."""
+
+    blocks: Annotated[list[_DoubtedBlockEntry], _note("Blocks.")] = []
+    containers: Annotated[list[_DoubtedContainerEntry], _note("Contents of containers.")] = []
+    agents: Annotated[dict[str, Point], _note("Agents to the middle of their feet.")] = {}
+
+
+class InferEntry(_Entry, frozen=True):
+    """What an agent wants and believes, inferred from what the probe's `path` holds of its course.
+
+    The keys are those of `MindModel` and `Simulator.infer`.
+    """
+
+    agent: Annotated[str, _note("The agent that is modelled.")]
+    goals: Annotated[
+        dict[str, _MindGoalEntry], msgspec.Meta(min_length=1, description="Name to goal.")
+    ]
+    utilities: Annotated[
+        dict[str, float | list[float] | LevelsEntry] | list[dict[str, float]],
+        _note("Values to consider by goal, all combinations; or a list of combinations."),
+    ]
+    doubt: Annotated[
+        dict[str, DoubtEntry] | None,
+        _note("Alternatives that the agent cannot tell apart; null: it knows the world."),
+    ] = None
+    credences: Annotated[
+        list[list[float]] | GridEntry | None,
+        _note("Initial credences to consider, rows over the alternatives; null: uniform."),
+    ] = None
+    actual: Annotated[
+        str | dict[str, float] | None,
+        _note("An alternative, `unknown`, or weights; null: what the probe's path holds."),
+    ] = None
+    prior: Annotated[
+        list[list[float]] | None, _note("Weights, utilities by credences; null: uniform.")
+    ] = None
+    rationality: Annotated[
+        float | list[float], _note("Inverse temperature of choices; a list is a factor.")
+    ] = 2.5
+    discount: Annotated[float, _note("Factor on the value of the future with each act.")] = 0.99
+    step_cost: Annotated[float, _note("Cost of a step.")] = 1.0
+    stay_cost: Annotated[float, _note("Cost of staying.")] = 0.0
+    act_cost: Annotated[float, _note("Cost of acting on a goal, and of opening.")] = 1.0
+    diagonal: Annotated[bool, _note("Whether steps also lead to diagonal neighbours.")] = False
+    step_ticks: Annotated[
+        int | None, _note("Ticks without movement that are one stay; null: by the world.")
+    ] = None
+    stays: Annotated[bool, _note("Whether ticks without movement are evidence.")] = True
+    lapse: Annotated[float, _note("What is left of a contradicted alternative.")] = 0.0
+    since: Annotated[int, msgspec.Meta(ge=0, description="The first tick that counts.")] = 0
+    until: Annotated[
+        Annotated[int, msgspec.Meta(ge=0)] | None,
+        _note("The last tick that counts; null: the script's end."),
+    ] = None
+    ended: Annotated[
+        bool, _note("Whether the agent acts on the goal at its place after the last tick.")
+    ] = False
+    smooth: Annotated[bool, _note("Whether credence_now uses later evidence too.")] = False
+
+
 class ProbeEntry(_Entry, frozen=True):
     """A model is asked from one belief; its program runs in a simulator and is judged there.
 
-    `acts_in`, `agent` and `task` may be missing where nothing but `answers` is expected.
+    `acts_in`, `agent` and `task` may be missing where nothing but `answers` is expected. With
+    `infer` no model is asked, and `path`, `label` and `expect` alone may stand beside it.
     """
 
     path: Annotated[str, _note("The belief that the prompt is rendered from.")]
@@ -322,6 +438,10 @@ class ProbeEntry(_Entry, frozen=True):
         _note("`default`, `paper`, or a prompt template file beside the scenario; null: `paper`."),
     ] = None
     expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
+    infer: Annotated[
+        InferEntry | None,
+        _note("What is inferred of an agent from what `path` holds; no model is asked."),
+    ] = None
     senses: Annotated[
         Literal["world", "percepts"] | None,
         _note("What programs read: everything, or what their agents perceive or remember."),

@@ -9,6 +9,7 @@ from beliefnest.errors import InputError
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Expectation
+from beliefnest.scenarios.inferring import Inferred
 from beliefnest.scenarios.judging import Judgement
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.trial import Trial
@@ -56,6 +57,7 @@ class ProbeOutcome:
         replies: Replies to questions.
         fault: Reason why there is no program to judge; empty if there is one, or if the model was
             not asked for one.
+        inferred: Result of the inference; None: a model was asked.
     """
 
     probe: Probe
@@ -69,6 +71,7 @@ class ProbeOutcome:
     trial: Trial | None = None
     replies: tuple[Reply, ...] = ()
     fault: str = ""
+    inferred: Inferred | None = None
 
     @property
     def ok(self) -> bool | None:

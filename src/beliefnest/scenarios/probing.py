@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from beliefnest.belief.view import State
+from beliefnest.errors import InputError, PathError, ScenarioError, TickError
 from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_program
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.nest.face.nest import Nest
@@ -11,7 +12,8 @@ from beliefnest.programs import skills
 from beliefnest.prompts import Template, built_in_template, instructions
 from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Answers
+from beliefnest.scenarios.expected import Answers, Infers
+from beliefnest.scenarios.inferring import Inferred, Inferring, why_not_inferred
 from beliefnest.scenarios.judging import (
     Judgement,
     answer_verdict,
@@ -68,7 +70,10 @@ def run_probe(
     Raises:
         ModelError: The model failed, or gave no working program (`Asking.keeps_unanswered`).
         BodyError: The Minecraft side died.
+        ScenarioError: What is to be inferred does not fit what happened.
     """
+    if probe.infer is not None:
+        return _infer(nest, probe, probe.infer)
     believer, name = nest[probe.path], f"probe {number}"
     programs = _Programs((), None, ())
     if probe.asks_for_program:
@@ -106,6 +111,39 @@ def run_probe(
     )
 
 
+def _infer(nest: Nest, probe: Probe, infer: Inferring) -> ProbeOutcome:
+    """Infer what an agent wants and believes, and hold that against what was expected."""
+    try:
+        inference = nest[probe.path].infer(
+            infer.model,
+            since=infer.since,
+            until=infer.until,
+            ended=infer.ended,
+            smooth=infer.smooth,
+        )
+    except (InputError, PathError, TickError) as error:
+        raise ScenarioError(f"{infer.where}: {error}") from None
+    inferred = Inferred.of(inference)
+    verdicts = tuple(
+        _inferred_verdict(each, inferred) for each in probe.expect if isinstance(each, Infers)
+    )
+    return ProbeOutcome(
+        probe=probe,
+        verdicts=verdicts,
+        outcome=outcome_of(verdicts, None),
+        usage=Usage(),
+        fault=inferred.impossible or "",
+        inferred=inferred,
+    )
+
+
+def _inferred_verdict(expected: Infers, inferred: Inferred) -> Judgement:
+    why_not = why_not_inferred(expected, inferred)
+    if why_not is None:
+        return Judgement(expected, ok=True, outcome="ok")
+    return Judgement(expected, ok=False, why_not=why_not, outcome="wrong")
+
+
 def _ask_for_program(
     nest: Nest, number: int, probe: Probe, model: Model, asking: Asking
 ) -> _Programs:
@@ -129,7 +167,7 @@ def _ask_for_program(
             told = tuple(
                 Judgement(each, ok=False, why_not="there is no program", outcome="no_answer")
                 for each in probe.expect
-                if not isinstance(each, Answers)
+                if not isinstance(each, Answers | Infers)
             )
             return _Programs(attempts, None, told, str(error))
     return _Programs(attempts, *trials.done[-1])
@@ -193,7 +231,9 @@ class _Trials:
                 opened=opened_by(probe.agent, result.events),
             )
             verdicts = tuple(
-                verdict_of(each, trial) for each in probe.expect if not isinstance(each, Answers)
+                verdict_of(each, trial)
+                for each in probe.expect
+                if not isinstance(each, Answers | Infers)
             )
         finally:
             simulator.switch(before)

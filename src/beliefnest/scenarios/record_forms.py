@@ -59,6 +59,7 @@ class ProbeForm(msgspec.Struct):
     outcome: str
     why_not: str
     ticks: int
+    inferred: dict[str, float] | None = None
 
 
 def checked_form(content: object, form: type[Any], file: Path, remedy: str) -> None:

@@ -1,5 +1,6 @@
 """Outcomes as plain values, for `--json` and for the files of runs and studies."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from beliefnest.scenarios.expected import (
     Expected,
     Hears,
     Holds,
+    Infers,
     Intends,
     Is,
     Judge,
@@ -52,8 +54,12 @@ def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
     found: dict[str, Any] = {}
     for each in expected:
         for key, value in _one(each).items():
-            several = isinstance(value, list) and key in ("answers", "believes")
-            found[key] = [*found.get(key, []), *value] if several else value
+            if key in ("answers", "believes"):
+                found[key] = [*found.get(key, []), *value]
+            elif key == "inferred":
+                found[key] = {**found.get(key, {}), **value}
+            else:
+                found[key] = value
     return found or None
 
 
@@ -78,6 +84,8 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
     """
     probe, trial = outcome.probe, outcome.trial
     result = None if trial is None else trial.result
+    inferred = outcome.inferred
+    evidence = -math.inf if inferred is None else inferred.log_evidence
     return {
         "label": probe.label,
         "path": probe.path,
@@ -99,6 +107,8 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
         "opened": [list(place) for place in outcome.opened],
         "arrived": _list(outcome.arrived),
         "replies": [_reply_json(each) for each in outcome.replies],
+        "inferred": None if inferred is None else dict(inferred.means),
+        "log_evidence": evidence if math.isfinite(evidence) else None,
         "expected": expected_json(probe.expect),
         "checks": [
             {"expected": _one(each.expected), "ok": each.ok, "why_not": each.why_not}
@@ -140,6 +150,10 @@ def _one(expected: Expected) -> dict[str, Any]:
             found = {"believes": [_expected_of(expectation)]}
         case Judge(_, name):
             found = {"function": name}
+        case Infers(factor, above, below):
+            bounds = {"above": above, "below": below}
+            told = {word: bound for word, bound in bounds.items() if bound is not None}
+            found = {"inferred": {factor: told}}
     return found
 
 

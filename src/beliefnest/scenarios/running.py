@@ -58,8 +58,8 @@ def run_scenario(
     )
     probes = []
     for number, probe in enumerate(scenario.probes):
-        asked = probe.task or probe.questions[0].question
-        on_progress(f"asking: {asked}", number, len(scenario.probes))
+        verb = "asking" if probe.asks_model else "inferring"
+        on_progress(f"{verb}: {probe.asked}", number, len(scenario.probes))
         probes.append(run_probe(nest, number + 1, probe, model, seed, asking or Asking()))
     return Outcome(
         scenario=scenario,

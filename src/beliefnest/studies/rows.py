@@ -34,6 +34,7 @@ _COLUMNS = {
     "opened": "string",
     "arrived": "string",
     "answered": "string",
+    "inferred": "string",
     "ok": "bool",
     "outcome": "string",
     "why_not": "string",
@@ -113,6 +114,8 @@ def _probe(probe: Mapping[str, Any]) -> dict[str, Any]:
         "opened": " ".join(_place(place) or "" for place in probe["opened"]),
         "arrived": _place(probe["arrived"]),
         "answered": "; ".join(str(reply["answer"]) for reply in probe["replies"]),
+        # Cells of an earlier version have none.
+        "inferred": plain_value(probe.get("inferred")),
         "ok": probe["ok"],
         "outcome": probe["outcome"],
         "why_not": probe["why_not"],
@@ -178,7 +181,17 @@ PROBES = Table(
     apart=("model", "template", "order"),
     shown=(
         *("variation", "model", "template", "repeat", "probe", "path", "order", "expected"),
-        *("intended", "opened", "arrived", "answered", "outcome", "why_not", "ticks", "tokens"),
+        *(
+            "intended",
+            "opened",
+            "arrived",
+            "answered",
+            "inferred",
+            "outcome",
+            "why_not",
+            "ticks",
+            "tokens",
+        ),
     ),
     same={"probe": ("path", "order", "acts_in", "agent", "task")},
 )

@@ -86,6 +86,27 @@ _EXPECT = {
         }
     ),
     "believes": _Each(_EXPECTATION),
+    "inferred": "keep",
+}
+_INFER = {
+    "agent": "agent",
+    "goals": _Map("keep", {"at": "block", "block": "keep", "item": "item"}),
+    "doubt": _Map(
+        "keep",
+        {
+            "blocks": _Each({"at": "block", "block": "state"}),
+            "containers": _Each({"at": "block", "items": _ITEMS}),
+            "agents": _Map("agent", "point"),
+        },
+    ),
+    **dict.fromkeys(
+        (
+            *("utilities", "credences", "actual", "prior", "rationality", "discount"),
+            *("step_cost", "stay_cost", "act_cost", "diagonal", "step_ticks", "stays", "lapse"),
+            *("since", "until", "ended", "smooth"),
+        ),
+        "keep",
+    ),
 }
 _CONDITION = {
     "path": "path",
@@ -178,6 +199,7 @@ _SHAPE: Mapping[str, Any] = {
             "task": "text",
             "template": "keep",
             "expect": _EXPECT,
+            "infer": _INFER,
             "timeout_ticks": "keep",
             "senses": "keep",
         }

@@ -20,6 +20,7 @@ from beliefnest.scenarios.films.film import (
     FilmParameters,
     event_name,
 )
+from beliefnest.scenarios.inferring import MOST_HYPOTHESES
 
 __all__ = ["films_from", "parameters_from", "read_films"]
 
@@ -38,7 +39,6 @@ _KINDS: Mapping[str, About] = {
 }
 _RATINGS = "1to7"
 _MOST_CELLS = 128 * 128
-_MOST_HYPOTHESES = 2_000_000
 
 
 def read_films(path: str | Path) -> tuple[list[Film], FilmParameters]:
@@ -504,9 +504,9 @@ def _check_size(film: Film, parameters: FilmParameters) -> None:
         * comb(parameters.grid + count - 1, count - 1)
         * count
     )
-    if hypotheses > _MOST_HYPOTHESES:
+    if hypotheses > MOST_HYPOTHESES:
         raise InputError(
-            f"film {film.name} has {hypotheses:,} hypotheses, at most {_MOST_HYPOTHESES:,} are "
+            f"film {film.name} has {hypotheses:,} hypotheses, at most {MOST_HYPOTHESES:,} are "
             "counted; name fewer reward_levels, or fewer alternatives"
         )
 

@@ -1,0 +1,265 @@
+"""Inference in scenarios: what `infer:` of a probe means, and how its result is judged."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from beliefnest.minds.model import MindModel, simplex_grid
+from beliefnest.scenarios.document import Document, KeyPath
+from beliefnest.scenarios.expected import Infers
+from beliefnest.scenarios.format import (
+    DoubtEntry,
+    GridEntry,
+    InferEntry,
+    InferredEntry,
+    LevelsEntry,
+)
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.values import Box, Position
+
+if TYPE_CHECKING:
+    from beliefnest.minds.inference import Inference
+
+__all__ = [
+    "MOST_HYPOTHESES",
+    "Inferred",
+    "Inferring",
+    "build_inferring",
+    "build_infers",
+    "means_text",
+    "why_not_inferred",
+]
+
+MOST_HYPOTHESES = 2_000_000
+"""Combinations of utilities, credences and alternatives that fit into memory."""
+
+_SLACK = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Inferring:
+    """What a probe infers.
+
+    Attributes:
+        model: The hypotheses.
+        since: The first tick that counts.
+        until: The last tick that counts; None: the end of the script.
+        ended: Whether the agent acted on the goal at its place after the last tick.
+        smooth: Whether current credences use later evidence too.
+        where: File and line, for messages.
+    """
+
+    model: MindModel
+    since: int
+    until: int | None
+    ended: bool
+    smooth: bool
+    where: str
+
+
+@dataclass(frozen=True, slots=True)
+class Inferred:
+    """The result of a probe that infers.
+
+    Attributes:
+        means: Posterior mean of each factor.
+        log_evidence: Natural logarithm of the probability of the course; -inf: impossible.
+        impossible: The first step that no hypothesis explains, in words; the means are then those
+            before it. None: every step is explained.
+    """
+
+    means: Mapping[str, float]
+    log_evidence: float
+    impossible: str | None = None
+
+    @staticmethod
+    def of(inference: "Inference") -> "Inferred":
+        """Return the means of an inference."""
+        failed = inference.impossible
+        return Inferred(
+            {factor: inference.mean(factor) for factor in inference.model.factors},
+            inference.log_evidence,
+            None if failed is None else str(failed),
+        )
+
+
+def why_not_inferred(expected: Infers, inferred: Inferred) -> str | None:
+    """Return what is inferred instead of what was expected; None: just that."""
+    if inferred.impossible is not None:
+        return inferred.impossible
+    mean = inferred.means[expected.factor]
+    for word, bound, is_met in (
+        ("above", expected.above, mean.__gt__),
+        ("below", expected.below, mean.__lt__),
+    ):
+        if bound is None:
+            continue
+        number = inferred.means[bound] if isinstance(bound, str) else bound
+        if not is_met(number):
+            told = f"{bound} ({number:.3g})" if isinstance(bound, str) else f"{number:g}"
+            return f"{expected.factor} is {mean:.3g}, not {word} {told}"
+    return None
+
+
+def means_text(means: Mapping[str, float], factors: Sequence[str] = ()) -> str:
+    """Return means in words, of some factors; none named: of all."""
+    return ", ".join(f"{name} {means[name]:.3g}" for name in factors or means)
+
+
+def build_inferring(
+    document: Document, path: KeyPath, entry: InferEntry, snapshot: Snapshot
+) -> Inferring:
+    """Return what a probe infers.
+
+    Raises:
+        ScenarioError: The model does not fit together, or names what is not in the scenario.
+    """
+    if entry.agent not in snapshot.agents:
+        known = ", ".join(snapshot.agents)
+        raise document.fault(
+            (*path, "agent"), f"there is no agent {entry.agent!r}; agents are {known}"
+        )
+    for name, goal in entry.goals.items():
+        if goal.at is not None:
+            _check_inside(document, (*path, "goals", name, "at"), goal.at, snapshot.box)
+    doubt = None
+    if entry.doubt is not None:
+        doubt = {
+            name: _alternative(document, (*path, "doubt", name), each, snapshot)
+            for name, each in entry.doubt.items()
+        }
+    utilities = _utilities(document, (*path, "utilities"), entry)
+    _check_count(document, path, entry)
+    credences: Any = entry.credences
+    if isinstance(credences, GridEntry):
+        with document.naming((*path, "credences")):
+            credences = simplex_grid(
+                1 if doubt is None else len(doubt), credences.grid, credences.smoothing
+            )
+    if entry.until is not None and entry.until < entry.since:
+        raise document.fault((*path, "until"), f"{entry.until} is before since, {entry.since}")
+    with document.naming(path):
+        model = MindModel(
+            agent=entry.agent,
+            goals={
+                name: {
+                    key: value
+                    for key in ("at", "block", "item")
+                    if (value := getattr(goal, key)) is not None
+                }
+                for name, goal in entry.goals.items()
+            },
+            utilities=utilities,
+            doubt=doubt,
+            credences=credences,
+            actual=entry.actual,
+            prior=entry.prior,
+            rationality=entry.rationality,
+            discount=entry.discount,
+            step_cost=entry.step_cost,
+            stay_cost=entry.stay_cost,
+            act_cost=entry.act_cost,
+            diagonal=entry.diagonal,
+            step_ticks=entry.step_ticks,
+            stays=entry.stays,
+            lapse=entry.lapse,
+        )
+    return Inferring(
+        model, entry.since, entry.until, entry.ended, entry.smooth, document.where(path)
+    )
+
+
+def build_infers(
+    document: Document, path: KeyPath, entries: Mapping[str, InferredEntry], model: MindModel
+) -> list[Infers]:
+    """Return what is expected of inferred means.
+
+    Raises:
+        ScenarioError: A factor is not one of the model's, or nothing is said of it.
+    """
+    if not entries:
+        raise document.fault(path, "expects nothing; name a factor, such as utility.K")
+    found = []
+    for factor, entry in entries.items():
+        place = (*path, factor)
+        named = [factor, *(b for b in (entry.above, entry.below) if isinstance(b, str))]
+        for name in named:
+            if name not in model.factors:
+                raise document.fault(
+                    place, f"there is no factor {name!r}; there are {', '.join(model.factors)}"
+                )
+        if entry.above is None and entry.below is None:
+            raise document.fault(place, "expects nothing; give above, below or both")
+        found.append(Infers(factor, entry.above, entry.below))
+    return found
+
+
+def _utilities(document: Document, path: KeyPath, entry: InferEntry) -> Any:
+    given = entry.utilities
+    if isinstance(given, list):
+        return given
+    return {
+        goal: _levels(document, (*path, goal), levels)
+        if isinstance(levels, LevelsEntry)
+        else levels
+        for goal, levels in given.items()
+    }
+
+
+def _levels(document: Document, path: KeyPath, entry: LevelsEntry) -> list[float]:
+    low, high = entry.range
+    if not math.isfinite(low) or not math.isfinite(high) or low > high:
+        raise document.fault((*path, "range"), "give two numbers, the lower one first")
+    count = math.floor((high - low) / entry.step + _SLACK) + 1
+    if count > MOST_HYPOTHESES:
+        raise document.fault(path, f"has {count:,} values; take a larger step")
+    return [low + number * entry.step for number in range(count)]
+
+
+def _check_count(document: Document, path: KeyPath, entry: InferEntry) -> None:
+    """Refuse more hypotheses than fit into memory, before they are made."""
+    given, alternatives = entry.utilities, len(entry.doubt or {}) or 1
+    count = len(given) if isinstance(given, list) else 1
+    for levels in () if isinstance(given, list) else given.values():
+        if isinstance(levels, LevelsEntry):
+            low, high = levels.range
+            count *= math.floor((high - low) / levels.step + _SLACK) + 1
+        elif isinstance(levels, list):
+            count *= len(levels)
+    credences = entry.credences
+    if isinstance(credences, GridEntry):
+        count *= math.comb(credences.grid + alternatives - 1, alternatives - 1)
+    elif credences is not None:
+        count *= len(credences)
+    if count * alternatives > MOST_HYPOTHESES:
+        raise document.fault(
+            path,
+            f"has {count * alternatives:,} hypotheses, at most {MOST_HYPOTHESES:,} are counted; "
+            "name fewer utilities, or a coarser grid of credences",
+        )
+
+
+def _alternative(
+    document: Document, path: KeyPath, entry: DoubtEntry, snapshot: Snapshot
+) -> dict[str, Any]:
+    """Return one alternative as `MindModel` takes it."""
+    for number, block in enumerate(entry.blocks):
+        _check_inside(document, (*path, "blocks", number, "at"), block.at, snapshot.box)
+    for number, container in enumerate(entry.containers):
+        _check_inside(document, (*path, "containers", number, "at"), container.at, snapshot.box)
+    for agent in entry.agents:
+        if agent not in snapshot.agents:
+            raise document.fault((*path, "agents", agent), f"there is no agent {agent!r}")
+    return {
+        "blocks": {block.at: block.block for block in entry.blocks},
+        "containers": {container.at: dict(container.items) for container in entry.containers},
+        "agents": dict(entry.agents),
+    }
+
+
+def _check_inside(document: Document, path: KeyPath, place: Position, box: Box) -> None:
+    if place not in box:
+        raise document.fault(
+            path, f"{list(place)} lies outside the box {list(box.low)} to {list(box.high)}"
+        )
