@@ -203,16 +203,15 @@ class Ground:
             else:
                 self._ways[wanted] = found = find_way(self, start, goal)
                 if found is None and not known:
-                    # Remember the area, so that the next search from there need not explore all of
-                    # it.
+                    # Remember the area, so that the next search there need not explore all of it.
                     self._areas.append(self._area(start))
         return self._ways[wanted]
 
     def may_lead(self, start: Position, goal: Goal) -> bool:
         """Return True if a path to a goal may exist; False if none does.
 
-        The known areas contain all cells that can be reached from one another. A path exists only
-        if one of the cells in the area of `start` meets the goal.
+        An area is the set of all cells that can be reached from one cell. A path exists only if
+        some cell in the area of `start` meets the goal.
         """
         number = next((n for n, area in enumerate(self._areas) if start in area), None)
         if number is None:

@@ -7,7 +7,7 @@ module.exports = {
   name: 'checkValidPosition',
   signature: 'checkValidPosition(position, bot)',
   description: 'Whether somebody can stand at the position: two free blocks above a solid one. Gives true or false.',
-  fails: 'never, but for wrong arguments',
+  fails: 'only for invalid arguments',
   parameters: [
     { name: 'position', type: 'Vec3', description: 'where the feet would be' },
     { name: 'bot', type: 'Bot', description: 'your own bot' }

@@ -5,7 +5,7 @@ module.exports = {
   name: 'closeDoor',
   signature: 'closeDoor(bot, position)',
   description: 'Go to the door, trapdoor or fence gate and shut it; does nothing if it is shut already. Iron ones move by levers and buttons alone.',
-  fails: 'no way there; no door, trapdoor or gate there; it is of iron; it did not move',
+  fails: 'there is no path on foot; there is no door, trapdoor or gate; it is an iron one; it did not move',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the door, of either half' }

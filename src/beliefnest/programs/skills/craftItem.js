@@ -52,7 +52,7 @@ module.exports = {
   name: 'craftItem',
   signature: 'craftItem(bot, name, craftingTablePos, count)',
   description: 'Make at least count of an item from what you carry. What fits into 2 by 2 needs no table: craftingTablePos may be null then.',
-  fails: 'no recipe; something is missing (which is said); a table is needed and none given, or none there; no way to it; no room for what is made',
+  fails: 'there is no recipe; ingredients are missing (the error lists them); a crafting table is needed, but none is given or there; there is no path to it; the inventory has no room for the product',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item to make' },

@@ -12,7 +12,7 @@ module.exports = {
   name: 'depositItemIntoChest',
   signature: 'depositItemIntoChest(bot, chestPosition, items)',
   description: 'Go to the chest, open it, put the items in, close it. Puts in what there is and fails, naming what is missing, if that is less.',
-  fails: 'no way there; no container there; its lid is held down; there was less to put in (what there was is in); it was closed meanwhile',
+  fails: 'there is no path on foot; there is no container; its lid is blocked; you have fewer items, or it has less room (as many as possible are put in); somebody closed it meanwhile',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'chestPosition', type: 'Vec3', description: 'position of a chest or barrel' },

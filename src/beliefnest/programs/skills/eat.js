@@ -10,7 +10,7 @@ module.exports = {
   name: 'eat',
   signature: 'eat(bot, name)',
   description: 'Eat one piece of food from your inventory. Works only when you are not full.',
-  fails: 'the item is no food, or not carried; you are not hungry; it was not eaten',
+  fails: 'the item is not food, or you do not carry it; you are not hungry; you did not finish eating',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the food' }

@@ -6,7 +6,7 @@ module.exports = {
   name: 'emote',
   signature: 'emote(name, type)',
   description: 'Make a gesture that those who see you perceive, such as "wave" or "nod".',
-  fails: 'nobody has that name; the gesture is no line of at most 256 characters',
+  fails: 'nobody has that name; the gesture is not one line of at most 256 characters',
   parameters: [
     { name: 'name', type: 'string', description: 'your own name, or the name of the agent the gesture is meant for' },
     { name: 'type', type: 'string', description: 'which gesture' }

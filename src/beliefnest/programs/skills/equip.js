@@ -9,7 +9,7 @@ module.exports = {
   name: 'equip',
   signature: 'equip(bot, name, destination="hand")',
   description: 'Take an item from your inventory in hand, or put it on: hand, off-hand, head, torso, legs, feet.',
-  fails: 'the item is not carried, or does not go there',
+  fails: 'you do not carry the item; it does not fit the destination',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item' },

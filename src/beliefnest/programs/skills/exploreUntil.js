@@ -8,7 +8,7 @@ module.exports = {
   name: 'exploreUntil',
   signature: 'exploreUntil(bot, direction, maxDistance, callback)',
   description: 'Walk in a direction until callback gives something true, and return that; null after maxDistance blocks.',
-  fails: 'the direction points nowhere, or the callback is no function; what the callback throws',
+  fails: 'the direction has no length; the callback is not a function, or it throws an error',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'direction', type: 'Vec3', description: 'level direction, such as new Vec3(1, 0, 0)' },

@@ -24,7 +24,7 @@ module.exports = {
   name: 'follow',
   signature: 'follow(bot, otherName, number=100, dist=2)',
   description: 'Follow another agent for a number of ticks, staying within dist blocks. Fails if it is not near at the end.',
-  fails: 'the other is not there, not seen, or not near at the end',
+  fails: 'the other agent is absent, not visible, or not near at the end',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'whom to follow' },

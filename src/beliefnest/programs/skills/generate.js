@@ -10,19 +10,19 @@ const { SKILLS } = require('./index')
 const ROOT = path.join(__dirname, '..', '..', '..', '..')
 const INTRODUCTION = `# Skills
 
-What a program can call besides Mineflayer's own functions. Every skill does what a player
+Skills are functions that a program can call besides Mineflayer's own. Every skill does something that a player
 could do, returns when it is done, and otherwise throws an error that says what was asked,
 what was found and what to do; \`error.skill\` is its name. Positions are scenario
 coordinates; 20 ticks are a second.
 
-Blocks are used, mined and placed where an arm reaches (6 blocks from the eye) and a free line leads there
-from the eye: not through walls, glass among them. Skills that use a block walk first to where there is such a line.
-What agents did is told by the world and not by the skills: a gift, once somebody has thrown something and somebody
-else has picked it up within 240 ticks; an arrival, once somebody has walked and stands there.
+You can use, mine and place blocks within the reach of an arm (6 blocks from the eye) and with a free line from the eye
+to the block; walls, and glass too, obstruct it. Skills that use a block first walk to where there is such a line.
+The world records what agents do; skills do not report it. It records a gift when one agent has thrown something and
+another one has picked it up within 240 ticks, and an arrival when an agent has walked and then stands still.
 
-What is said, whispered, thought or shown as a gesture is one line of at most 256 characters, and no more
-than 20 such things a tick. A text with line breaks, control characters or the separators U+2028 and
-U+2029, or a longer one, is refused with an error.
+An utterance, whisper, thought or gesture is one line of at most 256 characters; an agent can make at most 20 of them
+in a tick. A longer text, or one with line breaks, control characters or the separators U+2028 and U+2029, is refused
+with an error.
 
 This page is generated from the skills' own files by \`src/beliefnest/programs/skills/generate.js\`.
 `

@@ -12,7 +12,7 @@ module.exports = {
   name: 'getItemFromChest',
   signature: 'getItemFromChest(bot, chestPosition, items)',
   description: 'Go to the chest, open it, take the items, close it. Takes what is there and fails, naming what is missing, if that is less.',
-  fails: 'no way there; no container there; its lid is held down; it held less (what it held is taken); it was closed meanwhile',
+  fails: 'there is no path on foot; there is no container; its lid is blocked; it holds fewer items (those are taken); somebody closed it meanwhile',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'chestPosition', type: 'Vec3', description: 'position of a chest or barrel' },

@@ -34,7 +34,7 @@ module.exports = {
   name: 'giveItemToOther',
   signature: 'giveItemToOther(bot, otherName, item, num)',
   description: 'Go to another agent, toss the items to it, and wait until it has picked them up.',
-  fails: 'less is carried; the other is not there or not seen; no way to them; they picked up less within 10 seconds',
+  fails: 'you carry fewer items; the other agent is absent or not visible; there is no path to them; they picked up fewer items within 10 seconds',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'who is to get it' },

@@ -7,7 +7,7 @@ module.exports = {
   name: 'givePlacedItemBack',
   signature: 'givePlacedItemBack(bot, name, position)',
   description: 'Take back a block that was placed, such as a crafting table: mine it and pick it up.',
-  fails: 'no way there; the block is another one; no tool for it; it did not come back',
+  fails: 'there is no path on foot; another block is there; you have no suitable tool; you did not get the item back',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the placed item' },

@@ -8,7 +8,7 @@ module.exports = {
   name: 'goToPosition',
   signature: 'goToPosition(bot, position, dist=2)',
   description: 'Walk until the position is at most dist blocks away. Goes through open doors of any kind and opens others on its way, but for iron ones; a fourth argument {openDoors: false, closeDoors: true} keeps it from opening any, and lets it shut those it goes through. Fails, saying how near it came, if there is no way on foot.',
-  fails: 'no way on foot (`reason` is `no_way`), or it was stopped on the way; where it stands is said',
+  fails: 'there is no path on foot (`reason` is `no_way`); you were stopped on the way (the error says where you are)',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'where to go' },

@@ -6,7 +6,7 @@ module.exports = {
   name: 'lookAt',
   signature: 'lookAt(bot, position)',
   description: 'Turn to look at a point.',
-  fails: 'never, but for wrong arguments',
+  fails: 'only for invalid arguments',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'what to look at' }

@@ -6,7 +6,7 @@ module.exports = {
   name: 'mineBlock',
   signature: 'mineBlock(bot, position, name)',
   description: 'Go to the block, mine it with the best tool you carry, and pick up what it drops.',
-  fails: 'no way there; another block is there; it cannot be mined, or not with what is carried; no room for what it drops',
+  fails: 'there is no path on foot; another block is there; the block cannot be mined, or not with your tools; the inventory has no room for the drops',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the block' },

@@ -46,7 +46,7 @@ module.exports = {
   name: 'placeItem',
   signature: 'placeItem(bot, name, position)',
   description: 'Go there and place a block from your inventory at the position, which must be free and beside a solid block.',
-  fails: 'the item is not carried; the place is not free, or has nothing beside it; no way there; somebody stands there',
+  fails: 'you do not carry the item; the position is not free, or has no solid block beside it; there is no path on foot; somebody stands there',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item to place' },

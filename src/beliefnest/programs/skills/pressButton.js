@@ -5,7 +5,7 @@ module.exports = {
   name: 'pressButton',
   signature: 'pressButton(bot, position)',
   description: 'Go to the button and press it; it comes out again by itself.',
-  fails: 'no way there; no button there; it stays pressed, or did not move',
+  fails: 'there is no path on foot; there is no button; it stays pressed, or did not move',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the button' }

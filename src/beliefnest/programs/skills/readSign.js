@@ -5,7 +5,7 @@ module.exports = {
   name: 'readSign',
   signature: 'readSign(bot, position)',
   description: 'Look at the sign, without going there, and get what is written on it, lines split by \\n; empty if nothing is.',
-  fails: 'no sign there, or it is not to be seen',
+  fails: 'there is no sign, or you cannot see it',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the sign' }

@@ -9,7 +9,7 @@ module.exports = {
   name: 'receiveItemFromOther',
   signature: 'receiveItemFromOther(bot, otherName, item, num)',
   description: 'Wait until another agent has given you the items, which it does with giveItemToOther; at most 30 seconds.',
-  fails: 'less came within 30 seconds (how many is said)',
+  fails: 'fewer items came within 30 seconds (the error says how many)',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'who is to give it' },

@@ -8,7 +8,7 @@ module.exports = {
   signature: 'say(bot, msg, claims=[])',
   description: 'Say something aloud, in at most 256 characters. What it states can be given as claims as well, ' +
     'such as [located("diamond", new Vec3(2, -51, -4))]; hearers may come to believe those.',
-  fails: 'the text is no line of at most 256 characters, is empty, or begins with a slash; a claim is none, or there are more than 16',
+  fails: 'the text is not one line of at most 256 characters, is empty, or begins with a slash; a claim is invalid, or there are more than 16',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'msg', type: 'string', description: 'what to say' },

@@ -9,7 +9,7 @@ module.exports = {
   name: 'sleep',
   signature: 'sleep(bot, bedPosition, number=100)',
   description: 'Go to a bed, sleep in it for a number of ticks, and get up.',
-  fails: 'no way there; no bed there; somebody lies in it; it cannot be slept in now',
+  fails: 'there is no path on foot; there is no bed; somebody lies in it; nobody can sleep in it now',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'bedPosition', type: 'Vec3', description: 'position of the bed' },

@@ -93,7 +93,7 @@ module.exports = {
   name: 'smeltItem',
   signature: 'smeltItem(bot, itemName, fuelName, furnacePos, count)',
   description: 'Go to the furnace, smelt count of an item with the fuel, wait for it, and take out what was made and what is left.',
-  fails: 'no way there; no furnace there, or a busy one; less is carried; the fuel does not burn, or runs out (what is made is taken); the item does not smelt',
+  fails: 'there is no path on foot; there is no furnace, or it is in use; you carry fewer items; the fuel does not burn, or it runs out (finished items are taken); the item cannot be smelted',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'itemName', type: 'string', description: 'what to smelt' },

@@ -5,7 +5,7 @@ module.exports = {
   name: 'think',
   signature: 'think(bot, msg)',
   description: 'Think something to yourself. Nobody else perceives it.',
-  fails: 'the text is no line of at most 256 characters',
+  fails: 'the text is not one line of at most 256 characters',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'msg', type: 'string', description: 'the thought' }

@@ -5,7 +5,7 @@ module.exports = {
   name: 'turnOnLever',
   signature: 'turnOnLever(bot, position)',
   description: 'Go to the lever and switch it on; does nothing if it is on already.',
-  fails: 'no way there; no lever there; it did not move',
+  fails: 'there is no path on foot; there is no lever; it did not move',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the lever' }

@@ -7,7 +7,7 @@ module.exports = {
   signature: 'waitForChat(bot, number=100)',
   description: 'Wait until somebody else says something that you hear, and return {speaker, text, whispered}; null if nobody does ' +
     'within a number of ticks.',
-  fails: 'never, but for wrong arguments',
+  fails: 'only for invalid arguments',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'number', type: 'number', description: 'how many ticks at most' }

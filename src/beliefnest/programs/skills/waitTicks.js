@@ -6,7 +6,7 @@ module.exports = {
   name: 'waitTicks',
   signature: 'waitTicks(bot, number)',
   description: 'Wait for a number of ticks; 20 are a second.',
-  fails: 'never, but for wrong arguments',
+  fails: 'only for invalid arguments',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'number', type: 'number', description: 'how many ticks' }

@@ -6,7 +6,7 @@ module.exports = {
   name: 'waitUntil',
   signature: 'waitUntil(bot, condition, number=200)',
   description: 'Wait until condition gives something true, and return that; looks every tick, fails after a number of ticks.',
-  fails: 'the condition did not come true in time; what the condition throws',
+  fails: 'the condition did not become true in time, or it throws an error',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'condition', type: '() => any', description: 'what is waited for' },

@@ -11,7 +11,7 @@ module.exports = {
   name: 'whisper',
   signature: 'whisper(bot, otherName, msg, claims=[])',
   description: `Say something to one other agent alone, in at most ${LONGEST} characters. Nobody else perceives it. Claims as for say.`,
-  fails: 'nobody has that name; the text is no line of at most 256 characters, or is empty; a claim is none',
+  fails: 'nobody has that name; the text is not one line of at most 256 characters, or is empty; a claim is invalid',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'who is to hear it' },

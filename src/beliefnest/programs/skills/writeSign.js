@@ -7,7 +7,7 @@ module.exports = {
   signature: 'writeSign(bot, position, lines, claims=[])',
   description: 'Go to the sign and write on its front, over what is there; whoever sees the sign reads it. An empty text wipes it. ' +
     'What it states can be given as claims as well; who reads a text on a sign for the first time may come to believe those.',
-  fails: 'no way there; no sign there; the text does not fit on it; nothing was written; a claim is none, or there are more than 16',
+  fails: 'there is no path on foot; there is no sign; the text does not fit on it; the sign did not change; a claim is invalid, or there are more than 16',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the sign' },
