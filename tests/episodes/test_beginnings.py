@@ -31,7 +31,7 @@ def test_a_run_of_another_command_stays_as_it_is(
     bn.Nest.open(TASK.scenario, "scripted", store).close()
     before = store.read_bytes()
     assert run_command_line([*PLAY, "--out", str(store.parent)]) == 2
-    assert "made by another command" in capsys.readouterr().err
+    assert "there is no episode in this run" in capsys.readouterr().err
     assert store.read_bytes() == before
 
 

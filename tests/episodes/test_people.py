@@ -77,12 +77,12 @@ def test_what_a_person_does_in_a_round_is_their_agent_s_action(policy: str) -> N
         began = [*episode.beginnings, episode.nest.tick]
         assert all(later > earlier for earlier, later in itertools.pairwise(began))
         assert episode.measures.messages >= 2
-        with pytest.raises(bn.InputError, match="nobody does the same twice"):
+        with pytest.raises(bn.InputError, match="people cannot repeat their acts exactly"):
             episode.help()
 
 
 def test_people_join_the_embedded_world_alone() -> None:
     with pytest.raises(bn.InputError, match="people cannot join the world 'scripted'"):
         bn.Episode(hall(), {"bob": "person"})
-    with pytest.raises(bn.InputError, match="nobody is played by"):
+    with pytest.raises(bn.InputError, match="no agent has the policy"):
         bn.Episode(hall(), world="embedded", listen=0)

@@ -1,4 +1,4 @@
-"""Who plays whom."""
+"""Assignment of policies to agents."""
 
 from collections.abc import Mapping
 
@@ -15,15 +15,15 @@ _OBJECT = "object:"
 def chosen(
     task: Task, policies: Mapping[str, "str | Policy"]
 ) -> tuple[dict[str, str], dict[str, Policy]]:
-    """Return policies of all agents of a task, in words and as they act.
+    """Return the policies of all agents of a task: their names, and the policies themselves.
 
     Args:
-        task: The task, which says who plays those that are left out.
-        policies: By agent.
+        task: The task, with policies for agents that `policies` leaves out.
+        policies: Policies by agent.
 
     Raises:
-        InputError: There is a policy for nobody.
-        UnknownNameError: There is no such policy.
+        InputError: A policy is for an unknown agent.
+        UnknownNameError: A policy does not exist.
     """
     if not isinstance(policies, Mapping):
         raise InputError(f"policies is {policies!r}; give a mapping from agents to policies")
@@ -40,7 +40,7 @@ def chosen(
         given = policies.get(agent, own)
         if not isinstance(given, str) and not callable(getattr(given, "act", None)):
             raise InputError(
-                f"the policy of {agent} is {given!r}; give the name of one, or an object with "
+                f"the policy of {agent} is {given!r}; give the name of a policy, or an object with "
                 "act(view)"
             )
         names[agent] = name_of(given)
@@ -49,20 +49,20 @@ def chosen(
 
 
 def name_of(policy: "str | Policy") -> str:
-    """What a run calls a policy."""
+    """Return the name of a policy in runs."""
     return policy if isinstance(policy, str) else f"{_OBJECT}{type(policy).__name__}"
 
 
 def check_resumable(policies: Mapping[str, "str | Policy"]) -> None:
-    """See that all policies that a run names can be made anew.
+    """Check that all policies of a run can be created from their names.
 
     Raises:
-        InputError: One was an object, which no file holds.
+        InputError: A policy was an object, which the run cannot hold.
     """
     for agent, policy in policies.items():
         if isinstance(policy, str) and policy.startswith(_OBJECT):
             kind = policy.removeprefix(_OBJECT)
             raise InputError(
-                f"{agent} was played by an object of the class {kind}, which no file holds; "
+                f"{agent} was played by an object of the class {kind}, which is not in the file; "
                 f"give it again: Episode.resume(store, {{{agent!r}: {kind}(...)}})"
             )

@@ -1,4 +1,4 @@
-"""What was decided in a part of a round, and how that ended, as a run keeps it."""
+"""Decisions in parts of rounds and their results, as a run records them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,12 +26,12 @@ _FAILED = ("no_way", "failed", "lost")
 
 
 class Spent(msgspec.Struct, frozen=True):
-    """What a policy has spent on models.
+    """Spending of a policy on models.
 
     Attributes:
-        requests: Requests that reached a provider.
-        tokens: Sent and received.
-        cost: US dollars; None where a price is not known.
+        requests: Number of requests that reached a provider.
+        tokens: Tokens sent and received.
+        cost: US dollars; None if a price is not known.
     """
 
     requests: int = 0
@@ -50,13 +50,13 @@ class Spent(msgspec.Struct, frozen=True):
 
 
 class Decision(msgspec.Struct, frozen=True):
-    """What a policy decided for a round.
+    """Decision of a policy for a round.
 
     Attributes:
-        program: The program; empty: nothing.
-        fault: Why there is none; empty: it is as the policy wanted.
-        spent: What that took.
-        goes_on: Whether it is the last one, which was cut, and goes on from there.
+        program: The program; empty: the agent does nothing.
+        fault: Reason why the policy gave no program; empty: there was no error.
+        spent: Spending of the decision.
+        goes_on: True if the program is the previous one, which was cut, and continues.
     """
 
     program: str = ""
@@ -67,13 +67,14 @@ class Decision(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """How an agent's latest program ended, as the agent itself could tell.
+    """End of an agent's latest program, as the agent itself perceives it.
 
     Attributes:
-        program: Its text; empty if there was none.
-        how: `ok`; `cut` at the round's end; `no_way` on foot as far as the agent knows; `failed`;
-            `lost`: there was none, since the policy gave none in time; `none`: nothing was to do.
-        message: What went wrong, in words; empty if nothing did.
+        program: Text of the program; empty if there was none.
+        how: `ok`; `cut` at the end of the round; `no_way` on foot, as far as the agent knows;
+            `failed`; `lost`: the policy gave no program in time; `none`: the policy chose to do
+            nothing.
+        message: Error in words; empty if there was none.
     """
 
     program: str = ""
@@ -82,15 +83,15 @@ class Ended:
 
 
 class Part(msgspec.Struct, frozen=True):
-    """What was decided by who acts together, and how that ended.
+    """Part of a round: decisions of agents that act together, and their results.
 
     Attributes:
-        decisions: By agent.
-        ended: By agent; empty until it is done.
-        cut: Of agents whose programs were cut, what these had done.
-        began: The tick at which it began in real time; None: where time stands still meanwhile.
-        reasons: Of agents whose programs failed, the whole reason. It is for readers of the run:
-            the agents are told no more than `ended` says.
+        decisions: Decisions by agent.
+        ended: Ends of programs by agent; empty until the part is played.
+        cut: Past of programs that were cut, by agent.
+        began: Tick at which the part began in real time; None: the world waits for decisions.
+        reasons: Complete reasons of failed programs, by agent. They are for readers of the run:
+            agents learn only what `ended` says.
     """
 
     decisions: dict[str, Decision]
@@ -100,20 +101,20 @@ class Part(msgspec.Struct, frozen=True):
     reasons: dict[str, str] = {}
 
     def reason(self, agent: str) -> str:
-        """Return why an agent's program failed, was cut or is missing; empty: it ended well."""
+        """Return why an agent's program failed, was cut or is missing; empty if it ended well."""
         told = self.ended[agent].message if agent in self.ended else ""
         return self.reasons.get(agent) or self.decisions[agent].fault or told
 
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """A program that failed in an episode, or that a policy did not give.
+    """Failed or missing program in an episode.
 
     Attributes:
-        round: The round, from 0.
-        agent: Whose program.
+        round: Number of the round, from 0.
+        agent: Name of the agent.
         ended: `failed`, `no_way` or `lost`, as in `Ended.how`.
-        reason: What went wrong, in words, with the line of the program.
+        reason: Error in words, with the line of the program.
     """
 
     round: int
@@ -129,8 +130,8 @@ def failures_in(parts: Sequence[Part], per_round: int) -> tuple[Failure, ...]:
     """Return the failures in parts of rounds.
 
     Args:
-        parts: The parts, from the first round on.
-        per_round: How many parts a round has.
+        parts: Parts from the first round on.
+        per_round: Number of parts in a round.
     """
     return tuple(
         Failure(number // per_round, agent, ended.how, part.reason(agent))
@@ -141,15 +142,15 @@ def failures_in(parts: Sequence[Part], per_round: int) -> tuple[Failure, ...]:
 
 
 def latest_end(parts: Sequence[Part], agent: str) -> Ended:
-    """How an agent's latest program ended."""
+    """Return the end of an agent's latest program."""
     return next((p.ended[agent] for p in reversed(parts) if agent in p.ended), Ended())
 
 
 def programs_of(parts: Sequence[Part], agent: str) -> tuple[str, ...]:
-    """What was decided for an agent, round by round."""
+    """Return the programs of an agent, round by round."""
     return tuple(p.decisions[agent].program for p in parts if agent in p.decisions)
 
 
 def spent_in(parts: Sequence[Part]) -> Spent:
-    """What policies have spent on models."""
+    """Return the spending of policies on models."""
     return sum((each.spent for part in parts for each in part.decisions.values()), Spent())

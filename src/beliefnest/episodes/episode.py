@@ -1,4 +1,4 @@
-"""An episode: a task played round after round, recorded, gone on with, replayed, branched."""
+"""Episodes: play a task round after round; record, resume, replay and branch it."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -46,32 +46,32 @@ from beliefnest.world.paths import path_text
 __all__ = ["Budget", "Episode", "RoundStart"]
 
 _ON_FOOT = 5
-"""Ticks that Minecraft's players take for a block, 4.3 blocks a second, rounded up."""
+"""Ticks per block for Minecraft's players, who walk 4.3 blocks a second; rounded up."""
 
 
 class Episode:
-    """A task that is played by policies, one for each agent.
+    """Episode of a task, played by policies, one for each agent.
 
-    Nothing is started before it is first played or looked at. It is played in the scripted world
-    unless another one is named. Close it, or use it in a `with` block.
+    The world starts when the episode is first played or read. Close the episode, or use it in a
+    `with` block.
 
     Args:
-        task: What is played, or a scenario, played by its own rules; where one walks as people
-            do, rounds are as much longer.
-        policies: By agent, as on the command line or any object with `act`; who is left out is
-            played by the task's own policy, a player by `search` of the task's order.
-        world: Where it is played.
-        store: File to record in; None: memory.
-        seed: Drives every random number.
-        budget: What it may take.
-        patience_s: Seconds after which a policy has lost its round; None: it is waited for.
-        worlds: Lends the world, to one episode after the other; None: one is started.
-        listen: Where people join who play agents, as for `Nest.open`.
-        names: What runs call policies that are objects, by agent.
+        task: A task, or a scenario, which is played by its own rules. In Minecraft worlds, rounds
+            are longer, in proportion to the time that walking takes.
+        policies: Policies by agent: names as on the command line, or objects with `act`. Other
+            agents have the task's own policies, other players `search` of the task's order.
+        world: Name of the world.
+        store: Run file; None: memory.
+        seed: Seed of every random number.
+        budget: Limits of the episode.
+        patience_s: Seconds after which a policy loses its round; None: no limit.
+        worlds: Pool that lends the world to one episode after the other; None: start a world.
+        listen: Address at which people join to play agents, as for `Nest.open`.
+        names: Names in runs for policies that are objects, by agent.
 
     Raises:
-        InputError: There is a policy for nobody.
-        UnknownNameError: There is no such policy.
+        InputError: A policy is for an unknown agent.
+        UnknownNameError: A policy does not exist.
     """
 
     def __init__(
@@ -121,19 +121,19 @@ class Episode:
         budget: Budget | None = None,
         patience_s: float | None = None,
     ) -> Self:
-        """Go on with a recorded episode where it was.
+        """Continue a recorded episode where it ended.
 
         Args:
             store: The run file.
-            policies: By agent; those who are left out are played as before.
-            branch: Which one is gone on with; None: the one that was played last.
-            budget: What it may take, with what it has taken; None: as much as before.
+            policies: New policies by agent; other agents keep their policies.
+            branch: Branch to continue; None: the one that was played last.
+            budget: New limits, which include what was used before; None: the limits as before.
             patience_s: As for the class.
 
         Raises:
-            StoreError: There is no such run, or no episode in it.
-            InputError: A policy of before was an object, which no file holds.
-            BranchError: The episode has no such branch.
+            StoreError: The run does not exist, or holds no episode.
+            InputError: An earlier policy was an object, which the file cannot hold.
+            BranchError: The branch does not exist.
         """
         nest = Nest.resume(store)
         try:
@@ -167,16 +167,16 @@ class Episode:
         *,
         branch: str | None = None,
     ) -> Self:
-        """Play what was decided in a recorded episode once more, without asking anybody.
+        """Play the recorded decisions of an episode again, without asking any policy.
 
         Args:
-            recorded: Its run file.
-            store: File to record the replay in; None: memory.
-            branch: Which one; None: the one that was played last.
+            recorded: Run file of the episode.
+            store: Run file of the replay; None: memory.
+            branch: Branch to replay; None: the one that was played last.
 
         Raises:
-            StoreError: There is no such run, or no episode in it.
-            BranchError: The episode has no such branch.
+            StoreError: The run does not exist, or holds no episode.
+            BranchError: The branch does not exist.
         """
         nest = Nest.read(recorded)
         with nest:
@@ -188,7 +188,7 @@ class Episode:
         episode = cls(
             task, policies, world=kept.world, store=store, seed=kept.seed, budget=kept.budget
         )
-        # It is the same episode, and is recorded as it was.
+        # The replay is the same episode, so it records the same names of policies.
         episode._names = dict(decided.policies)
         return episode
 
@@ -204,7 +204,7 @@ class Episode:
         self.close()
 
     def close(self) -> None:
-        """End the world and close the store; forks end with what they were forked from."""
+        """End the world and close the store; forks end with their origin."""
         nest = self._nest or self._lobby
         if nest is not None and self._owns_nest:
             nest.close()
@@ -212,7 +212,7 @@ class Episode:
 
     @property
     def nest(self) -> Nest:
-        """The nest that it is played in, on its branch; opened when it is first asked for."""
+        """Nest of the episode, on the episode's branch; opened at first use."""
         nest = self._opened()
         if nest["/"].branch != self._branch:
             nest["/"].switch(self._branch)
@@ -220,39 +220,39 @@ class Episode:
 
     @property
     def address(self) -> str | None:
-        """Where people join with a Minecraft client, HOST:PORT; None if nobody can."""
+        """Address HOST:PORT for Minecraft clients of people; None if people cannot join."""
         return (self._nest or self._entered()).address
 
     @property
     def world(self) -> str:
-        """Name of the world that it is played in."""
+        """Name of the world of the episode."""
         return self._world
 
     @property
     def branch(self) -> str:
-        """The branch of the real world that it is played on."""
+        """Branch of the real world on which the episode plays."""
         return self._branch
 
     @property
     def policies(self) -> Mapping[str, str]:
-        """By agent, who plays it, in words."""
+        """Policies by agent, as text."""
         return dict(self._names)
 
     @property
     def rounds(self) -> int:
-        """Rounds played."""
+        """Number of rounds played."""
         return -(-len(self._parts) // len(self._slots))
 
     @property
     def beginnings(self) -> Sequence[int]:
-        """The ticks at which the rounds began that were played."""
+        """Ticks at which the played rounds began."""
         if self._people:
             return [part.began for part in self._parts if part.began is not None]
         return range(self._start, self.nest.tick, self._brief.whole_round)
 
     @property
     def ticks(self) -> int:
-        """Ticks since the first round began; until success, if there was one."""
+        """Number of ticks from the first round until success or now."""
         goal = self._watching.progress[""]
         if goal.reached is not None:
             return goal.reached - self._start
@@ -260,14 +260,14 @@ class Episode:
 
     @property
     def is_over(self) -> bool:
-        """True if there is nothing more to play."""
+        """True if the episode has ended."""
         if self._nest is None:
             return False
         return self._is_decided or self._is_at_end
 
     @property
     def _is_decided(self) -> bool:
-        """True if the goal was reached, or cannot be any more."""
+        """True if the goal is reached, or can no longer be reached."""
         progress = self._watch()
         return progress.reached is not None or progress.violated is not None
 
@@ -277,23 +277,23 @@ class Episode:
 
     @property
     def success(self) -> bool:
-        """True if the task's goal was reached."""
+        """True if the task's goal is reached."""
         return self._nest is not None and self._watch().succeeded(over=self.is_over)
 
     @property
     def messages(self) -> int:
-        """Utterances of players since the first round began."""
+        """Number of utterances of players since the first round began."""
         return self.measures.messages
 
     @property
     def conditions(self) -> Sequence[tuple[str, int | None]]:
-        """The goal's conditions in words, each with the tick at which it came true first."""
+        """Conditions of the goal in words, each with the tick at which it first came true."""
         self._opened()
         return self._watch().came_true()
 
     @property
     def measures(self) -> Measures:
-        """What it came to, as one row."""
+        """Return the measures of the episode."""
         found = measured(self)
         if self._help is None:
             return found
@@ -306,16 +306,16 @@ class Episode:
 
     @property
     def false_beliefs(self) -> Sequence[tuple[int, Mapping[str, int]]]:
-        """How many things each agent held wrongly as each round began and now, with the ticks."""
+        """Return the number of false beliefs of each agent at each round's beginning and now."""
         return false_beliefs(self)
 
     def help(self) -> Help:
-        """Measure who needed help and got it, who helped whom, and what was superfluous.
+        """Measure which agents needed and got help, and which help was superfluous.
 
-        Branches of a copy in memory are played: one for each agent, with the other players idle,
-        and one for each thing that a player said or gave, without it. Policies are asked again,
-        which with models takes time and tokens that are not counted here. `measures` tells of
-        it from then on.
+        The method plays branches of a copy in memory: one for each agent, with the other players
+        idle, and one for each utterance or gift of a player, without it. Policies are asked again.
+        With models this takes time and tokens, which the episode does not count. Afterwards
+        `measures` contains the results.
         """
         check_repeats(self._world, "played again without somebody's help")
         if self._help is None:
@@ -327,19 +327,19 @@ class Episode:
 
     @property
     def progress(self) -> Mapping[str, Progress]:
-        """How far each agent's goal has come by now."""
+        """Return the progress of each agent's goal."""
         self._opened()
         self._watch()
         return {agent: self._watching.progress[agent] for agent in self.task.agents}
 
     @property
     def spent(self) -> Spent:
-        """What policies have spent on models."""
+        """Spending of policies on models."""
         return spent_in(self._parts)
 
     @property
     def parts(self) -> Sequence[Part]:
-        """What was decided in each part of each round, and how it ended."""
+        """Decisions in each part of each round, and their results."""
         return tuple(self._parts)
 
     @property
@@ -349,15 +349,15 @@ class Episode:
 
     @property
     def start(self) -> int:
-        """The tick at which the first round began."""
+        """Tick at which the first round began."""
         self._opened()
         return self._start
 
     def play(self, rounds: int | None = None) -> Self:
-        """Play until the task's goal is reached or cannot be any more, or rounds are over.
+        """Play until the goal is reached, can no longer be reached, or rounds are over.
 
         Args:
-            rounds: Most rounds to play now; None: as many as the task has.
+            rounds: Greatest number of rounds to play now; None: as many as the task has.
 
         Raises:
             InputError: The number of rounds is below 0.
@@ -375,10 +375,10 @@ class Episode:
         return self
 
     def view(self, agent: str) -> AgentView:
-        """What the policy of an agent would be given now."""
+        """Return the view that an agent's policy would get now."""
         nest = self.nest
         policy = self._policies[agent]
-        # An upper bound may see everything; nobody else can.
+        # Policies that are upper bounds may read the whole nest; no other policy can.
         path = "/" if getattr(policy, "sees_all", False) else path_text((agent,))
         own = nest[path]
         return AgentView(
@@ -393,17 +393,17 @@ class Episode:
         )
 
     def at(self, round: int) -> "RoundStart[Self]":
-        """Return the beginning of a round that was played.
+        """Return the beginning of a played round.
 
         Raises:
-            InputError: There is no such round.
+            InputError: The round was not played.
         """
         if round not in range(len(self._parts) // len(self._slots) + 1):
             raise InputError(f"round {round!r} was not played; there are {self.rounds}")
         return RoundStart(self, round)
 
     def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
-        """See `RoundStart.fork`."""
+        """Return a branch of the episode, see `RoundStart.fork`."""
         nest = self.nest
         beginnings = [*self.beginnings, nest.tick]
         tick = beginnings[round] if self._people else self._start + round * self._brief.whole_round
@@ -459,7 +459,7 @@ class Episode:
         return self._nest or self._opened()
 
     def _entered(self) -> Nest:
-        """Return the nest before anything has happened in it, which people may join."""
+        """Return a new nest, in which nothing has happened yet and which people may join."""
         if self._lobby is None:
             self._lobby = Nest.open(
                 self.task.scenario, self._world, self._store, self.seed, self._worlds
@@ -479,13 +479,13 @@ class Episode:
         keep_branch(self._opened(), self._branch, branch)
 
     def _decide(self) -> None:
-        """Ask for a part's programs, and keep them before they are run."""
+        """Ask for the programs of a part, and record them before they run."""
         slot = self._slots[len(self._parts) % len(self._slots)]
         self._parts.append(Part({agent: self._asker.ask(self.view(agent)) for agent in slot}))
         self._keep()
 
     def _finish_part(self) -> None:
-        """Do what was decided last, if it is not done yet, up to the end of its ticks."""
+        """Play the last part to the end of its ticks, if that is not done yet."""
         nest, ticks = self.nest, self.task.form.round_ticks
         if self._people:
             if self._parts and not self._parts[-1].ended:
@@ -507,5 +507,5 @@ class Episode:
         return self._budget.is_spent(self.nest.tick - self._start, self.spent)
 
     def _watch(self) -> Progress:
-        """How far the task's goal has come by now."""
+        """Return the progress of the task's goal."""
         return self._watching.up_to_now(self.nest)[""]

@@ -1,4 +1,4 @@
-"""The form of a task: a scenario with goals and rules of play, in a file or by a generator."""
+"""Form of a task: a scenario with goals and rules of play, from a file or a generator."""
 
 from typing import Annotated, Any
 
@@ -10,7 +10,7 @@ __all__ = ["TaskForm"]
 
 
 class TaskForm(EpisodeEntry, frozen=True, kw_only=True):
-    """A task: a scenario, what its agents are after, and the rules of play."""
+    """A task: a scenario, the goals of its agents, and the rules of play."""
 
     name: Annotated[str, msgspec.Meta(description="Short name, for tables and folders.")]
     scenario: Annotated[dict[str, Any], msgspec.Meta(description="As in a scenario file.")]

@@ -1,13 +1,15 @@
-"""Help: who needed it, who got it, what was said or given for nothing.
+"""Help in an episode: needed, given and superfluous.
 
-Measured by what would have been, on branches on which somebody is idle and the others act as they
-then would. Goals are divided among the agents who have them (`shares.py`), since a goal that all
-share is reached by nobody if one fails. An agent *needed* help if its share would not have come
-true had the other players done nothing, as in the comparison with a person alone of Puig and
-others (2021), Watch-And-Help. Something said or given *helped* another if the share of that other
-would have come true later or not at all without it (but-for test of causes). It was *superfluous*
-if nobody's share would have (Grice 1975, "not more informative than is required"). Where two say
-the same, each of it is superfluous, as with every but-for test.
+Help is measured counterfactually, on branches of the episode on which an agent is idle and the
+other agents react to that. Goals are divided among the agents that have them (`shares.py`), since
+a common goal is reached by no agent if one agent fails.
+
+An agent *needed* help if its share would not have come true if the other players had done nothing,
+as in the comparison with a single person by Puig and others (2021), Watch-And-Help. An utterance
+or gift *helped* another agent if the other agent's share would have come true later or not at all
+without it (but-for test of causes). It was *superfluous* if this holds for no agent (Grice 1975,
+"not more informative than is required"). If two agents say the same, both utterances are
+superfluous, as in every but-for test.
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,14 +31,14 @@ _GAVE = EventKind.GIVE_ITEM_TO_OTHER
 
 @dataclass(frozen=True, slots=True)
 class Act:
-    """A program in which a player said or gave something.
+    """Program in which a player said or gave something.
 
     Attributes:
-        agent: Whose.
-        first: The round in which it began.
-        last: The round in which it ended; a program that was cut may go on.
-        worse: Agents whose share of their goals would have come true later, or not at all,
-            without it; the agent itself may be among them.
+        agent: Name of the player.
+        first: Round in which the program began.
+        last: Round in which it ended; a program that was cut may go on in later rounds.
+        worse: Agents whose share would have come true later, or not at all, without it; may
+            include the player itself.
     """
 
     agent: str
@@ -46,7 +48,7 @@ class Act:
 
     @property
     def helped(self) -> tuple[str, ...]:
-        """The other agents among those who would be worse off without it."""
+        """Return the other agents that would be worse off without it."""
         return tuple(name for name in self.worse if name != self.agent)
 
 
@@ -55,10 +57,10 @@ class Help:
     """Help in an episode.
 
     Attributes:
-        needed: Agents whose share of their goals would not have come true had the other players
-            done nothing.
-        given: Those of them whose share came true.
-        acts: What players said or gave, and who would be worse off without it.
+        needed: Agents whose share of their goals would not have come true if the other players
+            had done nothing.
+        given: Agents in `needed` whose share came true.
+        acts: Programs in which players said or gave something.
     """
 
     needed: tuple[str, ...]
@@ -67,50 +69,50 @@ class Help:
 
     @property
     def superfluous(self) -> tuple[Act, ...]:
-        """Return what nobody would be worse off without."""
+        """Return the acts without which no agent would be worse off."""
         return tuple(act for act in self.acts if not act.worse)
 
 
 class Branching(Protocol):
-    """An episode with all that is decided in it, of which there are branches."""
+    """Protocol of a recorded episode that can be branched."""
 
     task: Task
 
     @property
     def nest(self) -> Nest:
-        """Where it is played."""
+        """Nest of the episode."""
 
     @property
     def start(self) -> int:
-        """The tick at which the first round began."""
+        """Tick at which the first round began."""
 
     @property
     def beginnings(self) -> Sequence[int]:
-        """The ticks at which rounds began."""
+        """Ticks at which rounds began."""
 
     @property
     def parts(self) -> Sequence[Part]:
-        """What was decided and how it ended."""
+        """Decisions in each part of each round, and their results."""
 
     @property
     def progress(self) -> Mapping[str, Progress]:
-        """How far each agent's goal has come."""
+        """Progress of each agent's goal."""
 
     def play(self, rounds: int | None = None) -> Self:
-        """Play to the end."""
+        """Play some rounds, or to the end."""
 
     def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
-        """Return the same from a round on, on a branch of its own, with other policies."""
+        """Return the episode from a round on, on a new branch with other policies."""
 
 
 @dataclass(frozen=True)
 class _Without:
-    """Policy that does what was decided, but for some rounds.
+    """Policy that repeats earlier decisions, except in some rounds.
 
     Attributes:
-        decisions: By round.
-        first: The first round that is left out.
-        last: The last one.
+        decisions: Decisions by round.
+        first: First round that is left out.
+        last: Last round that is left out.
     """
 
     decisions: Sequence[Decision]
@@ -118,7 +120,7 @@ class _Without:
     last: float
 
     def act(self, view: AgentView) -> str:
-        """Return what was decided for the round, if it is not left out."""
+        """Return the decision of the round, or nothing if the round is left out."""
         if self.first <= view.round <= self.last or view.round >= len(self.decisions):
             return ""
         decision = self.decisions[view.round]
@@ -128,11 +130,11 @@ class _Without:
 
 
 def help_in(episode: Branching, policies: Mapping[str, Policy]) -> Help:
-    """Measure help in an episode that is over.
+    """Measure help in an episode that has ended.
 
     Args:
-        episode: A copy of it, which gets branches.
-        policies: Of all agents; on the branches those who are not left out are asked again.
+        episode: Copy of the episode; branches are added to it.
+        policies: Policies of all agents; on branches, policies of active agents are asked again.
     """
     task = episode.task
     shares = shares_of(episode.progress, episode.nest["/"].state.events)
@@ -160,7 +162,7 @@ def help_in(episode: Branching, policies: Mapping[str, Policy]) -> Help:
 
 
 def _done(episode: Branching, shares: Mapping[str, Share]) -> dict[str, float]:
-    """Return the tick by which each agent's share had come true; infinite: it never had."""
+    """Return the tick by which each agent's share had come true; infinite: it never did."""
     progress = episode.progress
     return {agent: share.done_at(progress[agent]) for agent, share in shares.items()}
 

@@ -14,39 +14,40 @@ __all__ = ["Measures", "false_beliefs", "measured"]
 
 @dataclass(frozen=True, slots=True)
 class Measures:
-    """What an episode came to.
+    """Measures of an episode.
 
     Attributes:
         task: Name of the task.
-        task_seed: Which instance; None: none.
-        order: The order of Theory of Mind that it needs.
-        seed: What the episode was played with.
-        policies: Who played whom, in words.
-        success: Whether the goal was reached.
+        task_seed: Number of the instance; None: the task has no instances.
+        order: Order of Theory of Mind that the task needs.
+        seed: Seed of the episode.
+        policies: Policies of agents, as text.
+        success: True if the goal was reached.
         ticks: Ticks from the first round to success or the end.
-        rounds: Rounds played.
-        messages: Utterances of players.
-        claims: Claims of players.
-        true_claims: Those that were so in reality when they were made.
-        false_claims: Those that were not.
-        lies: Those that their speaker did not believe.
-        taken_up: Times a hearer took up a claim of a player.
-        not_taken_up: Claims of players that nobody took up.
-        acted_on_false: Times somebody opened a container in which it believed something that was
-            not in it.
-        lost_rounds: Times a policy gave no program, or failed.
-        failed_programs: Programs that failed, other than by being cut.
-        failures: Why programs failed, or policies gave none: round (from 1), agent and reason.
-        false_beliefs: Things that agents hold wrongly in the end, each agent's counted.
-        false_beliefs_mean: The same, as mean over the beginnings of rounds and the end.
-        false_beliefs_over_time: The same at each of them.
-        requests: Requests to models.
-        tokens: Sent to models and received.
-        cost: US dollars; None where a price is not known.
-        help_needed: Agents whose share of their goals would not have come true without the other
-            players; None, as for the next two: it was not asked for, see `Episode.help`.
-        help_given: Those of them whose share came true.
-        help_superfluous: What players said or gave without which nobody would be worse off.
+        rounds: Number of rounds played.
+        messages: Number of utterances of players.
+        claims: Number of claims of players.
+        true_claims: Number of claims that were true when they were made.
+        false_claims: Number of claims that were false when they were made.
+        lies: Number of claims that their speaker did not believe.
+        taken_up: Number of times that a hearer took up a claim of a player.
+        not_taken_up: Number of claims of players that no hearer took up.
+        acted_on_false: Number of times that an agent opened a container in which it believed
+            something that was not there.
+        lost_rounds: Number of times that a policy gave no program, or failed.
+        failed_programs: Number of programs that failed, not counting programs that were cut.
+        failures: Reasons of failed programs and policies: round (from 1), agent and reason.
+        false_beliefs: Number of false beliefs at the end, summed over agents.
+        false_beliefs_mean: Mean number of false beliefs over the beginnings of rounds and the end.
+        false_beliefs_over_time: Number of false beliefs at each of these ticks.
+        requests: Number of requests to models.
+        tokens: Tokens sent to models and received.
+        cost: US dollars; None if a price is not known.
+        help_needed: Number of agents whose share of their goals would not have come true without
+            the other players. None, also for the next two: not measured, see `Episode.help`.
+        help_given: Number of these agents whose share came true.
+        help_superfluous: Number of utterances and gifts of players without which no agent would
+            be worse off.
     """
 
     task: str
@@ -79,31 +80,31 @@ class Measures:
     help_superfluous: int | None = None
 
     def row(self) -> dict[str, Any]:
-        """As a row of a table."""
+        """Return the measures as a row of a table."""
         return asdict(self)
 
 
 class Played(Protocol):
-    """What is measured of an episode."""
+    """Protocol of an episode that can be measured."""
 
     task: Task
     seed: int
 
     @property
     def nest(self) -> Nest:
-        """Where it is played."""
+        """Nest of the episode."""
 
     @property
     def start(self) -> int:
-        """The tick at which the first round began."""
+        """Tick at which the first round began."""
 
     @property
     def parts(self) -> Sequence[Part]:
-        """What was decided and how it ended."""
+        """Decisions in each part of each round, and their results."""
 
     @property
     def policies(self) -> Mapping[str, str]:
-        """Who plays whom, in words."""
+        """Policies by agent, as text."""
 
     @property
     def success(self) -> bool:
@@ -111,15 +112,15 @@ class Played(Protocol):
 
     @property
     def beginnings(self) -> Sequence[int]:
-        """The ticks at which rounds began."""
+        """Ticks at which rounds began."""
 
     @property
     def ticks(self) -> int:
-        """Ticks until success or now."""
+        """Number of ticks until success or now."""
 
     @property
     def rounds(self) -> int:
-        """Rounds played."""
+        """Number of rounds played."""
 
     @property
     def failures(self) -> Sequence[Failure]:
@@ -127,11 +128,11 @@ class Played(Protocol):
 
     @property
     def spent(self) -> Spent:
-        """What policies have spent on models."""
+        """Spending of policies on models."""
 
 
 def measured(episode: Played) -> Measures:
-    """What an episode has come to by now."""
+    """Return the measures of an episode up to now."""
     nest, task = episode.nest, episode.task
     players, start = set(task.players), episode.start
     said = [line for line in nest["/"].state.chat if line[0] > start and line[1] in players]
@@ -172,9 +173,9 @@ def measured(episode: Played) -> Measures:
 
 
 def false_beliefs(episode: Played) -> list[tuple[int, dict[str, int]]]:
-    """How many things each agent held wrongly at the beginnings of rounds and now, with the ticks.
+    """Return the number of false beliefs of each agent at the beginnings of rounds and now.
 
-    What an agent holds of others' beliefs is not counted.
+    Each entry has its tick. Beliefs about the beliefs of others are not counted.
     """
     nest = episode.nest
     return [
@@ -184,7 +185,7 @@ def false_beliefs(episode: Played) -> list[tuple[int, dict[str, int]]]:
 
 
 def _acted_on_false(episode: Played) -> int:
-    """How often somebody opened a container and believed more of an item in it than there was."""
+    """Return how often agents opened a container with fewer of an item than they believed."""
     nest, count = episode.nest, 0
     opened = [
         event

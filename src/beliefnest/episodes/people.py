@@ -1,4 +1,4 @@
-"""People as agents of an episode: rounds in real time, in which they act by themselves."""
+"""People as agents of an episode, in rounds of real time."""
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
@@ -18,24 +18,24 @@ from beliefnest.world.values import TICKS_PER_SECOND, EventKind
 __all__ = ["RealRound", "check_repeats", "people_in", "played_by_people", "world_of_people"]
 
 _LONGEST = 20
-"""Rounds' times after which somebody who does nothing is not waited for any more."""
+"""Number of round lengths after which the episode no longer waits for an idle person."""
 _NO_DEED = (EventKind.THINK, EventKind.BLOCK_UPDATE)
 
 
 def people_in(policies: Mapping[str, Policy]) -> frozenset[str]:
-    """Return the agents that are played by people."""
+    """Return the agents that people play."""
     return frozenset(name for name, policy in policies.items() if isinstance(policy, Person))
 
 
 def world_of_people(world: str, listen: int | str | None, people: Collection[str]) -> str:
-    """Return the name of the world that is played in.
+    """Return the name of the world in which people play.
 
     Raises:
-        InputError: Nobody can join it, or nobody is to.
+        InputError: People cannot join the world, or no agent is played by a person.
     """
     if not people:
         if listen is not None:
-            raise InputError("listen is given, and nobody is played by `person`; leave it out")
+            raise InputError("listen is given, but no agent has the policy `person`; leave it out")
         return world
     if is_hosted(world):
         return world
@@ -48,17 +48,19 @@ def world_of_people(world: str, listen: int | str | None, people: Collection[str
 
 
 def check_repeats(world: str, what: str) -> None:
-    """Refuse what needs the same to happen again.
+    """Refuse an operation that repeats an episode if people play in it.
 
     Raises:
         InputError: People play in this world.
     """
     if is_hosted(world):
-        raise InputError(f"an episode with people cannot be {what}: nobody does the same twice")
+        raise InputError(
+            f"an episode with people cannot be {what}: people cannot repeat their acts exactly"
+        )
 
 
 def played_by_people(task: Task, people: Collection[str]) -> Task:
-    """Return a task whose scenario says which of its agents are people."""
+    """Return the task with some agents marked as people in its scenario."""
     agents = {
         name: {**entry, "type": "human" if name in people else "bot"}
         if name in people or "type" in entry
@@ -72,17 +74,18 @@ def played_by_people(task: Task, people: Collection[str]) -> Task:
 
 
 class RealRound:
-    """One round in real time: programs run, people do what they do, and time passes by itself.
+    """Round in real time: programs run and people act.
 
     Args:
-        nest: Where it is played.
-        policies: By agent, people among them.
-        ticks: How long it lasts; longer, if somebody is waited for.
-        decided: Whether nothing that is done any more matters; then nobody is waited for.
+        nest: Nest of the episode.
+        policies: Policies by agent, including people.
+        ticks: Length of the round; it is longer if a person is awaited.
+        decided: Function that returns True when the outcome of the episode is certain; the round
+            then waits for nobody.
 
     Attributes:
-        began: The tick at which it began.
-        cut: The tick at which programs were over.
+        began: Tick at which the round began.
+        cut: Tick at which its programs ended.
     """
 
     def __init__(
@@ -97,14 +100,14 @@ class RealRound:
         self._awaited = frozenset(
             name for name, each in policies.items() if isinstance(each, Person) and each.is_awaited
         )
-        # What happened while policies were deciding lies before the round.
+        # Events while policies were deciding belong to the time before the round.
         nest["/"].step(0)
         self.began = self.cut = nest.tick
 
     def run(
         self, programs: Mapping[str, str], past: Mapping[str, ProgramPast]
     ) -> Mapping[str, ProgramResult]:
-        """Let it be played up to its end."""
+        """Run the round to its end."""
         nest = self._nest
         results: Mapping[str, ProgramResult] = {}
         if programs:
@@ -117,7 +120,7 @@ class RealRound:
 
     @property
     def acted(self) -> frozenset[str]:
-        """The people who have done or said something in it."""
+        """Return the people who have done or said something in the round."""
         state = self._nest["/"].state
         did = {e.actor for e in state.events if e.tick > self.began and e.kind not in _NO_DEED}
         did |= {speaker for tick, speaker, _ in state.chat if tick > self.began}

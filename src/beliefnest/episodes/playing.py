@@ -1,4 +1,4 @@
-"""One part of a round: what was decided is done, in virtual time or while people act."""
+"""Playing of one part of a round, in virtual time or together with people."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -13,16 +13,16 @@ __all__ = ["look_around", "play_part", "play_part_with_people"]
 
 
 def play_part(nest: Nest, parts: Sequence[Part], ticks: int, end: int) -> Part:
-    """Do what was decided in the last of the parts, in virtual time.
+    """Run the decided programs of the last part in virtual time.
 
     Args:
-        nest: Where it is played.
-        parts: All up to this one.
-        ticks: How long it lasts.
-        end: The tick at which it is over.
+        nest: Nest of the episode.
+        parts: All parts up to this one.
+        ticks: Length of the part.
+        end: Tick at which the part ends.
 
     Returns:
-        The part, with how it ended.
+        The part with its results.
     """
     part, (programs, past) = parts[-1], _programs(parts)
     results: Mapping[str, ProgramResult] = {}
@@ -43,17 +43,17 @@ def play_part_with_people(
     policies: Mapping[str, Policy],
     decided: Callable[[], bool],
 ) -> Part:
-    """Do what was decided in the last of the parts, while people do what they do.
+    """Run the decided programs of the last part in real time, while people act.
 
     Args:
-        nest: Where it is played.
-        parts: All up to this one.
-        ticks: How long it lasts; longer, if somebody is waited for.
-        policies: By agent, people among them.
-        decided: Whether nothing that is done any more matters.
+        nest: Nest of the episode.
+        parts: All parts up to this one.
+        ticks: Length of the part; it is longer if a person is awaited.
+        policies: Policies by agent, including people.
+        decided: Function that returns True when the outcome of the episode is certain.
 
     Returns:
-        The part, with how it ended and when it began.
+        The part with its results and the tick at which it began.
     """
     part, (programs, past) = parts[-1], _programs(parts)
     here = RealRound(nest, policies, ticks, decided)
@@ -68,16 +68,16 @@ def play_part_with_people(
 
 
 def look_around(nest: Nest) -> None:
-    """Let everybody perceive what there is now.
+    """Let all agents perceive the present state.
 
-    When something was last seen is otherwise noted at ticks at which something happened, be it
-    where nobody sees it: from that an agent could tell that something did.
+    Otherwise times of observation would be updated only at ticks with an event, even an event out
+    of sight, and an agent could infer from them that something happened.
     """
     nest["/"].edit()
 
 
 def _programs(parts: Sequence[Part]) -> tuple[dict[str, str], dict[str, ProgramPast]]:
-    """Return the programs of the last part by agent, and what those that go on had done before."""
+    """Return the programs of the last part by agent, and the past of those that continue."""
     decisions = parts[-1].decisions
     programs = {agent: d.program for agent, d in decisions.items() if d.program}
     past = {

@@ -1,4 +1,4 @@
-"""What a run keeps of its episode, and how programs ended as their agents could tell."""
+"""Record of an episode in its run, and ends of programs as their agents perceive them."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -29,25 +29,25 @@ _BEGINS, _START, _BRANCHES = "episode begins", "episode", "episode branches"
 
 
 class Keeps(Protocol):
-    """A run that bytes were kept in."""
+    """Protocol of a run from which stored bytes can be read."""
 
     def kept(self, name: str) -> bytes | None:
-        """Return the bytes last kept under a name."""
+        """Return the bytes last stored under a name."""
 
 
 class Writes(Keeps, Protocol):
-    """A run that bytes can be kept in."""
+    """Protocol of a run in which bytes can be stored."""
 
     def keep(self, name: str, value: bytes) -> None:
-        """Keep bytes under a name."""
+        """Store bytes under a name."""
 
 
 class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
-    """What an episode may take; None: as much as it needs.
+    """Limits of an episode; None: no limit.
 
     Attributes:
         ticks: Ticks of the world.
-        tokens: Sent to models and received.
+        tokens: Tokens sent to models and received.
         cost: US dollars.
     """
 
@@ -65,7 +65,7 @@ class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
                 raise InputError(f"{name} of a budget is {value!r}; give at least {least}, or None")
 
     def is_spent(self, ticks: int, spent: Spent) -> bool:
-        """Return True if nothing is left after so many ticks, and what policies have spent."""
+        """Return True if ticks or spending have reached a limit."""
         return (
             (self.ticks is not None and ticks >= self.ticks)
             or (self.tokens is not None and spent.tokens >= self.tokens)
@@ -74,7 +74,7 @@ class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
 
 
 class EpisodeStart(msgspec.Struct, frozen=True):
-    """What a run keeps of its episode at the beginning."""
+    """Record of an episode's beginning in its run."""
 
     task: dict[str, Any]
     seed: int
@@ -85,14 +85,15 @@ class EpisodeStart(msgspec.Struct, frozen=True):
 
 
 class Branch(msgspec.Struct, frozen=True):
-    """What a run keeps of an episode's branch.
+    """Record of a branch of an episode in its run.
 
     Attributes:
-        policies: By agent, in words.
-        parts: What was decided.
-        goal: The task's conditions in words, each with the tick at which it came true first.
-        reached: The tick at which the task's goal was reached; None: not yet.
-        violated: The tick at which something happened that must not; None: nothing has.
+        policies: Policies by agent, as text.
+        parts: Decisions and their results.
+        goal: Conditions of the task's goal in words, each with the tick at which it first came
+            true.
+        reached: Tick at which the task's goal was reached; None: not yet.
+        violated: Tick at which the goal was violated; None: it was not.
     """
 
     policies: dict[str, str]
@@ -103,17 +104,17 @@ class Branch(msgspec.Struct, frozen=True):
 
 
 def keep_begins(nest: Writes) -> None:
-    """Keep that there is to be an episode, before what comes before its first round."""
+    """Store a mark that the run is an episode, before the script runs."""
     nest.keep(_BEGINS, b"")
 
 
 def keep_start(nest: Writes, start: EpisodeStart) -> None:
-    """Keep what an episode begins with."""
+    """Store the beginning of an episode."""
     nest.keep(_START, msgspec.json.encode(start))
 
 
 def keep_branch(nest: Writes, name: str, branch: Branch) -> None:
-    """Keep what has been decided on a branch by now."""
+    """Store the record of a branch up to now."""
     kept = nest.kept(_BRANCHES)
     branches = {} if kept is None else msgspec.json.decode(kept, type=dict[str, Branch])
     branches[name] = branch
@@ -121,10 +122,10 @@ def keep_branch(nest: Writes, name: str, branch: Branch) -> None:
 
 
 def ended_as(decision: Decision, result: ProgramResult | None) -> Ended:
-    """How a program ended, without what its agent could not perceive.
+    """Return how a program ended, without facts that its agent could not perceive.
 
-    What a skill says of the world may rest on what the agent does not see: it learns only that the
-    skill did not work. Ways are looked for on ground that it knows.
+    The error of a skill may reveal what the agent does not see, so the agent learns only that the
+    skill failed. `no_way` reveals nothing: paths are planned on ground that the agent knows.
     """
     if decision.fault:
         return Ended("", "lost", "no program came in time, so nothing was done")
@@ -153,14 +154,14 @@ def cut_in(
     began: int,
     until: int,
 ) -> dict[str, ProgramPast]:
-    """What programs had done that were cut, by agent.
+    """Return the past of programs that were cut, by agent, so that they can go on.
 
     Args:
-        results: What became of the programs of a part.
+        results: Results of the programs of a part.
         ended: How they ended.
-        past: What those had done that went on.
-        began: The tick at which the part began.
-        until: The tick at which it was over.
+        past: Past of the programs that had gone on from earlier parts.
+        began: Tick at which the part began.
+        until: Tick at which the part ended.
     """
     return {
         agent: ProgramPast(past[agent].tick if agent in past else began, result.calls, until)
@@ -170,7 +171,7 @@ def cut_in(
 
 
 def reasons_in(results: Mapping[str, ProgramResult]) -> dict[str, str]:
-    """Return why programs failed, by agent, with what their agents could not perceive."""
+    """Return the complete reasons of failed programs by agent, for readers of the run only."""
     return {
         agent: str(result.error)
         for agent, result in results.items()
@@ -179,17 +180,17 @@ def reasons_in(results: Mapping[str, ProgramResult]) -> dict[str, str]:
 
 
 def kept_in(nest: Keeps) -> tuple[EpisodeStart, dict[str, Branch]]:
-    """What a run's episode began with, and its branches by name.
+    """Return the beginning of a run's episode, and its branches by name.
 
     Raises:
-        NotBegunError: It was stopped before the first round.
-        StoreError: There is no episode in it, or it cannot be read.
+        NotBegunError: The episode was stopped before the first round.
+        StoreError: The run holds no episode, or the episode cannot be read.
     """
     kept, decided = nest.kept(_START), nest.kept(_BRANCHES)
     if kept is None or decided is None:
         if nest.kept(_BEGINS) is not None:
             raise NotBegunError("the episode was stopped before its first round; play it anew")
-        raise StoreError("there is no episode in this run: it was made by another command")
+        raise StoreError("there is no episode in this run; give a run of `beliefnest play`")
     try:
         return (
             msgspec.json.decode(kept, type=EpisodeStart),
@@ -200,7 +201,7 @@ def kept_in(nest: Keeps) -> tuple[EpisodeStart, dict[str, Branch]]:
 
 
 def branch_of(branches: Mapping[str, Branch], name: str) -> Branch:
-    """Return an episode's branch; BranchError if it has none of that name."""
+    """Return a branch of an episode; raise BranchError if it does not exist."""
     if name not in branches:
         raise BranchError(f"the episode has no branch {name!r}; it has {', '.join(branches)}")
     return branches[name]

@@ -1,4 +1,4 @@
-"""The beginning of a round, from which an episode can be branched."""
+"""Beginning of a round, from which an episode can be branched."""
 
 from collections.abc import Mapping
 from typing import Generic, Protocol, Self, TypeVar
@@ -9,10 +9,10 @@ __all__ = ["RoundStart"]
 
 
 class Branchable(Protocol):
-    """What a moment needs of its episode."""
+    """Protocol of an episode that can be branched."""
 
     def forked(self, round: int, policies: Mapping[str, "str | Policy"]) -> Self:
-        """See `RoundStart.fork`."""
+        """Return a branch of the episode, see `RoundStart.fork`."""
         ...
 
 
@@ -20,11 +20,11 @@ Played = TypeVar("Played", bound=Branchable)
 
 
 class RoundStart(Generic[Played]):
-    """The beginning of a round of an episode.
+    """Beginning of a round of an episode.
 
     Attributes:
         episode: The episode.
-        round: The round, from 0.
+        round: Number of the round, from 0.
     """
 
     def __init__(self, episode: Played, round: int) -> None:
@@ -32,13 +32,13 @@ class RoundStart(Generic[Played]):
         self.round = round
 
     def fork(self, **policies: "str | Policy") -> Played:
-        """Return the same episode from here on, on a branch of its own, with other policies.
+        """Return the episode from here on, on a new branch with other policies.
 
         Args:
-            policies: By agent; the others are played as before.
+            policies: New policies by agent; other agents keep their policies.
 
         Raises:
-            InputError: There is a policy for nobody.
-            UnknownNameError: There is no such policy.
+            InputError: A policy is for an unknown agent.
+            UnknownNameError: A policy does not exist.
         """
         return self.episode.forked(self.round, policies)

@@ -1,4 +1,4 @@
-"""Asking policies: one that fails or is slow costs its own round and nothing else."""
+"""Requests to policies; a policy that fails or is slow loses only its own round."""
 
 import threading
 from collections.abc import Iterable, Mapping, Sequence
@@ -14,12 +14,12 @@ from beliefnest.world.texts import is_well_formed
 __all__ = ["Asker", "ReplayedPolicy", "replayed", "slots_of"]
 
 _LONGEST = 100_000
-"""Characters of a program."""
+"""Greatest length of a program in characters."""
 
 
 @dataclass(frozen=True)
 class ReplayedPolicy:
-    """Decides what was decided before, round by round."""
+    """Policy that repeats recorded decisions, round by round."""
 
     decisions: Sequence[Decision]
 
@@ -29,7 +29,7 @@ class ReplayedPolicy:
 
 
 def replayed(parts: Sequence[Part], agents: Iterable[str]) -> dict[str, Policy]:
-    """Return policies of agents that decide what was decided before."""
+    """Return policies of agents that repeat recorded decisions."""
     return {
         agent: ReplayedPolicy([part.decisions[agent] for part in parts if agent in part.decisions])
         for agent in agents
@@ -42,14 +42,14 @@ class _Answer:
 
 
 class Asker:
-    """Asks the policies of one episode.
+    """Asker of the policies of one episode.
 
     Args:
-        policies: By agent.
-        patience_s: Seconds after which a policy has lost its round; None: it is waited for.
+        policies: Policies by agent.
+        patience_s: Seconds after which a policy loses its round; None: no limit.
 
     Raises:
-        InputError: There is no time to answer.
+        InputError: `patience_s` is not above 0.
     """
 
     def __init__(self, policies: Mapping[str, Policy], patience_s: float | None) -> None:
@@ -61,7 +61,7 @@ class Asker:
         self._late: dict[str, _Answer] = {}
 
     def ask(self, view: AgentView) -> Decision:
-        """Return the program of a round; who does not give one in time gives none."""
+        """Return the program of a round; a policy that is too late gives none."""
         agent = view.agent
         policy = self._policies[agent]
         if isinstance(policy, ReplayedPolicy):
@@ -71,7 +71,7 @@ class Asker:
         thread = self._waiting.get(agent)
         if thread is not None and thread.is_alive():
             return Decision(fault="it is still at an earlier round")
-        # What came too late was paid for all the same.
+        # Count the cost of late answers as well.
         late = self._late.pop(agent, _Answer()).decision
         before = Spent() if late is None else late.spent
         answer = _Answer()
@@ -79,7 +79,7 @@ class Asker:
         def decide() -> None:
             answer.decision = _decided(policy, view)
 
-        # Who never comes back does not keep the process from ending.
+        # A daemon thread: a policy that never returns must not keep the process from ending.
         thread = threading.Thread(target=decide, name=f"policy of {agent}", daemon=True)
         self._waiting[agent] = thread
         thread.start()
@@ -92,7 +92,7 @@ class Asker:
 
 
 def slots_of(agents: tuple[str, ...], *, turns: bool) -> tuple[tuple[str, ...], ...]:
-    """Who acts together, in the order of a round's parts."""
+    """Return the agents that act together in each part of a round, in order."""
     return tuple((agent,) for agent in agents) if turns else (agents,)
 
 

@@ -1,4 +1,4 @@
-"""Shares of a goal: the conditions that each agent brought about, of a goal that several have."""
+"""Shares of a goal that several agents have: the conditions that each agent brought about."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -29,21 +29,21 @@ _CHANGES_NO_BLOCK = (
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """Conditions of an agent's goal that are its own to bring about, or to keep from.
+    """Share of a goal: the conditions for which one agent is responsible.
 
     Attributes:
-        reach: Numbers of the conditions to reach.
-        never: Numbers of the conditions that must not come true; they follow those to reach.
+        reach: Numbers of conditions to reach.
+        never: Numbers of conditions that must not come true; they follow those to reach.
     """
 
     reach: tuple[int, ...]
     never: tuple[int, ...]
 
     def done_at(self, progress: Progress) -> float:
-        """Return the tick by which all of it had come true; infinite: it never had.
+        """Return the tick by which the whole share had come true; infinite: it never did.
 
         Args:
-            progress: How far the agent's goal came, in the episode or on a branch of it.
+            progress: Progress of the agent's goal, in the episode or on a branch of it.
         """
         lost = _NEVER if progress.violated is None else progress.violated
         if any(number in progress.first for number in self.never):
@@ -60,12 +60,13 @@ def shares_of(
 ) -> dict[str, Share]:
     """Return each agent's share of its goal.
 
-    A condition is the share of those who brought it about, among all who are after it. If it did
-    not come true, or somebody else brought it about, it is the share of all who are after it.
+    A condition belongs to the share of the agents that have it in their goals and brought it about.
+    If it did not come true, or another agent brought it about, it belongs to the shares of all
+    agents that have it in their goals.
 
     Args:
-        progress: How far each agent's goal came in the episode.
-        events: What happened in the episode, in order.
+        progress: Progress of each agent's goal in the episode.
+        events: Events of the episode, in order.
     """
     goals = {agent: each.goal for agent, each in progress.items()}
     return {agent: _share(agent, goals, each.first, events) for agent, each in progress.items()}
@@ -89,7 +90,7 @@ def _share(
 
 
 def _bringers(condition: GoalCondition, events: Sequence[PerceivedEvent]) -> set[str]:
-    """Return who brought a condition about: whoever holds, or has, or did what it is about."""
+    """Return the agents that brought a condition about: by holding, having or doing."""
     if condition.path:
         return {condition.path[0]}
     fact = condition.fact
@@ -103,7 +104,7 @@ def _bringers(condition: GoalCondition, events: Sequence[PerceivedEvent]) -> set
 def _deeds(
     fact: ItemsIn | BlockIs | BlocksAlike, events: Sequence[PerceivedEvent]
 ) -> Sequence[PerceivedEvent]:
-    """Return the deeds that made a container, or a block, what it is."""
+    """Return the acts that gave a container or a block its state."""
     here = [each for each in events if each.detail.get("position") == fact.place]
     if isinstance(fact, ItemsIn):
         deposits = [each for each in here if each.kind is EventKind.DEPOSIT_ITEM_INTO_CHEST]

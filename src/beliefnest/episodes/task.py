@@ -1,4 +1,4 @@
-"""Tasks: a scenario, what its agents are after, and the rules of play."""
+"""Tasks: a scenario, the goals of its agents, and the rules of play."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -22,16 +22,16 @@ from beliefnest.world.values import Position
 __all__ = ["Task"]
 
 _NO_RULES = ("name", "description", "scenario", "pace")
-"""Keys of a task that do not stand under `episode` of a scenario."""
+"""Keys of a task that are not keys of `episode` in a scenario."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What agents are to do together, or against each other, round after round.
+    """Task that agents play together, or against each other, round after round.
 
     Attributes:
-        form: All of it as plain values, as in a task file.
-        seed: What it was generated from; None: from a file or in code.
+        form: Content of the task, as in a task file.
+        seed: Number of the instance; None: the task is from a file or built in code.
     """
 
     form: TaskForm
@@ -55,12 +55,12 @@ class Task:
 
         Args:
             name_or_path: Name of a built-in task or scenario, or path of a YAML file of either.
-            seed: Which instance of a built-in task.
-            condition: Number of a scenario's condition; None: as written.
-            parameters: Its size, as `agents=3`; each task and scenario has its own.
+            seed: Number of the instance of a built-in task.
+            condition: Number of a scenario's condition; None: the scenario as written.
+            parameters: Parameters of the task or scenario, such as `agents=3`.
 
         Raises:
-            UnknownNameError: There is no such task and no such file, or no such parameter.
+            UnknownNameError: The task, file or parameter does not exist.
             InputError: A parameter is out of range.
             ScenarioError: The file is wrong.
         """
@@ -81,10 +81,10 @@ class Task:
 
     @staticmethod
     def scenario_document(name_or_path: str) -> Document | None:
-        """What is written in the scenario that is played; None: it is a task, as `load` takes it.
+        """Return the document of a scenario; None: the name is that of a task.
 
         Raises:
-            UnknownNameError: There is no such task and no such file.
+            UnknownNameError: There is neither a task nor a file of that name.
             ScenarioError: The file cannot be read.
         """
         if name_or_path in builtin_tasks():
@@ -94,18 +94,18 @@ class Task:
 
     @classmethod
     def of(cls, scenario: Scenario, **rules: Any) -> Self:
-        """Return a scenario as a task: played by what its key `episode` says.
+        """Return a scenario as a task, played by the rules under its key `episode`.
 
         Args:
-            scenario: The scenario; its probes and expectations play no part.
-            rules: What is said in place of what `episode` says, as there: `goal`, `rounds`, ...
+            scenario: The scenario; its probes and expectations are ignored.
+            rules: Rules that replace those under `episode`: `goal`, `rounds`, ...
 
         Raises:
-            ScenarioError: The rules make no sense.
+            ScenarioError: The rules are not consistent.
             InputError: Only the setting of the scenario is known.
         """
         if not scenario.written:
-            raise InputError(f"{scenario.source} was not read as a whole; load it again")
+            raise InputError(f"{scenario.source} has only a setting; load the whole scenario")
         left_out = ("probes", "expectations", "episode")
         content = {key: v for key, v in scenario.written.items() if key not in left_out}
         return cls.from_mapping(
@@ -121,7 +121,7 @@ class Task:
 
     @classmethod
     def from_mapping(cls, content: Mapping[str, Any], seed: int | None = None) -> Self:
-        """Return a task built in code: what a file holds, as dicts, lists and scalars.
+        """Build a task from a file's content as dicts, lists and scalars.
 
         Raises:
             ScenarioError: The content is wrong.
@@ -139,18 +139,18 @@ class Task:
         return task
 
     def check(self, box: tuple[Position, Position]) -> None:
-        """See that all of it makes sense.
+        """Check that the task is consistent.
 
         Args:
-            box: Of its scenario.
+            box: Box of its scenario.
 
         Raises:
-            ScenarioError: It does not.
+            ScenarioError: The task is not consistent.
         """
         if self.form.goal == GoalEntry():
             raise ScenarioError(
-                f"task {self.name}: there is no goal; say what agents are to `reach`, or what is "
-                "`never` to be the case (in a scenario under `episode`)"
+                f"task {self.name}: there is no goal; give conditions under `reach` or `never` "
+                "(in a scenario under `episode`)"
             )
         try:
             check_rules(self.form, self.agents, box_between(*box))
@@ -159,46 +159,46 @@ class Task:
 
     @property
     def name(self) -> str:
-        """Its short name."""
+        """Short name of the task."""
         return self.form.name
 
     @property
     def order(self) -> int:
-        """The order of Theory of Mind that it needs."""
+        """Order of Theory of Mind that the task needs."""
         return self.form.order
 
     @cached_property
     def scenario(self) -> Scenario:
-        """Where it is played, and what happens before the first round."""
+        """Scenario of the task; its script runs before the first round."""
         return Scenario.from_mapping(self.form.scenario, source=f"task {self.name}")
 
     @property
     def agents(self) -> tuple[str, ...]:
-        """All agents, sorted."""
+        """Names of all agents, sorted."""
         return tuple(sorted(self.form.scenario["agents"]))
 
     @property
     def players(self) -> tuple[str, ...]:
-        """The agents whose policies are put to the test."""
+        """Names of the players: the agents whose policies are tested."""
         return tuple(self.form.players) or tuple(
             name for name in self.agents if name not in self.form.policies
         )
 
     @property
     def goal(self) -> Goal:
-        """What makes an episode a success."""
+        """Goal that makes an episode a success."""
         return goal_of(self.form.goal, self.form.scenario["agents"])
 
     def goal_of(self, agent: str) -> Goal:
-        """What an agent is after."""
+        """Return the goal of an agent."""
         entry = self.form.goals.get(agent, self.form.goal)
         return goal_of(entry, self.form.scenario["agents"])
 
     def at_pace(self, pace: int) -> "Task":
-        """The same with rounds, speech and time for goals as much longer as walking takes longer.
+        """Return the task with rounds, speech and deadlines scaled to the pace of walking.
 
         Args:
-            pace: Ticks that one block on foot takes: 1 in the scripted world, about 5 in Minecraft.
+            pace: Ticks per block on foot: 1 in the scripted world, about 5 in Minecraft.
         """
         ticks = self.form.round_ticks * pace // self.form.pace
         scenario = dict(self.form.scenario)
@@ -221,23 +221,23 @@ class Task:
         return msgspec.structs.replace(goal, ticks=goal.ticks * pace // self.form.pace)
 
     def plain(self) -> dict[str, Any]:
-        """As plain values; `from_mapping` is the inverse."""
+        """Return the task as plain values; `from_mapping` is the inverse."""
         plain: dict[str, Any] = msgspec.to_builtins(self.form)
         return plain
 
 
 class _Scene(msgspec.Struct):
-    """What has to be known of a scenario before it is built."""
+    """Parts of a scenario that are needed before it is built."""
 
     box: tuple[Position, Position]
     agents: dict[str, Any]
 
 
 def _check_by_line(document: Document) -> None:
-    """See that a task's file makes sense, as a scenario with its rules under `episode` does.
+    """Check a task's file as a scenario with the rules under `episode`.
 
     Raises:
-        ScenarioError: It does not; the message names file, line and key.
+        ScenarioError: The file is wrong; the message names file, line and key.
     """
     scenario, keys = document.root.value["scenario"], document.root.value
     if not isinstance(scenario.value, dict):
@@ -249,7 +249,11 @@ def _check_by_line(document: Document) -> None:
 
 
 def _written(name_or_path: str) -> Document:
-    """What stands in the file of a scenario or task; UnknownNameError if there is none."""
+    """Return the document of a scenario's or task's file.
+
+    Raises:
+        UnknownNameError: There is no such file.
+    """
     if name_or_path not in builtin_names() and not FilePath(name_or_path).is_file():
         raise UnknownNameError(
             f"no task {name_or_path!r}, and no such file; there are {', '.join(Task.names())}, "
@@ -264,4 +268,4 @@ def _is_scenario(document: Document) -> bool:
 
 def _check_no_condition(name: str, condition: int | str | None) -> None:
     if condition is not None:
-        raise InputError(f"{name} is a task and has no conditions; only scenarios have")
+        raise InputError(f"{name} is a task and has no conditions; leave the condition out")

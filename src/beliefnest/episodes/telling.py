@@ -1,4 +1,4 @@
-"""What is told of a run's episode: rounds, who did what, when goals were reached."""
+"""Summary of a run's episode as plain values: rounds, programs, and goals."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
@@ -18,7 +18,7 @@ def told_episode(run: Keeps) -> dict[str, Any] | None:
     """Return the episode in a run as plain values; None: there is none.
 
     Raises:
-        StoreError: It cannot be read.
+        StoreError: The episode cannot be read.
     """
     if not holds_episode(run):
         return None
@@ -40,7 +40,7 @@ def round_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Yield a row for each agent in each round on each branch.
 
     Args:
-        told: As `told_episode` gives it.
+        told: Episode, as `told_episode` returns it.
     """
     for name, branch in told["branches"].items():
         for part in branch["parts"]:
@@ -62,7 +62,7 @@ def round_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def goal_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield a row for each condition of the goal on each branch; arguments as for `round_rows`."""
+    """Yield a row for each condition of the goal on each branch; argument as in `round_rows`."""
     for name, branch in told["branches"].items():
         for condition, never, tick in branch["goal"]:
             yield {"branch": name, "condition": condition, "never": never, "tick": tick}
@@ -93,7 +93,7 @@ def _branch(form: TaskForm, start: EpisodeStart, branch: Branch) -> dict[str, An
 
 
 def _spans(parts: Sequence[Part], start: int, ticks: int) -> list[tuple[int, int]]:
-    """The ticks from which to which parts went; with people, one goes on until the next begins."""
+    """Return the first and last tick of each part; with people, parts last until the next one."""
     began = [
         start + number * ticks if part.began is None else part.began
         for number, part in enumerate(parts)

@@ -1,4 +1,4 @@
-"""What a policy is given: its agent's own belief, what lies below it, and its task."""
+"""View of a policy: its agent's own belief, the beliefs below it, and the task."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,30 +12,30 @@ from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.values import Position
 
-if TYPE_CHECKING:  # Models take long to import; tasks are read with YAML.
+if TYPE_CHECKING:  # Importing models and tasks takes long.
     from beliefnest.episodes.task import Task
     from beliefnest.llm.messages import Model
 
 __all__ = ["GO_ON", "AgentView", "Brief", "Policy", "RoundFacts"]
 
 GO_ON = "go on"
-"""What a policy returns in place of a program to let its last one, which was cut, go on."""
+"""Text that a policy returns instead of a program to continue its last one, which was cut."""
 
 
 @dataclass(frozen=True, slots=True)
 class Brief:
-    """What everybody knows of the task; what it is about is not for those who play it.
+    """Common knowledge about a task; the task's description is not part of it.
 
     Attributes:
-        task: Its name.
-        goals: What each agent is after.
-        talk: Who may speak.
-        rounds: How many there are.
+        task: Name of the task.
+        goals: Goal of each agent.
+        talk: Agents that may speak.
+        rounds: Number of rounds.
         round_ticks: Ticks after which programs are cut.
-        turns: Whether agents act one after the other in a round, each for `round_ticks`.
-        pace: Ticks that one block on foot takes.
-        places: What people call places.
-        seed: Drives the random numbers of policies.
+        turns: True if agents act in turn in a round, each for `round_ticks`.
+        pace: Ticks per block on foot.
+        places: Named places.
+        seed: Seed of the random numbers of policies.
     """
 
     task: str
@@ -50,7 +50,7 @@ class Brief:
 
     @classmethod
     def of(cls, task: "Task", seed: int) -> "Brief":
-        """What everybody knows of a task that is played with a seed."""
+        """Return the common knowledge about a task that is played with a seed."""
         return cls(
             task=task.name,
             goals={agent: task.goal_of(agent) for agent in task.agents},
@@ -65,29 +65,29 @@ class Brief:
 
     @property
     def whole_round(self) -> int:
-        """Ticks from one round to the next."""
+        """Return the number of ticks from one round to the next."""
         return self.round_ticks * (len(self.goals) if self.turns else 1)
 
 
 class AgentView:
-    """What an agent knows at the beginning of a round; it reaches its belief and nothing above it.
+    """Knowledge of an agent at the beginning of a round: its own belief and the beliefs below.
 
     Args:
-        agent: Whose.
-        brief: The task.
-        round: The round that begins, from 0.
-        last: How the agent's latest program ended.
-        own: The simulator of the agent's belief.
-        imagine: Gives that as a world of its own, down to a depth.
-        noting: Lets requests to a model be kept in the run.
+        agent: Name of the agent.
+        brief: Common knowledge about the task.
+        round: Number of the round that begins, from 0.
+        last: End of the agent's latest program.
+        own: Simulator of the agent's belief.
+        imagine: Function that returns the belief as a separate world, down to a depth.
+        noting: Function that wraps a model so that the run records its requests.
         before: The agent's programs of earlier rounds.
 
     Attributes:
-        agent: Whose view it is.
-        brief: The task.
-        round: The round that begins, from 0.
-        last: How the agent's latest program ended.
-        before: The agent's programs of earlier rounds, whoever decided them; empty texts: nothing.
+        agent: Name of the agent.
+        brief: Common knowledge about the task.
+        round: Number of the round that begins, from 0.
+        last: End of the agent's latest program.
+        before: The agent's programs of earlier rounds, of any policy; an empty text: no program.
     """
 
     def __init__(
@@ -112,34 +112,34 @@ class AgentView:
 
     @property
     def tick(self) -> int:
-        """The tick at which the round begins."""
+        """Tick at which the round begins."""
         return self._own.tick
 
     @property
     def ticks_left(self) -> int:
-        """Ticks until the end of the last round, or until the goal is to be reached."""
+        """Return the ticks until the end of the last round or the deadline of the goal."""
         rounds, length = self.brief.rounds, self.brief.whole_round
         last = min(rounds * length, self.goal.ticks or rounds * length)
         return max(0, last - self.round * length)
 
     @property
     def goal(self) -> Goal:
-        """What the agent is after."""
+        """Goal of the agent."""
         return self.brief.goals[self.agent]
 
     @property
     def may_speak(self) -> bool:
-        """True if what it says is heard."""
+        """True if others can hear what the agent says."""
         return self.agent in self.brief.talk
 
     @property
     def state(self) -> State:
-        """What the agent believes."""
+        """Return the belief of the agent."""
         return self._own.state
 
     @property
     def heard(self) -> Sequence[tuple[int, str, str]]:
-        """What others said since the agent was asked last: (tick, speaker, text)."""
+        """Return utterances of others since the agent's last decision: (tick, speaker, text)."""
         since = self.tick - self.brief.whole_round if self.round else -1
         return [
             (tick, speaker, text)
@@ -148,10 +148,10 @@ class AgentView:
         ]
 
     def about(self, *agents: str) -> State:
-        """What it believes that another believes, and so on: `about("bob", "anne")`.
+        """Return a belief below the agent's own, such as `about("bob", "anne")`.
 
         Raises:
-            PathError: There is no such agent.
+            PathError: An agent does not exist.
         """
         simulator = self._own
         for agent in agents:
@@ -161,10 +161,10 @@ class AgentView:
         return simulator.state
 
     def imagine(self, depth: int = 1) -> Imagination:
-        """Its belief as a world of its own, to try courses in; nothing of it is recorded.
+        """Return the agent's belief as a separate world for trying plans; it is not recorded.
 
         Args:
-            depth: How deep below it beliefs are followed.
+            depth: Depth down to which beliefs are tracked in it.
         """
         return self._imagine(depth)
 
@@ -172,10 +172,10 @@ class AgentView:
         """Return the text of a prompt template, filled from its belief.
 
         Args:
-            template: Its text. `branch` is the belief, `view` what else is known
-                (`RoundFacts`), and `about` has, by text such as `bob` or `bob/anne`, what others
-                are believed to believe; the filters take these as they take `branch`.
-            depth: How deep `about` goes.
+            template: Text of the template. `branch` is the belief, `view` the other facts
+                (`RoundFacts`). `about` maps texts such as `bob` or `bob/anne` to the beliefs of
+                others as the agent believes them; filters accept these like `branch`.
+            depth: Greatest depth of `about`.
             variables: Further variables.
 
         Raises:
@@ -194,23 +194,23 @@ class AgentView:
         return self._own.render(template, view=RoundFacts.of(self), about=about, **variables)
 
     def noting(self, model: "Model") -> "Model":
-        """Return a model whose conversation is kept in the run."""
+        """Return a model whose conversation the run records."""
         return self._noting(model)
 
 
 @dataclass(frozen=True, slots=True)
 class RoundFacts:
-    """What templates are told besides the belief.
+    """Facts for templates besides the belief.
 
     Attributes:
-        agent: Whose view it is.
-        goal: What it is after, in words.
-        goals: What everybody is after, in words.
-        may_speak: Whether what it says is heard.
-        round: The round, from 1.
-        rounds: How many there are.
+        agent: Name of the agent.
+        goal: Goal of the agent, in words.
+        goals: Goals of all agents, in words.
+        may_speak: True if others can hear what the agent says.
+        round: Number of the round, from 1.
+        rounds: Number of rounds.
         round_ticks: Ticks after which programs are cut.
-        last: How its latest program ended.
+        last: End of the agent's latest program.
     """
 
     agent: str
@@ -224,7 +224,7 @@ class RoundFacts:
 
     @classmethod
     def of(cls, view: AgentView) -> "RoundFacts":
-        """What a view tells."""
+        """Return the facts of a view."""
         brief = view.brief
         return cls(
             view.agent,
@@ -239,11 +239,13 @@ class RoundFacts:
 
 
 class Policy(Protocol):
-    """Who decides what an agent does."""
+    """Protocol of policies, which decide what an agent does."""
 
     def act(self, view: AgentView) -> str:
-        """The agent's program for the round; empty: it does nothing; `GO_ON`: its last one goes on.
+        """Return the agent's program for the round.
+
+        An empty text means that the agent does nothing; `GO_ON` continues its last program.
 
         Args:
-            view: What the agent knows.
+            view: Knowledge of the agent.
         """

@@ -1,4 +1,4 @@
-"""How far the goals of an episode have come, looked at tick by tick."""
+"""Tracking of an episode's goals, tick by tick."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,11 +13,11 @@ __all__ = ["Watch"]
 
 
 class Watch:
-    """Follows the goals of a task on one branch.
+    """Tracker of a task's goals on one branch.
 
     Args:
-        task: Whose goals: its own under the name "", those of agents under theirs.
-        start: The tick at which the first round begins.
+        task: Task; its own goal has the name "", goals of agents have the names of the agents.
+        start: Tick at which the first round begins.
     """
 
     def __init__(self, task: Task, start: int) -> None:
@@ -32,7 +32,7 @@ class Watch:
         self._paths = sorted({"/", *map(path_text, named)})
 
     def up_to_now(self, nest: Nest) -> Mapping[str, Progress]:
-        """How far all of them have come by the nest's tick."""
+        """Return the progress of all goals up to the nest's tick."""
         if self._seen < nest.tick:
             if self._seen < self._start:
                 self._feed(self._start, nest.at(self._start))
