@@ -64,8 +64,7 @@ def element_of(
     if agent is not None:
         if agent not in recording.agents:
             raise PathError(
-                f"explain() got the unknown agent {agent!r}; agents are "
-                f"{', '.join(recording.agents)}"
+                f"there is no agent {agent!r}; the agents are {', '.join(recording.agents)}"
             )
         return Element("agent", agent)
     if container is not None:

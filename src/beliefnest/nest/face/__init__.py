@@ -1,1 +1,1 @@
-"""What users of a nest hold in their hands."""
+"""Classes that users of a nest work with: nests and simulators, live and recorded."""

@@ -1,4 +1,4 @@
-"""The nest: the real world and all beliefs in it."""
+"""Nest: the real world and all beliefs in it."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -38,21 +38,22 @@ __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
 
 class Nest(Joining, Visiting):
-    """The real world and every belief in it; each node is made on first use.
+    """The real world and every belief in it. Each simulator is made when it is first used.
 
-    `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it; `Nest.open` opens a
-    scenario in a world of its own. Use it in a `with` block, or close it. A belief path that is
-    malformed, or names an unknown agent, raises PathError wherever one is given.
+    `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it. `Nest.open` opens a
+    scenario in a world of its own. Use the nest in a `with` block, or close it. Wherever a belief
+    path is given, one that is malformed or names an unknown agent raises PathError.
 
     Args:
-        world: The scripted world that is the real one.
-        perception: What agents can perceive.
+        world: The scripted world that serves as the real world.
+        perception: Options of perception; None: the defaults.
         static_blocks: Names and positions of blocks that everybody knows from the start.
         initial_beliefs: Further priors, at any depth.
         store: File to record in; None: memory.
-        claims_from: Reads claims out of what is said without any (docs/claims.md); None: nobody.
-        unique: Items of which everybody knows that there is one: whoever perceives such an item
-            in one place believes it to be nowhere else.
+        claims_from: Function or model that reads claims out of utterances without claims
+            (docs/claims.md); None: nobody reads them.
+        unique: Items of which everybody knows that there is only one. An agent that perceives such
+            an item in one place believes it to be nowhere else.
     """
 
     def __init__(
@@ -67,8 +68,8 @@ class Nest(Joining, Visiting):
     ) -> None:
         if not isinstance(world, ScriptedWorld):
             raise InputError(
-                f"Nest(world) takes a ScriptedWorld, not {type(world).__name__}; "
-                "a scenario is opened by bn.Nest.open(scenario)"
+                f"Nest(world) takes a ScriptedWorld, not {type(world).__name__}; open a scenario "
+                "with bn.Nest.open(scenario)"
             )
         setting = Setting(
             name="scripted",
@@ -99,24 +100,24 @@ class Nest(Joining, Visiting):
         """Open a scenario in a world.
 
         Args:
-            scenario: What to start from.
+            scenario: The scenario or setting to open.
             world: `embedded`, `scripted`, or the address of a server (docs/servers.md).
             store: File to record in; None: memory.
-            seed: Drives every random number.
-            worlds: Lends the world, to one nest after the other; None: one is started.
-            limits: What the world's process may take, if one is started.
-            claims_from: Reads claims out of what is said without any; None: nobody.
-            renderer: Fills prompts, for one nest after the other; None: one of its own.
-            realtime: Whether the embedded world goes on in real time, so that people can join
+            seed: Seed of every random number.
+            worlds: Pool that lends the world to one nest after the other; None: start a world.
+            limits: Memory and time that the world's process may use, if one is started.
+            claims_from: Function or model that reads claims out of utterances; None: nobody does.
+            renderer: Renderer of prompts, shared by several nests; None: a new one.
+            realtime: Whether the embedded world runs in real time, so that people can join
                 (docs/people.md).
-            listen: Where they do: a port of this machine alone, or HOST:PORT; 0: any free port;
-                None: Minecraft's own, 25565.
+            listen: Address at which people join: a port of this machine, or HOST:PORT; 0: any free
+                port; None: Minecraft's port 25565.
 
         Raises:
             BodyError: The world could not be started.
             UnknownNameError: There is no such world.
-            InputError: There are people in the scenario and none can join the world; or the seed
-                is no whole number of 64 bits.
+            InputError: The scenario has people but nobody can join the world, or the seed is not a
+                whole number of 64 bits.
             StoreError: The store exists already, or cannot be written.
         """
         world, seed = world_name(world, realtime=realtime, listen=listen), checked_seed(seed)
@@ -136,26 +137,26 @@ class Nest(Joining, Visiting):
         worlds: Worlds | None = None,
         claims_from: ClaimsFrom | None = None,
     ) -> Self:
-        """Go on with a recorded run where it was, on every branch, with its seed.
+        """Continue a recorded run where it was left, on every branch, with its seed.
 
-        The world is started, and bodies are made, when they are first needed.
+        The world starts, and bodies are opened, when they are first needed.
 
         Args:
             store: The run file.
-            limits: What the world's process may take.
-            worlds: Lends the world, to one nest after the other; None: one is started.
-            claims_from: Reads claims out of what is said from now on; None: nobody. What was
-                read before is recorded.
+            limits: Memory and time that the world's process may use.
+            worlds: Pool that lends the world to one nest after the other; None: start a world.
+            claims_from: Function or model that reads claims out of utterances from now on; None:
+                nobody does. Claims that were read before are in the record.
 
         Raises:
-            StoreError: There is no such run, it cannot be read or written, or has another
-                writer.
+            StoreError: There is no such run, it cannot be read or written, or another process
+                writes to it.
         """
         return cls._of(resumed(store, limits, worlds, claims_from))
 
     @staticmethod
     def read(store: str | Path) -> RecordedNest:
-        """Look at a recorded run, also while another process writes it; nothing can act in it.
+        """Open a recorded run for reading, also while another process writes it.
 
         Raises:
             StoreError: There is no such run, or it cannot be read.
@@ -173,7 +174,7 @@ class Nest(Joining, Visiting):
         self._recording = engine.recording
 
     def close(self) -> None:
-        """End the world and close the store; in a forked child nothing, they are its parent's."""
+        """End the world and close the store. Do nothing in a forked child: its parent owns them."""
         turn = self._recording.turn
         if turn.is_own:
             with turn:
@@ -181,12 +182,12 @@ class Nest(Joining, Visiting):
 
     @property
     def tick(self) -> int:
-        """The real world's latest tick."""
+        """The latest tick of the real world."""
         return self._recording.info(()).head
 
     @property
     def scripted_world(self) -> ScriptedWorld:
-        """The scripted world that is the real one.
+        """The scripted world that serves as the real world.
 
         Raises:
             WorldError: The real world is a Minecraft one.
@@ -199,7 +200,7 @@ class Nest(Joining, Visiting):
 
     @in_turn
     def states(self, paths: Iterable[str]) -> Mapping[str, State]:
-        """What several simulators hold, read-only, by path as given; quicker than one by one."""
+        """Return the states of several simulators by path, read-only; faster than one by one."""
         nodes = {path: parse_path(path, self.agents) for path in paths}
         states = self._recording.states(nodes.values())
         return {path: states[node] for path, node in nodes.items()}
@@ -209,7 +210,7 @@ class Nest(Joining, Visiting):
         """Return all simulators as they were at a past tick.
 
         Raises:
-            TickError: The tick is no whole number, in the future or before the start.
+            TickError: The tick is not a whole number, or in the future or before the start.
         """
         then = tick_of(tick)
         self._recording.moment((), then)
@@ -226,41 +227,42 @@ class Nest(Joining, Visiting):
         processes: int | None = None,
         senses: Senses = "world",
     ) -> tuple[Attempt, ...]:
-        """Try programs in one simulator, each on a branch of its own, from its present.
+        """Try programs in one simulator from its present, each on a branch of its own.
 
-        Several can run at the same time, in bodies of their own; what comes of it, and what is
-        recorded in which order, is the same as one after the other.
+        Several can run at the same time, in bodies of their own. Results, records and their order
+        are the same as if they ran one after the other.
 
         Args:
-            path: Belief path of the simulator; it ends on the branch it is on.
-            agent: Whose bot runs them.
-            programs: What to try.
-            score: Says how good it is what a program led to.
+            path: Belief path of the simulator. At the end it is again on its present branch.
+            agent: Name of the agent whose bot runs the programs.
+            programs: Texts of the programs to try.
+            score: Function that rates the outcome of a program.
             timeout_ticks: Ticks after which a program is stopped.
-            name: What the branches are called: `NAME 1`, `NAME 2` and so on.
-            processes: How many processes run programs at the same time; each further one
-                takes about a second to start, once, and 200 MB as long as the nest is open.
-                None: the first program runs alone; if the others would take more than four
-                seconds, as many as there are processors run them, else they run one by one.
-            senses: `percepts`: programs read no more than their agent perceives or remembers; they
-                run one by one, whatever `processes` is.
+            name: Prefix of the branch names: `NAME 1`, `NAME 2` and so on.
+            processes: Number of processes that run programs at the same time. Each further process
+                takes about a second to start, once, and 200 MB while the nest is open. None: the
+                first program runs alone; the others use all processors if they would take more
+                than four seconds one by one.
+            senses: `world`: programs read the whole world; `percepts`: only what their agent
+                perceives or remembers. With `percepts` they always run one by one.
 
         Returns:
             One attempt for each program, in order, with its branch, result and score.
 
         Raises:
             PathError: There is no such path or agent.
-            BranchError: There is such a branch already; nothing was run.
-            WorldError: The agent's pose is not known in it, or the world runs no programs.
-            InputError: `processes` is below 1, `senses` is neither, or the path is `/` and reality
-                is in real time.
+            BranchError: One of the branches exists already. Nothing was run.
+            WorldError: The simulator does not know the agent's pose, or the world cannot run
+                programs.
+            InputError: `processes` is below 1, `senses` is none of the two, or the path is `/` and
+                the real world runs in real time.
         """
         self[path].child(agent)
         parsed = parse_path(path, self.agents)
         if not parsed and is_real_time(self._engine.world):
             raise InputError(
-                "this real world goes on in real time, so that nothing can be tried out in it; "
-                "explore a belief, which is played in the embedded world"
+                "this real world runs in real time, so programs cannot be tried out in it; explore "
+                "a belief instead, which is played in the embedded world"
             )
         return Exploration(
             engine=self._engine,
@@ -276,26 +278,26 @@ class Nest(Joining, Visiting):
 
     @contextmanager
     def together(self) -> Iterator[None]:
-        """Keep all that happens in the real world inside as a whole, or nothing of it."""
+        """Record everything that happens in the real world inside the block, or nothing of it."""
         with self._recording.turn, self._engine.bodies.changing(()):
             yield
 
     @in_turn
     def keep(self, name: str, value: bytes) -> None:
-        """Keep bytes in the run under a name, in place of those before."""
+        """Store bytes in the run under a name, and replace those stored before."""
         self._recording.records.put_state(f"kept {name}", value)
 
     def each_tick(
         self, paths: Sequence[str], after: int, until: int
     ) -> Iterator[tuple[int, Mapping[str, State]]]:
-        """Yield several simulators at each tick of the real world's timeline with something new.
+        """Yield each tick of the real world's timeline with an entry, with several states.
 
-        All of them follow; read their states before asking for the next tick.
+        The simulators follow the real world. Read their states before asking for the next tick.
 
         Args:
-            paths: Belief paths.
-            after: Ticks up to this one are passed over.
-            until: The last tick.
+            paths: Belief paths of the simulators.
+            after: Last tick to leave out.
+            until: Last tick to yield.
         """
         parsed = {path: parse_path(path, self.agents) for path in paths}
         with self._recording.turn:
@@ -306,13 +308,13 @@ class Nest(Joining, Visiting):
     def play(self, on_progress: Progress | None = None) -> None:
         """Play the scenario's script in the real world, from the first step that was not played.
 
-        People in the scenario are waited for first, as by `wait_for_people`.
+        Wait for the people of the scenario first, as `wait_for_people` does.
 
         Raises:
-            WorldError: A person did not come.
-            ProgramError: A program failed; the message says which step, where it is
-                written, and the program's line.
-            BodyError: The Minecraft side died again and again under a step.
+            WorldError: A person did not join.
+            ProgramError: A program failed. The message names the step, its file and line, and the
+                line of the program.
+            BodyError: The process of the Minecraft side ended at every attempt of a step.
         """
         self.wait_for_people(on_progress=on_progress)
         play_script(self._engine, on_progress)

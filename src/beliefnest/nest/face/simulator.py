@@ -1,4 +1,4 @@
-"""One simulator of the nest, as its users hold it."""
+"""Live simulator of a nest, as users work with it."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
@@ -31,7 +31,7 @@ _LONGEST = 24 * 3600 * TICKS_PER_SECOND
 
 
 class Simulator(ShownSimulator):
-    """The real world or a belief, live; `Nest[path]` gives one."""
+    """The real world or a belief, live. Get one with `nest[path]`."""
 
     def __init__(self, engine: Engine, path: BeliefPath) -> None:
         super().__init__(engine.recording, path)
@@ -39,12 +39,12 @@ class Simulator(ShownSimulator):
 
     @property
     def mode(self) -> Mode:
-        """`control` with a timeline of its own, else `follow`."""
+        """The mode: `control` with a timeline of its own, otherwise `follow`."""
         return "control" if self._path in self._recording.selected else "follow"
 
     @property
     def branch(self) -> str:
-        """Name of the selected branch; `follow` in follow mode."""
+        """The name of the selected branch; `follow` in follow mode."""
         key = self._recording.selected.get(self._path)
         return FOLLOW if key is None else key.branch
 
@@ -59,11 +59,11 @@ class Simulator(ShownSimulator):
         """
         body = self._engine.body(self._path)
         if not isinstance(body, ScriptedBody):
-            raise WorldError(f"{self.path} lives in Minecraft; act in it with run()")
+            raise WorldError(f"{self.path} is a Minecraft world; act in it with run()")
         return body.world
 
     def child(self, agent: str) -> "Simulator":
-        """Return the simulator of what `agent` believes in this one."""
+        """Return the simulator of the belief that `agent` has in this one."""
         return Simulator(self._engine, self._child_path(agent))
 
     @in_turn
@@ -71,18 +71,18 @@ class Simulator(ShownSimulator):
         """Select a branch: a new name forks here, a known one restores its latest state.
 
         Args:
-            name: The branch; `follow` goes back to following the parent's belief.
+            name: Name of the branch. `follow` makes it follow the parent's belief again.
             at: Past tick to fork a new branch from; None: now.
 
         Raises:
             BranchError: The name is not allowed, or `at` is given for a known branch or `follow`.
-            TickError: `at` is no whole number, in the future or before the start.
+            TickError: `at` is not a whole number, or in the future or before the start.
         """
         _check_branch_name(name)
         if name == FOLLOW:
             if at is not None:
                 raise BranchError(
-                    f"{FOLLOW!r} goes on with the present; fork tick {at} under a name"
+                    f"{FOLLOW!r} always shows the present; fork tick {at} under another name"
                 )
             self._engine.follow(self._path)
             return
@@ -96,7 +96,7 @@ class Simulator(ShownSimulator):
 
     @in_turn
     def branches(self) -> tuple[TimelineInfo, ...]:
-        """Return the simulator's own timelines, in order of creation, each with its fork point."""
+        """Return the simulator's own timelines with their fork points, in order of creation."""
         timelines = self._recording.journal.timelines()
         return tuple(info for info in timelines if info.key.path == self._path)
 
@@ -109,20 +109,21 @@ class Simulator(ShownSimulator):
         """
         _check_branch_name(new)
         if new == FOLLOW:
-            raise BranchError(f"{FOLLOW!r} is the name of no branch; choose another one")
+            raise BranchError(f"{FOLLOW!r} is reserved for follow mode; choose another branch")
         self._engine.rename(TimelineKey(self._path, old), new)
 
     @in_turn
     def delete(self, name: str, recursive: bool = False) -> None:
-        """Delete a branch, for good.
+        """Delete a branch permanently.
 
         Args:
-            name: The branch.
-            recursive: Whether to delete what is based on it as well, beliefs' branches too.
+            name: Name of the branch.
+            recursive: Whether to delete all timelines that were forked from it as well, including
+                branches of beliefs.
 
         Raises:
-            BranchError: There is no such branch, a simulator is on it, or others are based
-                on it and `recursive` is not set.
+            BranchError: There is no such branch, a simulator is on it, or other timelines were
+                forked from it and `recursive` is not set.
         """
         journal = self._recording.journal
         key = journal.info(TimelineKey(self._path, name)).key
@@ -130,14 +131,14 @@ class Simulator(ShownSimulator):
 
     @in_turn
     def describe(self, name: str, text: str) -> None:
-        """Say what a branch is for.
+        """Store a description of a branch.
 
         Raises:
             BranchError: There is no branch of that name.
-            InputError: The description is no text.
+            InputError: The description is not a text.
         """
         if not isinstance(text, str):
-            raise InputError(f"a description is a text, not {text!r}")
+            raise InputError(f"the description is {text!r}; give a text")
         self._recording.journal.describe(TimelineKey(self._path, name), text)
 
     def run(
@@ -146,18 +147,19 @@ class Simulator(ShownSimulator):
         """Run a program as an agent of this simulator, which must be in control mode.
 
         Args:
-            agent: Whose bot runs it.
+            agent: Name of the agent whose bot runs the program.
             code: JavaScript: the body of an async function, or one whole async function.
             timeout_ticks: Ticks after which the program is stopped, at most those of a day.
-            senses: `percepts`: it reads no more than its agent perceives or remembers.
+            senses: `world`: the program reads the whole world; `percepts`: only what its agent
+                perceives or remembers.
 
         Raises:
-            InputError: The code is no text, or the ticks are no such number.
+            InputError: The code is not a text, or the number of ticks is not allowed.
             PathError: There is no such agent.
             BranchError: The simulator is in follow mode.
-            WorldError: The agent is not in it, or the world runs no programs.
-            BodyError: The Minecraft side failed, or died again and again before the program
-                began. If it dies under the program, the result says so (`killed`).
+            WorldError: The agent is not in the simulator, or the world cannot run programs.
+            BodyError: The Minecraft side failed, or its process ended at every attempt before the
+                program began. If it ends while the program runs, the result says so (`killed`).
         """
         return self.run_all({agent: code}, timeout_ticks, senses)[agent]
 
@@ -172,37 +174,39 @@ class Simulator(ShownSimulator):
         """Run programs of several agents at the same time, tick by tick together.
 
         Args:
-            programs: Their texts by agent.
+            programs: Texts of the programs by agent.
             timeout_ticks: As for `run`.
             senses: As for `run`.
-            past: What programs had done when they were cut, by agent: they go on with it. With a
-                mapping, be it empty, results list what programs called.
+            past: Pasts of interrupted programs by agent, from which they continue. With any
+                mapping, even an empty one, results list the calls of programs.
 
         Raises:
             InputError: There is no program, or as for `run`.
         """
         if not isinstance(programs, Mapping) or not programs:
-            raise InputError(f"no program is in {programs!r}; give a mapping of code by agent")
+            raise InputError(f"no program is in {programs!r}; give a mapping from agent to code")
         for agent, code in programs.items():
             self._child_path(agent)
             if not isinstance(code, str):
-                raise InputError(f"the program of {agent} is a text, not {type(code).__name__}")
+                raise InputError(
+                    f"the program of {agent} is of type {type(code).__name__}; give a text"
+                )
             if not is_well_formed(code):
                 raise InputError(
-                    f"the program of {agent} has half of a character in it; write the whole "
-                    "character, or an escape such as \\u{1f600}"
+                    f"the program of {agent} has half of a character in it (a lone surrogate); "
+                    "write the whole character, or an escape such as \\u{1f600}"
                 )
         check_senses(senses)
         return self._engine.run(self._path, programs, _timeout(timeout_ticks), None, senses, past)
 
     def noting(self, model: "Model", **detail: str) -> "Model":
-        """Return a model whose conversation with the caller is kept in the run, request by request.
+        """Return a model that asks another one and records each request and answer in the run.
 
-        Give it to `ask_for_program` in place of the model; `Nest.prompts` lists what was kept.
+        Give it to `ask_for_program` in place of the model. `Nest.prompts` lists the records.
 
         Args:
-            model: Who is asked.
-            detail: Facts to keep with every request, as `task`.
+            model: The model to ask.
+            detail: Facts to record with every request, for example `task`.
         """
         return RecordingModel(model, self._recording, self._path, detail)
 
@@ -211,13 +215,13 @@ class Simulator(ShownSimulator):
         """Let ticks pass in a control-mode simulator.
 
         Raises:
-            InputError: The number is not whole, below 0, or more than a day takes.
+            InputError: The number is not whole, is below 0, or is more than a day has.
             BranchError: The simulator is in follow mode.
         """
         number = whole(ticks)
         if number is None or not 0 <= number <= _LONGEST:
             raise InputError(
-                f"{ticks!r} ticks cannot pass; give a whole number, at most {_LONGEST}"
+                f"{ticks!r} ticks cannot pass; give a whole number from 0 to {_LONGEST}"
             )
         self._engine.step(self._path, number)
 
@@ -228,17 +232,17 @@ class Simulator(ShownSimulator):
         containers: Mapping[Position, Items] | None = None,
         signs: Mapping[Position, str] | None = None,
     ) -> None:
-        """Change blocks, contents or texts of signs by hand; it is recorded as an edit.
+        """Change blocks, contents or texts of signs by hand. The change is recorded as an edit.
 
         Args:
             blocks: New block state texts; None makes a block unknown.
-            containers: New contents, which are then complete.
-            signs: New texts of signs, those of `blocks` among them; lines are split by line breaks.
+            containers: New contents, which then count as complete.
+            signs: New texts of signs, also of signs that `blocks` puts; line breaks separate lines.
 
         Raises:
             PositionError: A position is outside the box.
             UnknownNameError: There is no such block or item.
-            InputError: A block is no known sign, or a text does not fit on one.
+            InputError: A block is not a known sign, or a text does not fit on a sign.
         """
         registry = self._recording.context.registry
         box = self._recording.box
@@ -256,31 +260,33 @@ class Simulator(ShownSimulator):
             for name, count in items.items():
                 registry.item_stack(name)
                 if count <= 0:
-                    raise InputError(f"{count} {name} cannot be held; give a count above 0")
+                    raise InputError(
+                        f"a container cannot hold {count} {name}; give a count above 0"
+                    )
         self._engine.edit(self._path, states, {p: dict(i) for p, i in (containers or {}).items()})
 
     @in_turn
     def embody(self, stands: bool = True, *, unknown: str = "air") -> None:
-        """Let what it holds stand in Minecraft, for people to visit, or no longer.
+        """Show the simulator's state in Minecraft for people to visit, or remove it again.
 
-        It stands beyond view distance of reality and is kept up to date, tick by tick, as long as
-        the nest lets time pass: blocks, what is known of contents, signs, and agents of known
-        pose, under names of their own. `Nest.layout` says where, and how to go to it. It is what
-        the simulator holds on whatever branch it is; nothing that visitors do changes it.
+        The state stands beyond the view distance of the real world. While the nest lets time pass
+        it is kept up to date tick by tick: blocks, known contents, signs, and agents of known pose,
+        under names of their own. `Nest.layout` says where it stands and how to go there. It shows
+        the branch on which the simulator is. Visitors cannot change it.
 
         Args:
-            stands: Whether it is to stand. If it does so already, or does not, nothing happens.
-            unknown: The block that unknown ones are shown as.
+            stands: True to show it, False to remove it. Repeating either does nothing.
+            unknown: Name of the block that stands for unknown blocks.
 
         Raises:
-            InputError: It is the real world, people cannot come into this world, or the arguments
-                are of other kinds.
+            InputError: The simulator is the real world, people cannot join this world, or an
+                argument has the wrong type.
             UnknownNameError: There is no such block.
             WorldError: The place on a server holds other blocks.
-            BodyError: It could not be built.
+            BodyError: The state could not be built.
         """
         if stands is not True and stands is not False:
-            raise InputError(f"embody({stands!r}): give True, or False to end it")
+            raise InputError(f"embody() was given {stands!r}; give True, or False to end it")
         if not isinstance(unknown, str):
             raise InputError(f"unknown is {unknown!r}; give the name of a block")
         embodying = self._engine.embodying
@@ -291,19 +297,19 @@ class Simulator(ShownSimulator):
 
     @in_turn
     def imagine(self, depth: int = 1, pace: int = 1) -> Imagination:
-        """What it holds now as a world of its own, to try courses in; nothing is recorded.
+        """Return the present state as a world of its own, to try out courses without recording.
 
-        It is scripted, whatever the real world is: see docs/scripted-world.md.
+        That world is scripted, whatever the real world is: see docs/scripted-world.md.
 
         Args:
-            depth: How deep below it beliefs are followed.
-            pace: Ticks of the real world that are as one tick in it.
+            depth: Number of levels below the simulator at which beliefs are followed.
+            pace: Number of ticks of the real world that one tick stands for.
 
         Raises:
             InputError: The depth is below 0.
         """
         if depth < 0:
-            raise InputError(f"depth is {depth}; give 0 or more")
+            raise InputError(f"depth is {depth}; give a whole number from 0 on")
         info = self._recording.info(self._path)
         for path in paths_below(self._path, depth, self._recording.agents):
             forest = self._recording.history.shared(info.key, path, info.entries)
@@ -312,7 +318,7 @@ class Simulator(ShownSimulator):
 
 
 def check_senses(senses: object) -> None:
-    """Refuse what is none of `Senses`; InputError says so."""
+    """Raise InputError for a value that is not one of `Senses`."""
     if senses not in ("world", "percepts"):
         raise InputError(f"senses is {senses!r}; give 'world' or 'percepts'")
 
@@ -325,7 +331,7 @@ def _timeout(ticks: int) -> int:
 
 
 def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineKey]:
-    """Return all timelines that rest on one, each after those that rest on it."""
+    """Return all timelines that were forked from one, each after its own forks."""
     resting = {key}
     for info in infos:
         if info.base is not None and info.base.timeline in resting:
@@ -336,5 +342,5 @@ def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineK
 def _check_branch_name(name: object) -> None:
     if not isinstance(name, str) or not name or not name.isprintable() or set(name) & set("/[]"):
         raise BranchError(
-            f"{name!r} is no branch name; use printable text without '/', '[' and ']'"
+            f"{name!r} is not a branch name; use printable text without '/', '[' and ']'"
         )

@@ -154,7 +154,11 @@ class Setting:
         for step in self.script:
             texts += [step.label, step.where, *step.programs.values()]
         bad = next((text for text in texts if not is_well_formed(text)), None)
-        return None if bad is None else f"{escaped(bad[:100])!r} has half a character; remove it"
+        return (
+            None
+            if bad is None
+            else f"{escaped(bad[:100])!r} has half of a character in it; remove it"
+        )
 
 
 def _belief_fault(belief: InitialBelief, box: Box, registry: Registry) -> str | None:
