@@ -194,7 +194,7 @@ def test_only_who_is_awaited_comes_in_and_acts(scenario):
         ):
             with Person(nest.address, name) as stranger:
                 assert stranger.left() == told
-        with pytest.raises(WorldError, match=rf"anne did not come .* 1\.20\.4.* {nest.address}"):
+        with pytest.raises(WorldError, match=rf"anne did not join .* 1\.20\.4.* {nest.address}"):
             nest.wait_for_people(timeout_s=0.5)
         with pytest.raises(WorldError, match=r"anne is a person.*nest\.take_over"):
             nest["/"].run("anne", act)
@@ -255,7 +255,7 @@ def test_nothing_is_done_while_time_stands_still(scenario):
 
 def test_worlds_that_nobody_can_join_refuse_people(scenario):
     for world in ("embedded", "scripted"):
-        with pytest.raises(InputError, match=r"anne .* is of type human.*realtime=True"):
+        with pytest.raises(InputError, match=r"type human \(anne.*realtime=True"):
             Nest.open(scenario(1), world)
     with pytest.raises(InputError, match=r"realtime=True .--realtime. as well"):
         Nest.open(scenario(1), listen=0)

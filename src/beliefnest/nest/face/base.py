@@ -1,4 +1,4 @@
-"""What live and recorded nests have in common."""
+"""Common base of live and recorded nests."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ __all__ = ["NestBase"]
 
 
 class NestBase(ShownNest, ABC):
-    """A nest whose simulators are read at the latest tick of the branch they are on."""
+    """Nest whose simulators are read at the latest tick of their branches."""
 
     def __enter__(self) -> Self:
         return self
@@ -33,36 +33,36 @@ class NestBase(ShownNest, ABC):
 
     @property
     def setting(self) -> Setting:
-        """What the nest started from."""
+        """The setting from which the nest started."""
         return self._recording.setting
 
     @property
     def seed(self) -> int:
-        """Drives every random number."""
+        """The seed of every random number."""
         return self._recording.seed
 
     @property
     def agents(self) -> tuple[str, ...]:
-        """Names of all agents, sorted."""
+        """The names of all agents, sorted."""
         return self._recording.agents
 
     @property
     def reader(self) -> Reader:
-        """What viewers read of the nest, on any of its timelines."""
+        """The reader that viewers use, for any of the nest's timelines."""
         return Reader(self._recording)
 
     @in_turn
     def versions(self) -> Sequence[Mapping[str, str]]:
-        """Program to version, when the run began and whenever it was resumed with others."""
+        """Return the versions by program, from the beginning and from each resume with others."""
         return self._recording.records.versions()
 
     @in_turn
     def programs(self, path: str | None = None) -> tuple[ProgramRecord, ...]:
-        """Return programs that ran, on branches that were not deleted, in order of their end.
+        """Return the programs that ran on branches that still exist, in order of their end.
 
         Args:
-            path: Those that ran in this simulator on the branch it is on: in follow mode there are
-                none, and those that ran before the fork belong to another branch. None: all.
+            path: Simulator whose programs are wanted, on its present branch only: in follow mode it
+                has none, and programs before a fork belong to the other branch. None: all programs.
         """
         programs = tuple(self._recording.records.programs())
         if path is None:
@@ -72,11 +72,11 @@ class NestBase(ShownNest, ABC):
 
     @in_turn
     def prompts(self, path: str | None = None) -> tuple[PromptRecord, ...]:
-        """Requests to models that `Simulator.noting` kept, with what came of them, in order.
+        """Return the requests to models that `Simulator.noting` recorded, with their outcomes.
 
         Args:
-            path: Those made from this simulator, in the past of the branch it is on or follows;
-                None: all.
+            path: Simulator whose requests are wanted, in the past of the branch that it is on or
+                follows; None: all requests.
         """
         prompts = tuple(self._recording.records.prompts())
         if path is None:
@@ -87,19 +87,19 @@ class NestBase(ShownNest, ABC):
 
     @in_turn
     def kept(self, name: str) -> bytes | None:
-        """Return the bytes that `Nest.keep` kept last under a name; None if there are none."""
+        """Return the bytes that `Nest.keep` stored last under a name; None if there are none."""
         return self._recording.records.state(f"kept {name}")
 
     def view(self, depth: int = 2, height: int = 720) -> "PageView":
-        """Return the page of the nest as it is when it is first shown, for a notebook's cell.
+        """Return the page of the nest for a notebook's cell, with the rounds of an episode.
 
-        An episode's rounds are in it.
+        The page is made when it is first shown.
 
         Args:
-            depth: How deep all beliefs go, 0 to 4.
-            height: Of the page, pixels.
+            depth: Number of levels of beliefs that the page shows, 0 to 4.
+            height: Height of the page, pixels.
         """
-        # The one way up: a page reads nests, with the rounds of an episode.
+        # The only import of a higher room: a page reads nests, and rounds of episodes.
         from beliefnest.episodes.telling import told_episode
         from beliefnest.viewer.page.notebook import PageView
 

@@ -1,4 +1,4 @@
-"""States of simulators as values that `pictures` draws."""
+"""Conversion of simulators' states into values that `pictures` draws."""
 
 from collections.abc import Iterable, Mapping
 
@@ -23,7 +23,17 @@ def scene_of(
     sight: Mapping[str, npt.NDArray[np.bool_]],
     height: int,
 ) -> Scene:
-    """Return a simulator's state as it is drawn; arguments are those of `ShownSimulator.figure`."""
+    """Return the scene of a simulator's state.
+
+    Args:
+        recording: Recording of the nest.
+        path: Path of the simulator.
+        state: Its state.
+        otherwise: Its false beliefs.
+        against: Path against which they are false.
+        sight: Masks of visible blocks, by agent whose sight is drawn.
+        height: Storey to draw, as the y of blocks on its floor.
+    """
     setting, key = recording.setting, recording.selected.get(path)
     return read_scene(
         state,
@@ -38,7 +48,7 @@ def scene_of(
 
 
 def wrong_things(found: Iterable[Difference]) -> list[Wrong]:
-    """Differences (`a` is taken for true) as drawings know them."""
+    """Return differences, of which `a` is true, as drawings mark them."""
     return [
         Wrong(each.where, value_words(each.b), value_words(each.a), each.kind == "inventory")
         for each in found

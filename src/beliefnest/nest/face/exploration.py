@@ -1,4 +1,4 @@
-"""Exploration: several programs tried from one tick, each on a branch of its own."""
+"""Exploration of several programs from one tick, each on a branch of its own."""
 
 import os
 import time
@@ -19,22 +19,22 @@ from beliefnest.world.paths import BeliefPath
 __all__ = ["Attempt", "Exploration", "ScoreFunction"]
 
 ScoreFunction = Callable[[Simulator, ProgramResult], float]
-"""Says how good it is what a program led to; takes the simulator as the program left it."""
+"""Function that rates an outcome: of the simulator as the program left it, and the result."""
 
 _WORTH_SECONDS = 4.0
-"""What is to be done yet must take at least that long for other processes to be started."""
+"""Least expected duration of the remaining programs, in seconds, to start further processes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A program that was tried.
+    """Program that was tried.
 
     Attributes:
-        program: Its text.
-        branch: The branch it ran on, which stays.
-        result: How it ended.
-        score: What the caller's function gave it.
-        state: What the simulator held in the end.
+        program: Text of the program.
+        branch: Branch on which it ran. The branch is kept.
+        result: Result of the program.
+        score: Score from the caller's function.
+        state: State of the simulator at the end.
     """
 
     program: str
@@ -49,7 +49,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Exploration:
-    """What is to be tried: each program from the simulator's present; see `Nest.explore`."""
+    """Programs to try from a simulator's present; see `Nest.explore`."""
 
     engine: Engine
     path: BeliefPath
@@ -62,7 +62,7 @@ class Exploration:
     senses: Senses
 
     def attempts(self) -> tuple[Attempt, ...]:
-        """Try all programs, in order; errors as those of `Nest.explore`."""
+        """Try all programs in order; raise as `Nest.explore` does."""
         check_senses(self.senses)
         simulator = Simulator(self.engine, self.path)
         branches = self._branches(simulator)
@@ -80,7 +80,7 @@ class Exploration:
                     ahead = self._ahead(stack, base, number, seconds)
                 started = time.perf_counter()
                 simulator.switch(before)
-                # A score may have let the world go on that this simulator follows.
+                # The score function may have let time pass in the world that this one follows.
                 speculation = ahead.get(number) if self._present() == base else None
                 simulator.switch(branch)
                 result = self._run(simulator, number, speculation)
@@ -100,7 +100,7 @@ class Exploration:
         for branch in branches:
             if TimelineKey(self.path, branch) in taken:
                 raise BranchError(
-                    f"{simulator.path} already has a branch {branch!r}; explore under another name"
+                    f"{simulator.path} already has a branch {branch!r}; give explore() another name"
                 )
         return branches
 
@@ -119,20 +119,24 @@ class Exploration:
     def _ahead(
         self, stack: ExitStack, base: ForkPoint, first: int, seconds: float
     ) -> Mapping[int, Speculation]:
-        """Speculations of the programs from one on, if it is to be done at the same time.
+        """Run the programs from number `first` on ahead of their turn, if that is worth it.
 
         Args:
-            stack: Keeps the simulator without a body as long as speculations are used.
-            base: Where they begin.
-            first: Number of the first of them.
-            seconds: What one took that ran before.
+            stack: Stack that keeps the simulator without a body while speculations are used.
+            base: Point of the timeline at which all begin.
+            first: Number of the first program.
+            seconds: Duration of the program that ran before.
+
+        Returns:
+            Speculations by number of the program; empty if they are to run one by one.
         """
         left = range(first, len(self.programs))
         processes = self.processes
         if processes is None:
             processes = _processors() if seconds * len(left) > _WORTH_SECONDS else 1
         processes = min(processes, len(left))
-        # What an agent perceives is worked out as it is recorded, one program after the other.
+        # With percepts a program reads beliefs, which are computed from what is recorded. So it
+        # must run when its turn comes.
         if processes < 2 or self.senses == "percepts":
             return {}
         with self.engine.recording.turn:
@@ -142,7 +146,7 @@ class Exploration:
 
 
 def _processors() -> int:
-    """How many processors this process may use."""
+    """Return the number of processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

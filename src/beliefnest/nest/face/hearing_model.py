@@ -1,4 +1,4 @@
-"""What reads claims out of text in a nest: a function, or a model whose requests are noted."""
+"""Readers of claims in text: a function, or a model whose requests are recorded."""
 
 import inspect
 from collections.abc import Callable, Iterable
@@ -20,21 +20,21 @@ __all__ = ["AsksModel", "reader_of"]
 
 @runtime_checkable
 class AsksModel(Protocol):
-    """A hook that asks a model, as `claims_from_model` gives."""
+    """Hook that asks a model, as `claims_from_model` returns it."""
 
     @property
     def name(self) -> str:
-        """Name of the model."""
+        """The name of the model."""
 
     def through(self, wrap: "Callable[[Model], Model]") -> ClaimsFrom:
-        """Return the same, asking its model through what `wrap` makes of it."""
+        """Return the same hook with its model replaced by `wrap(model)`."""
 
 
 def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | None:
-    """What asks a hook in a nest; None for none.
+    """Return the reader that asks a hook in a nest; None if there is no hook.
 
     Raises:
-        InputError: It cannot be called with a text, its speaker and what can be named.
+        InputError: The hook cannot be called with three arguments: text, speaker, nameable.
     """
     if hook is None:
         return None
@@ -49,7 +49,7 @@ def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | No
 
 
 def _takes_three(hook: object) -> bool:
-    """Return True if something can be called with three arguments, as far as is known."""
+    """Return True if an object is callable with three arguments, or does not say."""
     if not callable(hook):
         return False
     try:
@@ -57,13 +57,13 @@ def _takes_three(hook: object) -> bool:
     except TypeError:
         return False
     except ValueError:
-        # Some functions of C do not say.
+        # Some functions written in C have no signature.
         return True
     return True
 
 
 class _FunctionReader:
-    """Asks a function; what it raises ends the call in which something was said."""
+    """Reader that asks a function. An exception in it ends the call with the utterance."""
 
     def __init__(self, hook: ClaimsFrom) -> None:
         self._hook = hook
@@ -75,14 +75,17 @@ class _FunctionReader:
         found: object = self._hook(text, speaker, nameable)
         if isinstance(found, str) or not isinstance(found, Iterable):
             raise InputError(
-                f"claims_from ({self.name}) gave {found!r} for {text!r}; "
-                "it has to give a list of claims, [] for none"
+                f"claims_from ({self.name}) returned {found!r} for {text!r}; it must return a list "
+                "of claims, [] for none"
             )
         return found
 
 
 class _ModelReader:
-    """Asks a model; if it fails or answers nonsense, that is noted, and nothing was claimed."""
+    """Reader that asks a model. If it fails or its answer is invalid, that is recorded.
+
+    The utterance then has no claims.
+    """
 
     def __init__(self, hook: AsksModel, recording: Recording) -> None:
         self._hook = hook

@@ -1,4 +1,4 @@
-"""People in a nest whose real world goes on in real time: who is awaited, who has joined."""
+"""People in a nest whose real world runs in real time: waiting for them, pauses, takeovers."""
 
 import sys
 
@@ -15,33 +15,34 @@ _PATIENCE_S = 600.0
 
 
 class Joining(Waiting):
-    """What a nest offers about people; a part of `Nest`."""
+    """The part of `Nest` that deals with people."""
 
     @property
     def address(self) -> str | None:
-        """Where a Minecraft client joins, `HOST:PORT`; None where people cannot."""
+        """The address at which Minecraft clients join, `HOST:PORT`; None if people cannot join."""
         host = joined_of(self._engine.world)
         return None if host is None else host.address
 
     @property
     @in_turn
     def people(self) -> frozenset[str]:
-        """Names of the people who have joined and not left."""
+        """The names of the people who are joined now."""
         host = joined_of(self._engine.world)
         return frozenset() if host is None else host.here()
 
     def wait_for_people(
         self, timeout_s: float = _PATIENCE_S, on_progress: Progress | None = None
     ) -> None:
-        """Wait until all people of the scenario have joined; time passes meanwhile.
+        """Wait until all people of the scenario have joined. Time passes meanwhile.
 
         Args:
-            timeout_s: Seconds after which nobody is waited for any more.
-            on_progress: Called with who has to join, where and how; None: a line on stderr says so.
+            timeout_s: Greatest number of seconds to wait.
+            on_progress: Function called with a line that says who has to join, where and how; None:
+                print the line to stderr.
 
         Raises:
             InputError: The time is below 0, or longer than a day.
-            WorldError: Somebody did not come.
+            WorldError: A person did not join.
         """
         host = joined_of(self._engine.world)
         if host is None or not host.invited:
@@ -65,13 +66,13 @@ class Joining(Waiting):
         if not self.wait(all_here, timeout_s):
             awaited = host.invited - self.people
             raise WorldError(
-                f"{_names(awaited)} did not come within {timeout_s:g} s; {_line(host, awaited)}; "
-                "or let programs act instead: nest.take_over(NAME)"
+                f"{_names(awaited)} did not join within {timeout_s:g} s; {_line(host, awaited)}; "
+                "or let programs act instead, with nest.take_over(NAME)"
             )
 
     @in_turn
     def take_over(self, name: str) -> None:
-        """Let programs act for a person, who is sent away if joined, until `hand_back`.
+        """Let programs act for a person until `hand_back`. Disconnect the person if joined.
 
         Raises:
             UnknownNameError: The scenario has no person of that name.
@@ -81,7 +82,7 @@ class Joining(Waiting):
 
     @in_turn
     def hand_back(self, name: str) -> None:
-        """Let a person who was taken over join again; until then the agent stands still.
+        """Let a person join again after `take_over`. The agent stands still until then.
 
         Raises:
             UnknownNameError: The scenario has no person of that name.
@@ -91,22 +92,23 @@ class Joining(Waiting):
 
     @in_turn
     def pause(self) -> None:
-        """Let the real world stand still until `go_on`.
+        """Stop the real world until `go_on`.
 
-        No tick passes, and nothing that people do or say is done; they see a message. Beliefs can
-        be looked at, forked and acted in meanwhile. It is not recorded: no time passes.
+        No tick passes. Acts and utterances of people have no effect, and people see a message.
+        Beliefs can be read, forked and acted in meanwhile. A pause is not recorded, because no time
+        passes in it.
 
         Raises:
-            WorldError: It is not in real time, or on a server elsewhere.
+            WorldError: The world does not run in real time, or is on a server elsewhere.
         """
         self._real_time_world().pause(paused=True)
 
     @in_turn
     def go_on(self) -> None:
-        """Let the real world go on after `pause`; nothing changes if it does already.
+        """Let the real world run again after `pause`. Do nothing if it runs.
 
         Raises:
-            WorldError: It is not in real time, or on a server elsewhere.
+            WorldError: The world does not run in real time, or is on a server elsewhere.
         """
         self._real_time_world().pause(paused=False)
 
@@ -114,7 +116,8 @@ class Joining(Waiting):
         world = realtime_of(self._engine.world)
         if world is None:
             raise WorldError(
-                "this world is not in real time: no time passes between calls that could be paused"
+                "this world does not run in real time, so there is nothing to pause: no time "
+                "passes between calls"
             )
         return world
 
@@ -122,12 +125,13 @@ class Joining(Waiting):
         people = self._recording.setting.people
         if name not in people:
             known = ", ".join(sorted(people)) or "none"
-            raise UnknownNameError(
-                f"there is no person {name!r} in this scenario; there are: {known}"
-            )
+            raise UnknownNameError(f"this scenario has no person {name!r}; its people are {known}")
         host = joined_of(self._engine.world)
         if host is None:
-            raise InputError(f"{name} is a person, and nobody can join this world")
+            raise InputError(
+                f"{name} is a person, and people cannot join this world; open it with "
+                "realtime=True, listen=25565"
+            )
         return host
 
 

@@ -1,4 +1,4 @@
-"""What a plot of beliefs over time can follow: contents, items, blocks, agents."""
+"""Matters that a plot of beliefs over time can follow: contents, items, blocks and agents."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -20,16 +20,16 @@ __all__ = ["BlockAt", "Carried", "Contained", "Course", "Matter", "Owned", "Wher
 
 V = TypeVar("V")
 Course = list[tuple[int, V | None]]
-"""From which tick on what was held; None: nothing was known."""
+"""Values with the tick from which on each was believed; None: nothing was known."""
 
 Held = tuple[tuple[Position | str, int], ...]
-"""Containers and agents that hold an item, and how many."""
+"""Containers and agents that hold an item, with its number."""
 
 _NEAR = 3.0
-"""Blocks from a thing with a name within which somebody is said to be near it."""
+"""Greatest distance in blocks at which an agent counts as near a named thing."""
 _STEP = 1.5
 _PAUSE = 10
-"""Who goes on within so many ticks, by a step of so many blocks, does not stay where it is."""
+"""Ticks within which an agent on its way goes on, by a step of at most `_STEP` blocks."""
 
 _ACTS = {
     EventKind.DEPOSIT_ITEM_INTO_CHEST: "puts in",
@@ -53,52 +53,52 @@ _USES = {
 
 
 class Matter(Protocol[V]):
-    """What is followed in some simulators."""
+    """Matter that is followed in some simulators."""
 
     @property
     def title(self) -> str:
-        """What the plot is about."""
+        """The title of the plot."""
 
     def value(self, held: NodeView) -> V | None:
-        """What a simulator holds of it; None: nothing."""
+        """Return the value that a simulator believes; None: nothing is known."""
 
     def words(self, course: Course[V]) -> list[str]:
-        """Return each value of a course in words; empty: nothing is known."""
+        """Return each value of a course in words; an empty text if nothing is known."""
 
     def is_false(self, real: V | None, held: V) -> bool:
-        """Return True if reality is otherwise."""
+        """Return True if reality contradicts the value."""
 
     def act(self, event: PerceivedEvent) -> str:
-        """What somebody did that mattered to it, without who; empty: something else."""
+        """Return an act on the matter in words, without its actor; empty for other events."""
 
     def is_claimed(self, claim: Claim) -> bool:
-        """Return True if a claim is about it."""
+        """Return True if a claim is about the matter."""
 
 
 class _Amounts:
-    """Contents, of which all or one item is followed."""
+    """Base of matters whose values are contents, of all items or of one."""
 
     __slots__ = ()
 
     item: str | None
 
     def words(self, course: Course[Contents]) -> list[str]:
-        """What there is, in words."""
+        """Return the contents in words."""
         return [_contents_words(held, self.item) for _, held in course]
 
     def is_false(self, real: Contents | None, held: Contents) -> bool:
-        """As for `false_beliefs`."""
+        """Return True if the value is false by the rules of `false_beliefs`."""
         return are_false(real, held)
 
 
 @dataclass(frozen=True, slots=True)
 class Contained(_Amounts):
-    """What is in a container: all of it, or one item.
+    """Contents of a container: all items, or one of them.
 
     Attributes:
-        container: Where it is.
-        item: The item; None: all.
-        label: What people call the container.
+        container: Position of the container.
+        item: The item; None: all items.
+        label: Name of the container for people.
     """
 
     container: Position
@@ -107,23 +107,26 @@ class Contained(_Amounts):
 
     @property
     def title(self) -> str:
-        """What the plot is about."""
+        """The title of the plot."""
         item = "" if self.item is None else f" and the {_plain(self.item)}"
         return f"What is believed of the {self.label}{item}"
 
     def value(self, held: NodeView) -> Contents | None:
-        """What is in it."""
+        """Return the contents of the container."""
         found = held.containers.get(self.container)
         return None if found is None else _only(self.item, found.items, complete=found.complete)
 
     def act(self, event: PerceivedEvent) -> str:
-        """Putting in, taking out, looking in."""
+        """Return deposits, withdrawals and looks into the container in words."""
         if tuple(event.detail.get("position", ())) != self.container:
             return ""
         return _ACTS.get(event.kind, "")
 
     def is_claimed(self, claim: Claim) -> bool:
-        """What is said of the item, which may move it out of here, or of all that is in here."""
+        """Return True for a claim about the item, or without one about this container.
+
+        A claim that the item is elsewhere counts too, as it removes the item from here.
+        """
         if self.item is not None:
             return claim.item == self.item
         return claim.item is not None and claim.cell == self.container
@@ -131,11 +134,11 @@ class Contained(_Amounts):
 
 @dataclass(frozen=True, slots=True)
 class Carried:
-    """Where an item is: in which containers, with whom.
+    """Places of an item: containers and agents.
 
     Attributes:
         item: The item.
-        names: What people call containers.
+        names: Names of containers for people.
     """
 
     item: str
@@ -143,11 +146,11 @@ class Carried:
 
     @property
     def title(self) -> str:
-        """What the plot is about."""
+        """The title of the plot."""
         return f"Where the {_plain(self.item)} is believed to be"
 
     def value(self, held: NodeView) -> Held | None:
-        """How many are where; None: it is not known to be anywhere."""
+        """Return the number of items at each place; None: no place is known."""
         places: list[tuple[Position | str, Items]] = [
             *((place, each.items) for place, each in sorted(held.containers.items())),
             *((name, each.inventory) for name, each in sorted(held.agents.items())),
@@ -156,7 +159,7 @@ class Carried:
         return found or None
 
     def words(self, course: Course[Held]) -> list[str]:
-        """Return the containers by their names, and who has it."""
+        """Return the containers by their names, and the agents that have the item."""
         return [", ".join(self._at(*each) for each in held or ()) for _, held in course]
 
     def _at(self, where: Position | str, count: int) -> str:
@@ -166,28 +169,28 @@ class Carried:
         return f"{many}in {self.names.get(where, f'container {place_words(where)}')}"
 
     def is_false(self, real: Held | None, held: Held) -> bool:
-        """Return True if there are less in one of the places."""
+        """Return True if one of the places really has fewer of the item."""
         real_counts = dict(real or ())
         return any(count > real_counts.get(where, 0) for where, count in held)
 
     def act(self, event: PerceivedEvent) -> str:
-        """Taking, putting away, giving, getting it."""
+        """Return withdrawals, deposits and gifts of the item in words."""
         moved = self.item in event.detail.get("items", {})
         return _DEALS.get(event.kind, "") if moved else ""
 
     def is_claimed(self, claim: Claim) -> bool:
-        """What is said of where it is, and where it is not."""
+        """Return True for claims that the item is, or is not, in a container."""
         return claim.item == self.item
 
 
 @dataclass(frozen=True, slots=True)
 class BlockAt:
-    """Which block is at a place: a door that is open or shut, a sign and what it says.
+    """Block at a position, for example a door that is open or shut, or a sign with its text.
 
     Attributes:
-        block: The place.
-        index: Of it in blocks of the box.
-        text: A block of a number as people read it; None: unknown.
+        block: The position.
+        index: Index of the position in arrays of the box.
+        text: Function from a block number to the block in words; None: unknown.
     """
 
     block: Position
@@ -196,7 +199,7 @@ class BlockAt:
 
     @property
     def title(self) -> str:
-        """What the plot is about."""
+        """The title of the plot."""
         return f"What is believed of the block at {place_words(self.block)}"
 
     def value(self, held: NodeView) -> str | None:
@@ -204,17 +207,17 @@ class BlockAt:
         return self.text(int(held.numbers[self.index]))
 
     def words(self, course: Course[str]) -> list[str]:
-        """Return the block, with what differs from those that were at the place as well."""
+        """Return each block, with the properties in which the blocks of the course differ."""
         known = list(dict.fromkeys(text for _, text in course if text is not None))
         words = dict(zip(known, told_apart(known), strict=True))
         return ["" if text is None else words[text] for _, text in course]
 
     def is_false(self, real: str | None, held: str) -> bool:
-        """As for `false_beliefs`."""
+        """Return True if the value is false by the rules of `false_beliefs`."""
         return real != held
 
     def act(self, event: PerceivedEvent) -> str:
-        """Opening, shutting, switching, placing, mining it, writing on it."""
+        """Return acts on the block in words: use, placing, mining, writing."""
         detail = event.detail
         if tuple(detail.get("position", ())) != self.block:
             return ""
@@ -225,16 +228,16 @@ class BlockAt:
         return _USES.get(event.kind, "")
 
     def is_claimed(self, claim: Claim) -> bool:
-        """What is said of the block."""
+        """Return True for claims about the block."""
         return claim.kind is ClaimKind.BLOCK and claim.cell == self.block
 
 
 @dataclass(frozen=True, slots=True)
 class Owned(_Amounts):
-    """How much of an item an agent has with it.
+    """Number of an item that an agent has.
 
     Attributes:
-        agent: Who.
+        agent: Name of the agent.
         item: The item.
     """
 
@@ -243,31 +246,31 @@ class Owned(_Amounts):
 
     @property
     def title(self) -> str:
-        """What the plot is about."""
+        """The title of the plot."""
         return f"What {self.agent} is believed to have: {_plain(self.item)}"
 
     def value(self, held: NodeView) -> Contents | None:
-        """What the agent has of it."""
+        """Return the number of the item that the agent has, as contents."""
         agent = held.agents[self.agent]
         return _only(self.item, agent.inventory, complete=agent.inventory_complete)
 
     def act(self, event: PerceivedEvent) -> str:
-        """Taking, putting away, giving, getting the item."""
+        """Return withdrawals, deposits and gifts of the item by the agent in words."""
         mine = event.actor == self.agent and self.item in event.detail.get("items", {})
         return _DEALS.get(event.kind, "") if mine else ""
 
     def is_claimed(self, claim: Claim) -> bool:
-        """No claim is about what somebody has."""
+        """Return False: no claim is about an agent's possessions."""
         return False
 
 
 @dataclass(frozen=True, slots=True)
 class Whereabouts:
-    """Where an agent is.
+    """Position of an agent.
 
     Attributes:
-        agent: Who.
-        names: What people call places and containers.
+        agent: Name of the agent.
+        names: Names of places and containers for people.
     """
 
     agent: str
@@ -275,15 +278,15 @@ class Whereabouts:
 
     @property
     def title(self) -> str:
-        """What the plot is about."""
+        """The title of the plot."""
         return f"Where {self.agent} is believed to be"
 
     def value(self, held: NodeView) -> Point | None:
-        """Its feet."""
+        """Return the agent's feet position."""
         return held.agents[self.agent].position
 
     def words(self, course: Course[Point]) -> list[str]:
-        """Return places by the names of what is near; who walks is on the way."""
+        """Return places by the names of near things. An agent that walks is "on the way"."""
         runs = [list(run) for _, run in groupby(_stays(course), key=lambda stay: stay[1])]
         words: list[str] = []
         for run, after in zip_longest(runs, runs[1:]):
@@ -294,7 +297,7 @@ class Whereabouts:
     def _run_words(
         self, here: tuple[int, Point | None], after: tuple[int, Point | None] | None
     ) -> str:
-        """Where it is from a tick on; `after`: where it is next."""
+        """Return the place from a tick on in words; `after` is the next place."""
         tick, place = here
         if place is None:
             return ""
@@ -308,7 +311,7 @@ class Whereabouts:
         return self._place_words(place)
 
     def _place_words(self, place: Point) -> str:
-        """Return the nearest name; without one the block in which the feet are."""
+        """Return the nearest name; if no name is near, the block in which the feet are."""
         away = {
             name: math.dist(place, (x + 0.5, y, z + 0.5)) for (x, y, z), name in self.names.items()
         }
@@ -318,20 +321,20 @@ class Whereabouts:
         return f"at {place_words((x, y, z))}"
 
     def is_false(self, real: Point | None, held: Point) -> bool:
-        """As for `false_beliefs`."""
+        """Return True if the value is false by the rules of `false_beliefs`."""
         return real is None or bool(are_elsewhere(np.array(real), np.array(held)))
 
     def act(self, event: PerceivedEvent) -> str:
-        """Coming to where it was bound for; a walk is an event when it has ended."""
+        """Return the arrival at the end of a walk, in words."""
         return "arrives" if event.kind is EventKind.MOVE_TO and event.actor == self.agent else ""
 
     def is_claimed(self, claim: Claim) -> bool:
-        """What is said of where it is."""
+        """Return True for claims about the agent's position."""
         return claim.kind is ClaimKind.POSITION and claim.agent == self.agent
 
 
 def _stays(course: Course[Point]) -> Course[Point]:
-    """Return each place, or the one before from which it is no more than a shuffle."""
+    """Return a course in which a shuffle on the spot keeps the previous place."""
     stays: Course[Point] = []
     for tick, place in course:
         last = stays[-1][1] if stays else None
@@ -352,7 +355,7 @@ def _only(item: str | None, items: Items, *, complete: bool) -> Contents:
 
 
 def _contents_words(held: Contents | None, item: str | None) -> str:
-    """Return the value; empty where nothing is known."""
+    """Return contents in words; an empty text if nothing is known."""
     if held is None or not (held.items or held.complete):
         return ""
     if item is not None and not held.items:

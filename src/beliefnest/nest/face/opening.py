@@ -1,4 +1,4 @@
-"""How a nest is opened, in a new run or in one that was recorded."""
+"""Opening of nests, for new runs and for recorded ones."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,28 +27,28 @@ __all__ = ["BareSetting", "HasSetting", "as_scenario", "begun", "resumed"]
 
 
 class HasSetting(Protocol):
-    """Something a nest can open: a scenario with its condition chosen."""
+    """Protocol of what a nest can open: a scenario with one chosen condition."""
 
     @property
     def setting(self) -> Setting:
-        """What the nest starts from."""
+        """The setting from which the nest starts."""
 
     @property
     def text(self) -> str:
-        """The text of the scenario's file, for the record; empty if there is none."""
+        """The text of the scenario's file, to be recorded; empty if there is none."""
 
     @property
     def templates(self) -> Mapping[str, str]:
-        """Texts of the prompt templates that the file names, for the record."""
+        """The texts of the prompt templates that the file names, to be recorded."""
 
     @property
     def condition(self) -> int | None:
-        """Number of the chosen condition; None if there is none."""
+        """The number of the chosen condition; None if there are no conditions."""
 
 
 @dataclass(frozen=True, slots=True)
 class BareSetting:
-    """A setting without a scenario file; attributes as those of `HasSetting`."""
+    """Setting without a scenario file. The attributes are those of `HasSetting`."""
 
     setting: Setting
     text: str = ""
@@ -57,16 +57,16 @@ class BareSetting:
 
 
 def as_scenario(given: HasSetting | Setting) -> HasSetting:
-    """What a nest can open.
+    """Return a scenario or setting in the form that a nest can open.
 
     Raises:
-        InputError: It is a name, or something else.
+        InputError: `given` is a name or something else.
     """
     if isinstance(given, Setting):
         return BareSetting(given)
     if not hasattr(given, "setting"):
         raise InputError(
-            f"{given!r} is no scenario; give a loaded one: bn.Scenario.load({given!r})"
+            f"{given!r} is not a scenario; give a loaded one, bn.Scenario.load({given!r})"
         )
     return given
 
@@ -80,21 +80,28 @@ def begun(
     claims_from: ClaimsFrom | None = None,
     renderer: Renderer | None = None,
 ) -> Engine:
-    """Begin a run in a world of that name, in a file or in memory.
+    """Begin a run in a world, recorded in a file or in memory.
 
-    Arguments as those of `Nest.open`.
+    Args:
+        scenario: The scenario.
+        world: The world.
+        name: Name of the world, to be recorded.
+        seed: As for `Nest.open`.
+        store: As for `Nest.open`.
+        claims_from: As for `Nest.open`.
+        renderer: As for `Nest.open`.
 
     Raises:
         StoreError: The file exists already, or cannot be written.
         BodyError: The world could not be started.
-        InputError: People are to be in it, and cannot join this world.
+        InputError: The scenario has people, and they cannot join this world.
     """
     setting = scenario.setting
     _invite(setting, world)
     journal: RunJournal = MemoryJournal() if store is None else SqliteJournal.create_file(store)
     try:
         with journal.together():
-            # Nobody makes a nest again that was in memory.
+            # A run in memory is never resumed.
             start = b"" if store is None else encode_start(setting, name)
             journal.records.set_run(_record(scenario, world, seed, start))
             recording = Recording(setting, journal, seed, renderer, name)
@@ -123,10 +130,11 @@ def resumed(
     worlds: Worlds | None,
     claims_from: ClaimsFrom | None = None,
 ) -> Engine:
-    """Go on with a recorded run; the world is started when it is first needed.
+    """Continue a recorded run. The world starts when it is first needed.
 
     Raises:
-        StoreError: There is no such run, it cannot be read or written, or has another writer.
+        StoreError: There is no such run, it cannot be read or written, or another process writes to
+            it.
     """
     journal = SqliteJournal.open(store)
     try:
@@ -134,7 +142,7 @@ def resumed(
         if worlds is not None:
             world = worlds.lend(name)
         elif is_hosted(name) or (is_server(name) and recording.setting.people):
-            # People may join before anything else needs it.
+            # People may join before anything else needs the world.
             world = open_world(name, recording.seed, limits)
         else:
             world = LazyWorld(name, recording.seed, limits)
@@ -147,14 +155,14 @@ def resumed(
 
 
 def _invite(setting: Setting, world: World) -> None:
-    """Let the people of a setting join, or refuse a world that they cannot."""
+    """Let the people of a setting join. Raise InputError if they cannot join this world."""
     host = joined_of(world)
     if host is not None:
         host.invite(setting.people)
     elif setting.people:
         raise InputError(
-            f"{' and '.join(sorted(setting.people))} in {setting.name!r} is of type human, and "
-            "people cannot join this world; open it with "
-            "Nest.open(..., realtime=True, listen=25565), run it with --realtime --listen 25565, "
-            "or play on a server: minecraft://HOST:PORT"
+            f"scenario {setting.name!r} has agents of type human "
+            f"({', '.join(sorted(setting.people))}), and people cannot join this world; open it "
+            "with Nest.open(..., realtime=True, listen=25565), run it with --realtime --listen "
+            "25565, or play on a server, minecraft://HOST:PORT"
         )

@@ -1,4 +1,4 @@
-"""What simulators held of a matter, tick by tick, for a plot."""
+"""Plots of what simulators believed about a matter over time."""
 
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
@@ -38,12 +38,12 @@ def matter_of(
     agent: str | None,
     block: Position | None,
 ) -> Matter[Any]:
-    """What a plot is to follow; arguments and errors are those of `plot_beliefs`."""
+    """Return the matter that a plot follows; arguments and errors are those of `plot_beliefs`."""
     given = [each for each in (container, agent, block) if each is not None]
     if len(given) > 1 or not (given or item) or (block and item):
         raise InputError(
-            "a plot follows a container, an item, an agent or a block; give one of them, or with "
-            "an item a container that it is in or an agent that has it"
+            "a plot follows one thing: give one of container, item, agent and block, or an item "
+            "together with its container or with the agent that has it"
         )
     context = recording.context
     if item is not None:
@@ -65,14 +65,20 @@ def matter_of(
 def plot_of(
     recording: Recording, matter: Matter[Any], paths: Sequence[str], until: int | None
 ) -> Figure:
-    """Return the plot of what simulators held of a matter, up to a tick of the real world.
+    """Return the plot of a matter in some simulators, up to a tick of the real world.
+
+    Args:
+        recording: Recording of the nest.
+        matter: The matter to follow.
+        paths: Belief paths of the simulators.
+        until: Last tick; None: the latest one.
 
     Raises:
-        InputError: There is no path, or the matter is a container that never was there.
+        InputError: There is no path, or there never was such a container.
         PathError: A path is malformed or names an unknown agent.
     """
     if not paths:
-        raise InputError("a plot of no simulator is empty; give belief paths")
+        raise InputError("a plot needs at least one simulator; give belief paths")
     names = [parse_path(path, recording.agents) for path in paths]
     real = _course(recording, (), matter)
     courses = {path: _course(recording, path, matter) for path in names}
@@ -93,28 +99,28 @@ def plot_of(
 
 
 def _check_held(recording: Recording, container: Position, courses: Sequence[Course[Any]]) -> None:
-    """That a container ever was at a place, in reality or in one of the beliefs."""
+    """Raise InputError unless a container was ever at a position, in any of the courses."""
     if any(value is not None for course in courses for _, value in course):
         return
     known = ", ".join(map(str, sorted(recording.reading(()).containers)))
     raise InputError(
-        f"there is no container at {container}; containers are at {known or 'no place'}"
+        f"there never was a container at {container}; containers are at {known or 'no position'}"
     )
 
 
 def _names(recording: Recording) -> Mapping[Position, str]:
-    """What people call places, and containers where they have no other name."""
+    """Return the names of places and containers, by position. The name of a place comes first."""
     places = recording.setting.places
     return {**_stores(recording), **{place: name for name, place in places.items()}}
 
 
 def _stores(recording: Recording) -> Mapping[Position, str]:
-    """What people call containers."""
+    """Return the names of containers, by position."""
     return {place: f"the {label}" for place, label in recording.setting.labels.items()}
 
 
 def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
-    """Who claimed what of it in the real world, and whether that was false, or a lie."""
+    """Return the claims about a matter in the real world: speaker, text, and if false or a lie."""
     names = _names(recording)
     found = []
     for made in claims_made(recording, (), end):
@@ -129,7 +135,10 @@ def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
 def _heard(
     recording: Recording, matter: Matter[V], path: BeliefPath, end: int
 ) -> tuple[NotedClaim, ...]:
-    """The claims about it that were heard by somebody else than their speaker in a simulator."""
+    """Return the claims about a matter that a simulator heard.
+
+    Claims that its owner made in reality are left out: they change nothing (rule 8.4).
+    """
     own, text = recording.controller(path).path, path_text(path)
     if not path or own == path or recording.setting.perception.testimony == "none":
         return ()
@@ -141,12 +150,12 @@ def _heard(
 
 
 def _course(recording: Recording, path: BeliefPath, matter: Matter[V]) -> Course[V]:
-    """The changes of what a simulator held, on its timeline and what that was forked from."""
+    """Return the course of a simulator's values, on its timeline and those it was forked from."""
     course: Course[V] = []
     for stretch in recording.stretches(recording.moment(path)):
         for tick, held in _held(recording, path, stretch):
             value = matter.value(held)
-            # What holds at the end of a tick counts.
+            # Only the value at the end of a tick counts.
             while course and course[-1][0] == tick:
                 course.pop()
             if not course or course[-1][1] != value:
@@ -167,7 +176,7 @@ def _held(
 
 
 def _bands(matter: Matter[V], course: Course[V], real: Course[V], end: int) -> tuple[Band, ...]:
-    """Bands that end wherever the value, or whether it is false, changes."""
+    """Return the bands of a course. A new one begins where the value or its truth changes."""
     starts = sorted({tick for tick, _ in (*course, *real) if course[0][0] <= tick < end})
     starts = starts or [min(course[0][0], end)]
     texts = matter.words(course)
@@ -184,18 +193,18 @@ def _bands(matter: Matter[V], course: Course[V], real: Course[V], end: int) -> t
 
 
 def _number(course: Course[V], tick: int) -> int:
-    """Which value of a course held at a tick; the first one before its start."""
+    """Return the index of a course's value at a tick; that of the first value before its start."""
     return max(0, bisect_right([start for start, _ in course], tick) - 1)
 
 
 def _acts(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
-    """Who did what that mattered in the real world."""
+    """Return the acts on a matter in the real world."""
     found: dict[tuple[int, str | None], str] = {}
     for event in recording.reading(()).events():
         deed = matter.act(event)
         if not deed or event.tick > end:
             continue
-        # Whoever puts in or takes out looks in as well.
+        # An agent that moves items also opens the container: list only the move.
         key = (event.tick, event.actor)
         if event.kind is not EventKind.OPEN_CONTAINER or key not in found:
             found[key] = deed

@@ -1,4 +1,4 @@
-"""What viewers read of a nest beside states: timelines, nodes over time, reasons, looks."""
+"""Reader of a nest for viewers: timelines, nodes over time, past simulators and looks."""
 
 from collections.abc import Sequence
 
@@ -16,13 +16,13 @@ __all__ = ["Reader"]
 
 
 class Reader:
-    """Reads one nest, live or recorded, on any of its timelines; it changes nothing.
+    """Reader of one nest, live or recorded, on any of its timelines. It changes nothing.
 
     Attributes:
-        history: From the journal to any node.
-        setting: What the nest started from.
+        history: History that computes nodes from the journal.
+        setting: Setting from which the nest started.
         agents: Names of all agents, sorted.
-        seed: Drives every random number.
+        seed: Seed of every random number.
     """
 
     def __init__(self, recording: Recording) -> None:
@@ -38,7 +38,7 @@ class Reader:
             return tuple(self._recording.journal.timelines())
 
     def selected(self) -> set[TimelineKey]:
-        """Return the timelines that simulators in control mode are on."""
+        """Return the timelines that are selected for simulators in control mode."""
         with self._recording.turn:
             return set(self._recording.selected.values())
 
@@ -48,7 +48,7 @@ class Reader:
             return tuple(self._recording.records.programs())
 
     def prompts(self) -> Sequence[PromptRecord]:
-        """Return all requests to models with what came of them, in order."""
+        """Return all requests to models with their outcomes, in order."""
         with self._recording.turn:
             return tuple(self._recording.records.prompts())
 
@@ -58,17 +58,17 @@ class Reader:
             return tuple(self._recording.journal.entries(key, start, stop))
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
-        """How many entries of a timeline lie at a tick or before."""
+        """Return the number of entries of a timeline up to a tick, this tick included."""
         with self._recording.turn:
             return self._recording.journal.entries_until(key, tick)
 
     def walk(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
-        """Return a forest with nodes of a timeline, at its beginning; `advance` takes it on."""
+        """Return a forest with nodes at a timeline's beginning. `advance` folds entries into it."""
         with self._recording.turn:
             return self.history.walk(key, paths)
 
     def advance(self, key: TimelineKey, forest: Forest, position: int) -> None:
-        """Take a forest of `walk` on to a number of entries of its timeline."""
+        """Fold entries into a forest of `walk` until it has folded `position` of them."""
         with self._recording.turn:
             self.history.advance(key, forest, position)
 
@@ -79,7 +79,10 @@ class Reader:
     def look(
         self, key: TimelineKey, path: BeliefPath, tick: int, viewer: str, target: str | Position
     ) -> Sighting | None:
-        """The look of an agent at another or at a block, in a simulator; None: it is nowhere."""
+        """Return the look of an agent at another or at a block in a simulator.
+
+        None: the position of the viewer is unknown there.
+        """
         with self._recording.turn:
             reading = self._recording.on(key).reading(path, tick)
             if reading.agents[viewer].position is None:

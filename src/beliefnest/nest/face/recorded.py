@@ -1,4 +1,4 @@
-"""A recorded run, read-only: any simulator of it, on any branch, at any tick."""
+"""Recorded run, read-only: any simulator, on any branch, at any tick."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,15 +17,15 @@ __all__ = ["RecordedNest"]
 
 
 class RecordedNest(NestBase):
-    """Simulators of a run as they were; nothing in it can act.
+    """Read-only nest of a recorded run.
 
     A belief path that is malformed, or names an unknown agent, raises PathError.
 
     Args:
-        journal: The run file; whoever closes it or the nest closes both.
+        journal: The run file. Closing the nest closes it too.
 
     Raises:
-        StoreError: It cannot be read.
+        StoreError: The file cannot be read.
     """
 
     def __init__(self, journal: SqliteJournal) -> None:
@@ -33,9 +33,9 @@ class RecordedNest(NestBase):
 
     @classmethod
     def read(cls, store: str | Path) -> Self:
-        """Return a run file as it was left, or as another process writes it, on its branches.
+        """Return the nest of a run file, on the branches that were selected last.
 
-        Close it, or use it in a `with` block.
+        Another process may still write the file. Close the nest, or use it in a `with` block.
 
         Raises:
             StoreError: There is no such run, or it cannot be read.
@@ -56,7 +56,7 @@ class RecordedNest(NestBase):
         return self.simulator(path)
 
     def select(self, path: str, branch: str) -> None:
-        """Read a simulator, and those below it, on one of its branches.
+        """Select the branch on which a simulator, and those below it, are read.
 
         Raises:
             BranchError: The simulator has no such branch.
@@ -70,37 +70,37 @@ class RecordedNest(NestBase):
         self._recording.selected[names] = key
 
     def branch(self, path: str) -> str:
-        """Return the name of the branch that a simulator is read on; `follow` in follow mode."""
+        """Return the branch on which a simulator is read; `follow` in follow mode."""
         key = self._recording.selected.get(parse_path(path, self.agents))
         return FOLLOW if key is None else key.branch
 
     def head(self, path: str) -> int:
-        """Return the latest tick of the timeline that a simulator is on."""
+        """Return the latest tick of a simulator's timeline."""
         return self._recording.info(parse_path(path, self.agents)).head
 
     def ticks(self, path: str) -> tuple[int, ...]:
-        """Return the ticks at which anything happened on the timeline that a simulator is on.
+        """Return the first tick of a simulator's timeline, and all ticks with an entry.
 
-        Those before a fork belong to another timeline; the first one is the fork's.
+        Ticks before a fork belong to another timeline.
         """
         info = self._recording.info(parse_path(path, self.agents))
         entries = self._recording.journal.entries(info.key, 0, info.entries)
         return (info.start, *(entry.tick for entry in entries))
 
     def over_time(self, path: str) -> Iterator[Moment]:
-        """A simulator at every tick with a change, on every timeline that it has or can follow."""
+        """Yield a simulator at every tick with a change, on each timeline it has or can follow."""
         return over_time(self._recording, parse_path(path, self.agents))
 
     def branches(self) -> tuple[TimelineKey, ...]:
-        """Return all timelines there are, in order of creation."""
+        """Return all timelines, in order of creation."""
         return tuple(info.key for info in self._recording.journal.timelines())
 
     def at(self, tick: int) -> Past:
         """Return all simulators at a tick.
 
         Raises:
-            TickError: The tick is no whole number; or, when a state is read, it is in the future of
-                that simulator's timeline or before the start.
+            TickError: The tick is not a whole number. When a state is read: the tick is in the
+                future of that simulator's timeline, or before the start.
         """
         return Past(self._recording, tick_of(tick))
 

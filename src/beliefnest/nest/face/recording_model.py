@@ -1,4 +1,4 @@
-"""A recording model: asks another one, and notes in the run what was asked and answered."""
+"""Recording model: asks another model and records requests and answers in the run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -16,16 +16,16 @@ __all__ = ["RecordingModel"]
 
 
 class RecordingModel:
-    """A model asked from one simulator, for one conversation.
+    """Model for one conversation, asked from one simulator.
 
-    Each request is noted with its answer, or with the model's error, once it has come.
+    Each request is recorded with its answer, or with the model's error, as soon as it is there.
 
     Args:
         model: The model to ask.
-        recording: Where it is noted.
-        path: The simulator it is asked from.
-        detail: Further facts to note.
-        tick: When it is asked; None: at the simulator's latest tick.
+        recording: Recording of the nest.
+        path: Path of the simulator from which it is asked.
+        detail: Further facts to record.
+        tick: Tick of the requests; None: the simulator's latest tick.
     """
 
     def __init__(
@@ -45,17 +45,17 @@ class RecordingModel:
 
     @property
     def name(self) -> str:
-        """Name of the model that is asked."""
+        """The name of the model that is asked."""
         return self._model.name
 
     def answer(self, messages: "Sequence[Message]", sampling: "Sampling") -> "Answer":
-        """Ask and note.
+        """Ask the model, and record the request with its answer or error.
 
         Raises:
             ModelError: The model failed.
             StoreError: The run file cannot be written.
         """
-        # Others may use the nest while the model thinks.
+        # Other threads may use the nest while the model computes its answer.
         with self._recording.turn:
             info = self._recording.info(self._path)
         self._asked += 1

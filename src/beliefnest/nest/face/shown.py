@@ -1,4 +1,4 @@
-"""What simulators and nests show of themselves, now or in the past; nothing here acts."""
+"""Read-only methods of simulators and nests, for the present and the past. Nothing here acts."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -34,7 +34,7 @@ __all__ = ["Past", "PastSimulator", "ShownNest", "ShownSimulator"]
 
 
 class ShownSimulator(ABC):
-    """What a simulator shows of itself, at one tick or at the latest of its timeline."""
+    """Read-only methods of a simulator at one tick, or at the latest tick of its timeline."""
 
     _tick: int | None = None
 
@@ -44,7 +44,7 @@ class ShownSimulator(ABC):
 
     @property
     def path(self) -> str:
-        """The normalised belief path, as text."""
+        """The normalised belief path as text."""
         return path_text(self._path)
 
     @property
@@ -54,26 +54,26 @@ class ShownSimulator(ABC):
 
     @property
     def labels(self) -> Mapping[Position, str]:
-        """What containers are called and look as if they held, where prompts may say so."""
+        """The labels of containers for prompts, by position: their names and outward looks."""
         return self._recording.setting.prompt_labels
 
     @property
     def tick(self) -> int:
-        """The tick it shows; in the present the latest of the timeline it is on."""
+        """The tick that it shows; for the present, the latest tick of its timeline."""
         return self._recording.info(self._path).head if self._tick is None else self._tick
 
     @property
     @in_turn
     def state(self) -> State:
-        """What the simulator holds, read-only."""
+        """The state of the simulator, read-only."""
         return self._recording.state(self._path, self._tick)
 
     def render(self, template: Template | Path | str, **variables: object) -> str:
-        """The text of a prompt template, filled from this simulator.
+        """Return the text of a prompt template, filled from this simulator.
 
         Args:
             template: A Jinja2 template: its text, or the path of its file.
-            variables: Further variables of the template, as `task`.
+            variables: Further variables of the template, for example `task`.
 
         Raises:
             TemplateError: The template is wrong; the message names its line.
@@ -89,15 +89,15 @@ class ShownSimulator(ABC):
         agent: str | None = None,
         block: Position | None = None,
     ) -> Explanation:
-        """The chain of perceptions behind what it holds of one thing; `str()` puts it in words.
+        """Return the chain of perceptions behind a belief; `str()` puts it into words.
 
         Args:
-            container: Position of a container, whose contents are explained.
-            agent: Name of an agent, whose place is explained.
-            block: Position of a block.
+            container: Position of a container, to explain its contents.
+            agent: Name of an agent, to explain its position.
+            block: Position of a block, to explain the block.
 
         Raises:
-            InputError: None of the three was given, or several were.
+            InputError: None or several of the three were given.
             PathError: There is no such agent.
             PositionError: The position is outside the box.
         """
@@ -114,20 +114,20 @@ class ShownSimulator(ABC):
         ended: bool = False,
         smooth: bool = False,
     ) -> "Inference":
-        """Infer what an agent wants and believes from what this simulator holds of its course.
+        """Infer what an agent wants and believes from the course that this simulator knows of it.
 
         Args:
             model: The hypotheses.
-            since: The tick from which on evidence counts; its percept is the first.
-            until: The last tick; None: the tick that the simulator shows.
-            ended: Whether the agent acted, after the last tick, on the goal at its place.
+            since: First tick of the evidence.
+            until: Last tick of the evidence; None: the tick that the simulator shows.
+            ended: Whether the agent acted, after the last tick, on the goal at its position.
             smooth: Whether marginals of `cell` and `credence_now` use later evidence too.
 
         Raises:
             InputError: The model does not fit: no goal can be reached in any alternative, no
                 alternative agrees with what the simulator holds, or the agent was never seen.
             PathError: There is no such agent.
-            TickError: A tick lies in the future or before the start.
+            TickError: A tick is in the future or before the start.
         """
         from beliefnest.nest.inferring.asking import infer_in
 
@@ -150,17 +150,17 @@ class ShownSimulator(ABC):
         """Return the credence that this simulator attributes to an agent, from its percepts alone.
 
         Args:
-            agent: The agent.
+            agent: Name of the agent.
             doubt: Alternatives by name, as for `MindModel`.
             initial: Probabilities of the alternatives just before the percept at `since`; None:
-                the uniform ones.
-            tick: When; None: the tick that the simulator shows.
-            since: The tick whose percept is the first to count.
-            actual: What is the case, as for `MindModel`.
+                uniform.
+            tick: Tick of the credence; None: the tick that the simulator shows.
+            since: Tick of the first percept that counts.
+            actual: The actual alternative, as for `MindModel`.
             lapse: As for `MindModel`.
 
         Returns:
-            Probability by name of the alternative.
+            Probabilities by name of the alternative.
 
         Raises:
             InputError, PathError, TickError: As for `infer`.
@@ -178,30 +178,29 @@ class ShownSimulator(ABC):
     @property
     @in_turn
     def placed(self) -> Placements:
-        """List what its body had to place otherwise than believed.
+        """The differences between the belief and its body.
 
-        A belief may be impossible: somebody in a doorway that is now believed shut, two in one
-        place, a diamond in a block that is unknown or no container. The belief is left as it is.
-        Its body begins with agents at the nearest place where they can stand, and has a chest
-        wherever contents are believed that the block cannot hold. Empty in follow mode and where
-        nothing had to be changed.
+        A belief may be physically impossible: an agent in a doorway whose door is now believed
+        shut, two agents in one place, a diamond in a block that is unknown or no container. The
+        belief stays as it is. In its body agents begin at the nearest place where they can stand,
+        and a chest stands wherever contents are believed that the block cannot hold.
 
-        Returns:
-            Agent to (from where, to where), feet in blocks, as of when the body began; and
-            position to (the believed block or None, "chest"), as of now.
+        By agent name: (believed place, first place in the body), feet in blocks, as the body began.
+        By position of a chest: (believed block or None, "chest"), as of now. Empty in follow mode,
+        and where nothing had to be changed.
         """
         return placed_in(self._recording, self._path, self._tick)
 
     @abstractmethod
     def child(self, agent: str) -> Self:
-        """The simulator of what `agent` believes in this one."""
+        """Return the simulator of the belief that `agent` has in this one."""
 
     @in_turn
     def visible_blocks(self, agent: str) -> npt.NDArray[np.bool_]:
-        """Which blocks an agent sees from its pose in this simulator.
+        """Return a mask of the blocks that an agent sees from its pose in this simulator.
 
         Returns:
-            bool, shape of the box; all false where the agent's pose is unknown.
+            bool, shape of the box; all False if the agent's pose is unknown.
 
         Raises:
             PathError: There is no such agent.
@@ -218,7 +217,7 @@ class ShownSimulator(ABC):
         inference: "Inference | None" = None,
         steps: int = 5,
     ) -> "Figure":
-        """The simulator, drawn from what it holds itself; as `Nest.figure`."""
+        """Return a drawing of the simulator's state; see `Nest.figure`."""
         with self._recording.turn:
             scenes = _scenes(self._recording, [self], against, sight, height)
             return _figure(scenes, inference, steps, self._tick)
@@ -232,7 +231,7 @@ class ShownSimulator(ABC):
                 wrong = [_named(each, recording) for each in self._otherwise(())]
                 words = state_words(state)
         except BeliefNestError as error:
-            # As for a nest.
+            # As in `ShownNest.__repr__`.
             return f"<simulator {self.path}: {error}>"
         mode = "follow mode" if key is None else f"branch {key.branch}"
         false = f"; false: {', '.join(wrong)}" if wrong else ""
@@ -242,18 +241,22 @@ class ShownSimulator(ABC):
         return self.figure()._repr_html_()
 
     def scene(self, against: BeliefPath, sight: Sequence[str] | None, height: int) -> "Scene":
-        """What `figure` draws of it."""
+        """Return the scene that `figure` draws."""
         from beliefnest.nest.face.drawing import scene_of
 
         path, state = self._path, self.state
-        # Who is not perceived at this tick is drawn at a remembered place: what it sees is unknown.
+        # An agent that is not perceived now is drawn at a remembered place. What it sees now is
+        # unknown, so its sight is not drawn.
         own = [name for name in path[-1:] if state.agents[name].current]
         seen = {name: self.visible_blocks(name) for name in (own if sight is None else sight)}
         otherwise = self._otherwise(against)
         return scene_of(self._recording, path, state, otherwise, against, seen, height)
 
     def _otherwise(self, against: BeliefPath) -> Sequence[Difference]:
-        """What it holds (`b`) otherwise than another (`a`), at its tick or that one's latest."""
+        """Return the false beliefs of this simulator (`b`) against another (`a`).
+
+        The other one is read at this tick, or at its latest one if that is earlier.
+        """
         recording, path, tick = self._recording, self._path, self._tick
         if path == against:
             return []
@@ -263,24 +266,24 @@ class ShownSimulator(ABC):
     def _child_path(self, agent: str) -> BeliefPath:
         agents = self._recording.agents
         if agent not in agents:
-            raise PathError(f"no agent {agent!r}; there are {', '.join(agents)}")
+            raise PathError(f"there is no agent {agent!r}; the agents are {', '.join(agents)}")
         return normalised((*self._path, agent))
 
 
 class PastSimulator(ShownSimulator):
-    """A simulator as it was at a past tick, or is now (None); read-only."""
+    """Read-only simulator at a past tick, or at its latest tick (None)."""
 
     def __init__(self, recording: Recording, path: BeliefPath, tick: int | None) -> None:
         super().__init__(recording, path)
         self._tick = tick
 
     def child(self, agent: str) -> "PastSimulator":
-        """The simulator of what `agent` believed in this one."""
+        """Return the simulator of the belief that `agent` had in this one."""
         return PastSimulator(self._recording, self._child_path(agent), self._tick)
 
 
 class ShownNest:
-    """What a nest shows: live, recorded, or as it was at a past tick.
+    """Read-only methods of a nest: live, recorded, or at a past tick.
 
     A belief path that is malformed, or names an unknown agent, raises PathError.
     """
@@ -299,18 +302,18 @@ class ShownNest:
         inference: "Inference | None" = None,
         steps: int = 5,
     ) -> "Figure":
-        """Simulators side by side, each drawn from what it holds itself.
+        """Return a drawing of simulators side by side, each from its own state.
 
         Args:
-            paths: Belief paths; one can stand alone.
-            tick: When; None: the latest tick.
-            against: The path that they are compared with, to mark what is false; None: reality.
-            sight: Agents whose sight is shown in each; None: that of the belief's owner.
-            height: The storey, y of what stands on its floor; None: that of most containers, or
-                of most agents.
-            inference: A posterior, drawn as bars beside the plans, at the tick of the figure; the
-                cells of the plans are tinted by the probability that the agent will be there.
-            steps: After how many actions it will be there.
+            paths: Belief paths, or a single one.
+            tick: Tick to draw; None: the latest.
+            against: Path with which they are compared, to mark false beliefs; None: the real world.
+            sight: Agents whose sight is shown in each drawing; None: the belief's owner.
+            height: Storey to draw, as the y of blocks on its floor; None: the storey of most
+                containers, or of most agents.
+            inference: Posterior to draw as bars beside the plans, at the tick of the figure. Cells
+                of the plans are tinted by the probability that the agent will be there.
+            steps: Number of actions after which it will be there.
 
         Raises:
             TickError: The tick is in the future or before the start, of the nest or the inference.
@@ -328,7 +331,7 @@ class ShownNest:
         sight: Sequence[str] | None = None,
         height: int | None = None,
     ) -> "tuple[Scene, ...]":
-        """What `figure` draws, as values; arguments and errors are the same."""
+        """Return the scenes that `figure` draws, as values, with the same arguments and errors."""
         wanted = [paths] if isinstance(paths, str) else list(paths)
         then = self._tick if tick is None else tick
         recording = self._recording
@@ -347,26 +350,27 @@ class ShownNest:
         agent: str | None = None,
         block: Position | None = None,
     ) -> "Figure":
-        """What simulators held of a thing over time: a row for each, a band for each value.
+        """Return a plot of beliefs over time: a row for each simulator, a band for each value.
 
-        Bands are marked where they are false; above stand the deeds of the real world that
-        mattered, and what was claimed of it. Claims that were heard have a balloon above each
-        row, struck out where they were not believed. Followed are a container's contents, an
-        item wherever it is, a block, an agent's place, or with `agent` and `item`, how much of
-        it the agent has with it.
+        False bands are marked. Above the rows stand the acts in the real world that concern the
+        thing, and the claims about it. Above each row a balloon stands for each claim that was
+        heard, struck out if it was not believed. The plot follows the contents of a container, an
+        item wherever it is, a block, the position of an agent, or with `agent` and `item` the
+        number of items that the agent has.
 
         Args:
-            container: Where the container is.
-            item: The item to follow, alone in all containers and with all agents; None: all that
-                is in the container, or the agent's place.
-            paths: Belief paths.
-            agent: The agent to follow, in place of a container.
-            block: Where the block is that is followed, in place of a container.
+            container: Position of the container to follow.
+            item: The item to follow. Without a container or agent it is followed in all containers
+                and with all agents. None: all contents of the container, or the agent's position.
+            paths: Belief paths of the simulators.
+            agent: Name of the agent to follow.
+            block: Position of the block to follow.
 
         Raises:
             PathError: There is no such agent.
             PositionError: The container or block lies outside the box.
-            InputError: There is no path, not one thing to follow, or never was a container there.
+            InputError: There is no path, there is not exactly one thing to follow, or there never
+                was a container at the position.
             UnknownNameError: There is no such item.
         """
         from beliefnest.nest.face.plotting import matter_of, plot_of
@@ -376,15 +380,15 @@ class ShownNest:
 
     @in_turn
     def compare(self, a: str, b: str, *, unknown: bool = True) -> list[Difference]:
-        """Where two simulators differ: blocks, containers, agents' poses, inventories.
+        """Return the differences between two simulators: blocks, containers, poses, inventories.
 
         Args:
-            a: Belief path of one.
+            a: Belief path of one simulator.
             b: Belief path of the other.
-            unknown: Whether to list what one of them does not know or have.
+            unknown: Whether to list elements that one of them does not know or have.
 
         Raises:
-            TickError: The tick that is looked at is in the future or before the start.
+            TickError: The tick of this view is in the future or before the start.
         """
         recording = self._recording
         one, other = parse_path(a, recording.agents), parse_path(b, recording.agents)
@@ -392,26 +396,26 @@ class ShownNest:
 
     @in_turn
     def false_beliefs(self, path: str) -> list[Difference]:
-        """What a simulator holds otherwise than reality (`a`) does; unknown is not false.
+        """Return the false beliefs of a simulator; the real world is `a`. Unknown is not false.
 
-        Contents are false if they claim items that are not in them, or claim to be complete
-        and miss some; an agent's place from half a block on, wherever its head has turned to.
+        Contents are false if they have items that are not there, or if they count as complete and
+        lack some. The position of an agent is false from half a block on. Angles do not count.
 
         Raises:
-            TickError: The tick that is looked at is in the future or before the start.
+            TickError: The tick of this view is in the future or before the start.
         """
         names = parse_path(path, self._recording.agents)
         return false_beliefs(self._recording, names, self._tick)
 
     @in_turn
     def claims(self, path: str = "/") -> list[MadeClaim]:
-        """Every claim that was made in a simulator, oldest first.
+        """Return all claims that were made in a simulator, oldest first.
 
-        Each has its tick, text, speaker and hearers, whether it was false and whether a lie, and
-        for any belief whether that took it up, and why.
+        Each claim has its tick, text, speaker and hearers. It says if it was false, if it was a
+        lie, and for any belief if that took it up and why.
 
         Args:
-            path: The simulator; a claim made in one in control mode is made in its own world.
+            path: Belief path. A simulator in control mode has claims of its own world.
         """
         names = parse_path(path, self._recording.agents)
         return claims_made(self._recording, names, self._tick)
@@ -424,7 +428,7 @@ class ShownNest:
                 branches = len(recording.journal.timelines())
                 words = state_words(state)
         except BeliefNestError as error:
-            # Whoever prints a closed nest, or a tick that does not exist, wants no further fault.
+            # Printing a closed nest, or a tick that does not exist, must not raise.
             return f"<nest of {recording.setting.name}: {error}>"
         shown = f"<nest of {recording.setting.name} at tick {state.tick}"
         return f"{shown}, {branches} timeline{'s' * (branches > 1)}: {words}>"
@@ -434,14 +438,14 @@ class ShownNest:
 
 
 class Past(ShownNest):
-    """All simulators at one past tick."""
+    """Read-only nest at one past tick."""
 
     def __init__(self, recording: Recording, tick: int) -> None:
         self._recording = recording
         self._tick = tick
 
     def __getitem__(self, path: str) -> PastSimulator:
-        """The simulator of a belief path as it was."""
+        """Return the simulator of a belief path as it was."""
         return PastSimulator(self._recording, parse_path(path, self._recording.agents), self._tick)
 
 
@@ -473,20 +477,22 @@ def _scenes(
     from beliefnest.pictures.scene import best_height
 
     if not shown:
-        raise InputError("a figure of no simulator is empty; give a belief path")
+        raise InputError("a figure needs at least one simulator; give a belief path")
     other = parse_path("/" if against is None else against, recording.agents)
     for name in sight or ():
         parse_path(path_text((name,)), recording.agents)
     low, high = recording.box.low[1], recording.box.high[1]
     if height is not None and not low <= height <= high:
-        raise InputError(f"height {height} lies outside the box; give {low} to {high}")
-    # One storey for all of them, so that they can be compared.
+        raise InputError(
+            f"height {height} lies outside the box; give a height from {low} to {high}"
+        )
+    # Draw the same storey of all simulators, so that they can be compared.
     level = best_height([each.state for each in shown]) if height is None else height
     return tuple(each.scene(other, sight, level) for each in shown)
 
 
 def _named(wrong: Difference, recording: Recording) -> str:
-    """What is false, by the name that people have for it."""
+    """Return the element of a false belief in words, with the name that people have for it."""
     if isinstance(wrong.where, str):
         is_owned = wrong.kind == "inventory"
         return f"what {wrong.where} has" if is_owned else f"where {wrong.where} is"

@@ -1,4 +1,4 @@
-"""Checks of ticks that callers give."""
+"""Checks of ticks given by callers."""
 
 from operator import index
 from typing import SupportsIndex
@@ -9,8 +9,8 @@ __all__ = ["tick_of", "whole"]
 
 
 def whole(value: object) -> int | None:
-    """Return a whole number of any kind, NumPy's too, as an int; None if the value is none."""
-    # The exact type first: a check against a protocol takes 15 microseconds.
+    """Return a whole number of any type, also of NumPy, as an int; None for any other value."""
+    # Test the exact type first: a check against a protocol takes 15 microseconds.
     if type(value) is int:
         return value
     if isinstance(value, bool) or not isinstance(value, SupportsIndex):
@@ -19,12 +19,12 @@ def whole(value: object) -> int | None:
 
 
 def tick_of(value: object) -> int:
-    """Return the tick that a caller names.
+    """Return the tick given by a caller.
 
     Raises:
-        TickError: It is no whole number.
+        TickError: The value is not a whole number.
     """
     tick = whole(value)
     if tick is None:
-        raise TickError(f"{value!r} is no tick; give a whole number")
+        raise TickError(f"{value!r} is not a tick; give a whole number")
     return tick

@@ -1,8 +1,8 @@
-"""The turn of a thread in a nest: one call at a time, whichever thread it comes from.
+"""Turns of threads in a nest: one call at a time, whichever thread it comes from.
 
-A nest's timelines, forests and bodies belong together, and Node does one thing at a time.
-Programs of different simulators can be asked for side by side, in threads: each runs in its
-turn, and since simulators do not disturb each other, the turns' order cannot be seen in them.
+A nest's timelines, forests and bodies change together, and Node.js does one thing at a time.
+Several threads may run programs of different simulators: each call runs in its turn. Simulators do
+not disturb each other, so the order of the turns does not change their results.
 """
 
 from collections.abc import Callable
@@ -24,7 +24,7 @@ R = TypeVar("R")
 
 
 def in_turn(method: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
-    """Let a method wait until no other thread is in the nest."""
+    """Make a method wait until no other thread uses the nest."""
 
     @wraps(method)
     def waiting(self: S, /, *args: P.args, **kwargs: P.kwargs) -> R:

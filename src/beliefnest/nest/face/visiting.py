@@ -1,4 +1,4 @@
-"""Where a nest's simulators stand in Minecraft, for people who visit them."""
+"""Places of a nest's simulators in Minecraft, for people who visit them."""
 
 from dataclasses import dataclass
 
@@ -14,16 +14,16 @@ __all__ = ["Layout", "Standing", "Visiting"]
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """Where one simulator stands.
+    """Place of one simulator in Minecraft.
 
     Attributes:
-        path: Its belief path; `/` is the real world.
-        low: The lowest corner of its box, in blocks of Minecraft.
-        high: The highest one.
-        origin: Where scenario (0, y, 0) lies: x and z, in blocks of Minecraft.
-        command: What to type in the game to go to it.
-        lag: Ticks by which what changed was shown later than it happened, at most so far;
-            those between two calls of the nest count.
+        path: Belief path; `/` is the real world.
+        low: Lowest corner of its box, in Minecraft's coordinates.
+        high: Highest corner of its box, in Minecraft's coordinates.
+        origin: Minecraft's x and z of the scenario position (0, y, 0).
+        command: Command to type in the game to go there.
+        lag: Greatest delay so far, in ticks, with which a change was shown. Ticks between two calls
+            of the nest count.
     """
 
     path: str
@@ -35,7 +35,7 @@ class Standing:
 
 
 class Layout(tuple[Standing, ...]):
-    """Where all simulators stand that do; as a text, one line for each."""
+    """Places of all simulators that stand in Minecraft; as a text, one line for each."""
 
     __slots__ = ()
 
@@ -48,21 +48,22 @@ class Layout(tuple[Standing, ...]):
 
 
 class Visiting(NestBase):
-    """What a nest offers those who visit beliefs; a part of `Nest`."""
+    """The part of `Nest` for people who visit beliefs."""
 
     _engine: Engine
 
     @in_turn
     def layout(self) -> Layout:
-        """Where the real world and all that `Simulator.embody` embodied stand in Minecraft.
+        """Return the places of the real world and of all embodied simulators in Minecraft.
 
         Raises:
-            InputError: The real world is not in real time, so that nobody can go to it.
+            InputError: The real world does not run in real time, so nobody can visit it.
         """
         plots = self._engine.embodying.plots()
         if not plots:
             raise InputError(
-                "nothing stands where people could go: this world's time does not go on by itself"
+                "nothing stands where people could go, because this world does not run in real "
+                "time; open the nest with realtime=True, listen=25565, or on a server"
             )
         lags = self._engine.embodying.lags()
         return Layout(

@@ -1,4 +1,4 @@
-"""Waiting for what happens in the real world, and hearing what is said in it."""
+"""Waiting for events of the real world, and callbacks for its utterances."""
 
 from collections.abc import Callable
 
@@ -15,29 +15,32 @@ _LONGEST_S = 24 * 60 * 60
 
 
 class Waiting(NestBase):
-    """What a nest offers those who wait; a part of `Nest`."""
+    """The part of `Nest` that waits and calls back."""
 
     _engine: Engine
 
     def wait(self, until: Callable[[], bool] | None = None, timeout_s: float = 60.0) -> bool:
         """Let time pass in the real world, tick by tick, and record what happens in it.
 
-        On a server time passes by itself: what has happened since the last call is recorded
-        first. In the embedded and the scripted world it passes as fast as it can.
+        On a server time passes by itself, so everything since the last call is recorded first. In
+        the embedded and the scripted world time passes as fast as it can.
 
         Args:
-            until: Asked after every tick whether it is enough; None: wait for the whole time.
-            timeout_s: Seconds of the world's time, of 20 ticks each, after which it is.
+            until: Function called after every tick; True ends the wait. None: wait for the whole
+                time.
+            timeout_s: Greatest time to wait, in seconds of the world's time (20 ticks each).
 
         Returns:
-            Whether `until` held; True if there is none.
+            True if `until` held, or if there is none.
 
         Raises:
             InputError: The time is below 0, or longer than a day.
-            BodyError: The Minecraft side failed, or the server does not go on.
+            BodyError: The Minecraft side failed, or the server has stopped.
         """
         if not 0 <= timeout_s <= _LONGEST_S:
-            raise InputError(f"timeout_s is {timeout_s!r}; give seconds, at most {_LONGEST_S}")
+            raise InputError(
+                f"timeout_s is {timeout_s!r}; give a number of seconds from 0 to {_LONGEST_S}"
+            )
         self._pass(0)
         last = self._head() + round(timeout_s * TICKS_PER_SECOND)
         while until is None or not until():
@@ -47,17 +50,17 @@ class Waiting(NestBase):
         return True
 
     def on_chat(self, callback: ChatListener) -> None:
-        """Let a function be called on what is said, or whispered, in the real world from now on.
+        """Call a function with each utterance and whisper in the real world from now on.
 
-        It is called with tick, speaker and text, in the thread and at the end of the call of the
-        nest that records it; in it the nest can be used.
+        Its arguments are tick, speaker and text. It is called in the thread, and at the end, of the
+        call of the nest that records the utterance. It may use the nest.
 
         Raises:
-            InputError: It is no function.
+            InputError: The callback is not a function.
         """
         if not callable(callback):
             raise InputError(
-                f"on_chat is given {callback!r}; give a function of tick, speaker, text"
+                f"on_chat() was given {callback!r}; give a function of tick, speaker and text"
             )
         self._engine.bodies.chat_listeners.append(callback)
 
