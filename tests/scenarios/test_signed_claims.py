@@ -65,7 +65,7 @@ def test_signs_are_read_in_every_world(tmp_path: Path, world: str) -> None:
         (("item: diamond,", ""), r":13: .*lacks 'item'"),
         (("place: [8, 1, 4]", "place: [80, 1, 4]"), r":13: .*outside the box"),
         (("kind: located", "kind: here"), r":13: .*here"),
-        (("    text: east\n", ""), r":12: .*nothing is written"),
+        (("    text: east\n", ""), r":12: .*is for signs with a text"),
     ],
 )
 def test_faults_of_claims_are_named_with_their_line(

@@ -1,4 +1,4 @@
-"""Policies: who decides what agents do."""
+"""Policies, which decide what agents do."""
 
 import os
 from collections.abc import Mapping
@@ -36,11 +36,11 @@ POLICIES = (
     "person",
     "person:wait",
 )
-"""The forms of names that `resolve_policy` takes."""
+"""Forms of the names that `resolve_policy` accepts."""
 
 _HIGHEST = 4
 _READ = ("program", "scripted")
-"""Policies that stand in files."""
+"""Policies that are read from files."""
 
 
 def resolve_policy(
@@ -51,14 +51,14 @@ def resolve_policy(
     """Return the policy of a name.
 
     Args:
-        name: As in `POLICIES`. A file of `scripted` has programs between lines of `---`; a model is
-            `offline` or `PROVIDER:NAME`.
-        environment: Holds keys and base URLs of models; None: that of the process.
-        connection: What is put around a model; None: retries and limits alone.
+        name: Name in one of the forms of `POLICIES`. In a file of `scripted`, lines of `---`
+            separate the programs. A model is `offline` or `PROVIDER:NAME`.
+        environment: Variables with keys and base URLs of models; None: those of the process.
+        connection: Connection to models; None: retries and limits only.
 
     Raises:
-        UnknownNameError: There is no such policy.
-        InputError: What stands behind the colon is of no use.
+        UnknownNameError: The policy does not exist.
+        InputError: The text after the colon is not valid.
     """
     kind, _, rest = name.partition(":")
     match kind:
@@ -81,14 +81,14 @@ def resolve_policy(
             from beliefnest.episodes.policies.search import Omniscient
 
             return Omniscient()
-    raise UnknownNameError(f"no policy {name!r}; write one of {', '.join(POLICIES)}")
+    raise UnknownNameError(f"there is no policy {name!r}; give one of {', '.join(POLICIES)}")
 
 
 def draws_by_seed(name: str) -> bool:
-    """Return True if a policy itself draws; what the programs draw that it begins is theirs.
+    """Return True if a policy itself draws random numbers, apart from those of its programs.
 
     Args:
-        name: As for `resolve_policy`.
+        name: Name, as for `resolve_policy`.
     """
     kind, _, rest = name.partition(":")
     if kind == "model":
@@ -99,17 +99,17 @@ def draws_by_seed(name: str) -> bool:
 
 
 def text_of_policy(name: str) -> str:
-    """What is read from the file of a policy; empty: it has none.
+    """Return the text of a policy's file; empty if it has no file.
 
     Raises:
-        InputError: It cannot be read.
+        InputError: The file cannot be read.
     """
     kind, _, file = name.partition(":")
     return _text(file) if kind in _READ and file else ""
 
 
 def policy_beside(name: str, folder: Path) -> str:
-    """Return the name of a policy whose file, if it has one, is looked for in a folder."""
+    """Return the name of a policy with the path of its file, if any, relative to a folder."""
     kind, colon, file = name.partition(":")
     return f"{kind}:{folder / file}" if kind in _READ and colon else name
 
@@ -122,7 +122,7 @@ def _model(
 
     model_name, colon, order = rest.rpartition(":")
     if not colon:
-        raise InputError(f"{name!r} is not complete; write model:MODEL:ORDER")
+        raise InputError(f"{name!r} is not complete; give model:MODEL:ORDER")
     number = 2 if order == "omniscient" else order_of(order, name)
     model = open_model(model_name, environment, connection or Connection())
     return (OmniscientModelPolicy if order == "omniscient" else ModelPolicy)(model, number)
@@ -132,7 +132,7 @@ def order_of(text: str, name: str) -> int:
     """Return the order of Theory of Mind in a policy's name.
 
     Raises:
-        InputError: It is none.
+        InputError: The text is no order.
     """
     if not text.isdecimal() or int(text) > _HIGHEST:
         raise InputError(f"{text!r} in {name!r} is no order; give 0 to {_HIGHEST}")

@@ -1,4 +1,4 @@
-"""What an agent could do next: calls of skills with arguments from what it believes to exist."""
+"""Candidate acts of an agent: calls of skills with arguments that it believes to exist."""
 
 from collections.abc import Iterator, Sequence
 
@@ -24,25 +24,25 @@ __all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
 
 
 def items_of(goals: Sequence[Goal]) -> list[str]:
-    """Return items that goals are about, sorted."""
+    """Return the items in goals, sorted."""
     facts = [condition.fact for goal in goals for condition in goal.conditions]
     return sorted({each.item for each in facts if isinstance(each, ItemsIn | ItemsWith)})
 
 
 def calls_of(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[Call]:
-    """Deeds that bear on goals, in an order that depends on nothing else; none is an utterance."""
+    """Return calls that are relevant to goals, without utterances, in a deterministic order."""
     places = _places(mind, agent, goals)
     blocks = _building(mind, agent, goals)
     return [*_moving_items(mind, agent, goals), *places, *blocks, *_doors(mind, goals)]
 
 
 def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> Iterator[Claim]:
-    """What could be claimed about things that goals are about.
+    """Yield possible claims about the things in goals.
 
     Args:
-        mind: What the speaker believes.
-        goals: Of everybody.
-        lies: Whether claims that the speaker does not believe are among them.
+        mind: Belief of the speaker.
+        goals: Goals of all agents.
+        lies: True to include claims that the speaker does not believe.
     """
     held = sorted(mind.world.containers.items())
     for item in items_of(goals):
@@ -65,7 +65,7 @@ def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> I
 
 
 def is_news(mind: Imagination, claim: Claim, speaker: str) -> bool:
-    """Return True if somebody else is not believed to believe a claim already."""
+    """Return True if the speaker believes that another agent does not believe a claim yet."""
     registry, box = Registry.load(), mind.world.box
     for other in mind.world.agents:
         if other == speaker or not mind.knows((other,)):
@@ -105,7 +105,7 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
         if not mine.get(item, 0):
             continue
         for place, _ in near:
-            # It is of use where it belongs, or where somebody else can take it.
+            # Put the item where it belongs, or where another agent can take it.
             if place in wanted or any(mind.may_reach(other, place) for other in others):
                 yield Call("depositItemIntoChest", (place, {item: 1}))
         for other in others:
@@ -128,7 +128,7 @@ def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Ca
 
 
 def _sought(mind: Imagination, goals: Sequence[Goal]) -> Iterator[tuple[Position, str | None]]:
-    """Places of blocks that are not as they are to be, and what is to be there; None: unknown."""
+    """Yield places of blocks in a wrong state, with the wanted block state; None: unknown."""
     facts = MindFacts(mind)
     for goal in goals:
         for fact in (condition.fact for condition in goal.conditions):
@@ -144,7 +144,7 @@ def _sought(mind: Imagination, goals: Sequence[Goal]) -> Iterator[tuple[Position
 
 
 def _materials(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str]:
-    """Return blocks that an agent may want at hand; any there are, for who does not know which."""
+    """Return blocks that an agent may need; all blocks if it does not know which."""
     world, registry = mind.world, Registry.load()
     sought = {name for _, name in _sought(mind, goals)}
     there = {item for held in world.containers.values() for item in held}
@@ -155,7 +155,7 @@ def _materials(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str
 
 
 def _building(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
-    """Yield blocks put where they are to be, and others broken that are there."""
+    """Yield calls that put wanted blocks, and that break other blocks in their places."""
     if agent not in mind.world.agents:
         return
     facts, mine = MindFacts(mind), mind.world.agents[agent].inventory

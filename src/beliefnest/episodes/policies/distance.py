@@ -1,7 +1,7 @@
-"""How far a goal is off: the estimate by which planners compare what they imagine.
+"""Distance to a goal: the heuristic by which planners compare imagined states.
 
-Distances have no unit: a whole number for each deed that is still to be done at least, and
-fractions for the ways to it.
+Distances have no unit. They count 1 for each act that is still needed at least, plus fractions for
+the ways to walk.
 """
 
 import math
@@ -28,13 +28,13 @@ __all__ = ["BeliefFacts", "MindFacts", "distance", "held", "is_visible", "name_o
 _PER_BLOCK = 0.01
 _UNKNOWN = 6.0
 _HANDED_OVER = 1.5
-"""For what somebody else has to take over, since whoever has it cannot get to where it belongs."""
+"""Cost of handing an item over, if the agent that has it cannot reach where it belongs."""
 _FAR = 80.0
 _ON_THE_WAY = 0.4
 
 
 class MindFacts:
-    """What is the case in an imagination at its latest tick."""
+    """Facts of an imagination's own reality at its latest tick."""
 
     def __init__(self, mind: Imagination) -> None:
         self._mind = mind
@@ -62,26 +62,26 @@ class MindFacts:
         return None if unknown else Registry.load().text(state)
 
     def may_reach(self, agent: str, place: Position) -> bool:
-        """Return True if an agent may get to where it can use a block."""
+        """Return True if an agent may be able to reach a block."""
         return self._mind.may_reach(agent, place)
 
     @property
     def containers(self) -> Iterable[Position]:
-        """Known containers."""
+        """Return the positions of known containers."""
         return self._world.containers
 
     @property
     def agents(self) -> Iterable[str]:
-        """The agents whose places are known."""
+        """Return the agents whose places are known."""
         return self._agents
 
 
 class BeliefFacts:
-    """What is believed in an imagination at its latest tick.
+    """Facts of a belief in an imagination at its latest tick.
 
     Args:
         mind: The imagination.
-        path: Agents below its root.
+        path: Path of the belief below the root of the imagination.
     """
 
     def __init__(self, mind: Imagination, path: BeliefPath) -> None:
@@ -108,7 +108,7 @@ class BeliefFacts:
 
 
 def is_visible(condition: GoalCondition, mind: Imagination) -> bool:
-    """Return True if a mind reaches as deep as a condition."""
+    """Return True if a mind is deep enough to evaluate a condition."""
     return mind.knows(condition.path)
 
 
@@ -120,14 +120,14 @@ def held(condition: GoalCondition, mind: Imagination) -> bool:
 
 
 def distance(goal: Goal, mind: Imagination) -> float:
-    """How far what is to be reached is off in a mind; 0: it is reached as far as one can see."""
+    """Return the distance to a goal in a mind; 0: reached, as far as the mind can tell."""
     facts = MindFacts(mind)
     return sum(_off(each, mind, facts) for each in goal.reach)
 
 
 def _off(condition: GoalCondition, mind: Imagination, facts: MindFacts) -> float:
     if condition.path:
-        # Whoever does not look that deep cannot tell, and takes it for open whatever is done.
+        # A mind that is not deep enough cannot tell: count the condition as open in any case.
         return 0.0 if is_visible(condition, mind) and held(condition, mind) else 1.0
     return 0.0 if condition.fact.holds(facts) else _still_to_do(condition.fact, facts)
 
@@ -153,7 +153,7 @@ def _still_to_do(fact: Fact, facts: MindFacts) -> float:
 
 
 def _to_block(facts: MindFacts, place: Position, wanted: str | None) -> float:
-    """How far a block is from being another one; a deed on the way counts less than the last."""
+    """Return the distance of a block to a wanted state; partial steps count less than the last."""
     if wanted is None:
         return 2.0
     there, name = facts.block(place), name_of(wanted)

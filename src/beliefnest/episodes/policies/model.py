@@ -1,4 +1,4 @@
-"""Policies that ask a model, which is told as much of others' minds as its order allows."""
+"""Policies that ask a model, with beliefs of others in the prompt as its order allows."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -18,16 +18,17 @@ __all__ = ["ModelPolicy", "OmniscientModelPolicy"]
 
 @dataclass
 class ModelPolicy:
-    """Asks a model for each round's program.
+    """Policy that asks a model for the program of each round.
 
-    What it is told: of order 0 what the agent believes; of order 1 also what it takes the others to
-    believe; of order 2 also what it takes them to believe that it believes.
+    At order 0 the prompt contains the agent's belief. At order 1 it also contains the beliefs of
+    others as the agent believes them. At order 2 it also contains what the agent believes that the
+    others believe about its own belief.
 
     Attributes:
-        model: Who is asked.
+        model: The model.
         order: Order of Theory of Mind.
-        attempts: How often at most in a round; an answer without a program is sent back.
-        spent: What it has taken so far.
+        attempts: Greatest number of requests in a round; answers without a program are sent back.
+        spent: Spending so far.
     """
 
     model: Model
@@ -40,7 +41,7 @@ class ModelPolicy:
 
         Raises:
             ModelError: The model failed, or gave no program.
-            TemplateError: The prompt cannot be made.
+            TemplateError: The prompt cannot be rendered.
         """
         prompt = self.prompt(view)
         system = view.render(built_in_template("instructions").text, skills=skills())
@@ -55,7 +56,7 @@ class ModelPolicy:
         return answer.program
 
     def prompt(self, view: AgentView) -> str:
-        """What the model is told in a round."""
+        """Return the prompt of a round."""
         others = [name for name in view.brief.goals if name != view.agent]
         return view.render(
             _template(),
@@ -76,21 +77,21 @@ class ModelPolicy:
 
 @dataclass(frozen=True)
 class _Counted:
-    """A model of which is told what each answer took, also one that cannot be used."""
+    """Model that reports the usage of each answer, even of unusable ones."""
 
     model: Model
     spend: Callable[[Usage], None]
 
     @property
     def name(self) -> str:
-        """Name of the model that is asked."""
+        """Return the name of the model."""
         return self.model.name
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Ask it.
+        """Ask the model.
 
         Raises:
-            ModelError: It failed, or its answer is of no use.
+            ModelError: The model failed, or its answer is not usable.
         """
         try:
             answer = self.model.answer(messages, sampling)
@@ -103,12 +104,12 @@ class _Counted:
 
 @dataclass
 class OmniscientModelPolicy(ModelPolicy):
-    """The same, told what is the case and what the others really believe: an upper bound."""
+    """Policy that gives the model reality and the true beliefs of others: an upper bound."""
 
     sees_all: bool = True
 
     def prompt(self, view: AgentView) -> str:
-        """What the model is told in a round; `branch` is reality, of which nobody is the owner."""
+        """Return the prompt of a round, in which `branch` is reality, which no agent owns."""
         return view.render(
             (files(__package__) / "texts" / "omniscient.txt").read_text(encoding="utf-8"),
             depth=1,
@@ -122,7 +123,7 @@ def _template() -> str:
 
 
 def _sentence(goal: Goal, agent: str) -> str:
-    """Return a goal as one would ask for it; the simplest ones as a wish."""
+    """Return a goal as a sentence for the model, with a natural wording of simple goals."""
     facts = [each.fact for each in goal.reach if not each.path]
     if len(facts) == 1 and not goal.never and isinstance(facts[0], ItemsWith):
         wanted = facts[0]

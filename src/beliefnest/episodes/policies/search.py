@@ -1,9 +1,12 @@
-"""A planner without a language model, of any order of Theory of Mind.
+"""Planner without a language model, of any order of Theory of Mind.
 
-It tries courses of calls on forks of the agent's own belief. Of order 0 it reckons with nobody
-else's doing, and believes what it is told. Of order k the others act meanwhile as planners of order
-k - 1 would in what the agent believes that they believe; what somebody says of containers who is
-after something else is taken for a lie; conditions on beliefs are seen down to k beliefs below.
+The planner is a beam search over sequences of skill calls, tried on forks of the agent's own
+belief.
+
+At order 0 it assumes that no other agent acts, and believes what it is told. At order k it assumes
+that the others act as planners of order k - 1 in the beliefs that the agent attributes to them. It
+takes statements about containers by agents with a different goal for lies. It evaluates conditions
+on beliefs down to k levels below its own belief.
 """
 
 from collections.abc import Sequence
@@ -26,20 +29,20 @@ from beliefnest.world.values import Position
 __all__ = ["Bounds", "FoundPlan", "Omniscient", "Planner", "Search"]
 
 Score = tuple[float, ...]
-"""Compared from left to right; less is better."""
+"""Score of a plan, compared from left to right; less is better."""
 
 _REACHED, _OPEN, _VIOLATED = 0.0, 1.0, 2.0
 
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
-    """How much a planner looks at.
+    """Bounds of the search.
 
     Attributes:
-        beam: Courses that are gone on with at each depth.
-        depth: Calls of a course.
-        horizon: Ticks that are imagined at most.
-        changes: How often another is taken to change its mind in a course.
+        beam: Number of plans that are extended at each depth.
+        depth: Greatest number of calls in a plan.
+        horizon: Greatest number of imagined ticks.
+        changes: Greatest number of times that another agent replans within a plan.
     """
 
     beam: int = 3
@@ -48,17 +51,17 @@ class Bounds:
     changes: int = 3
 
     def lower(self) -> "Bounds":
-        """Bounds of a planner that is only imagined."""
+        """Return the smaller bounds for the imagined planners of other agents."""
         return Bounds(max(1, self.beam - 1), self.depth, self.horizon, max(1, self.changes - 1))
 
 
 @dataclass(frozen=True, slots=True)
 class FoundPlan:
-    """What a planner came to.
+    """Result of planning.
 
     Attributes:
-        calls: What to do, in order.
-        score: How good that is.
+        calls: Calls in order.
+        score: Score of the plan.
     """
 
     calls: tuple[Call, ...]
@@ -67,12 +70,12 @@ class FoundPlan:
 
 @dataclass
 class _Course:
-    """What another agent is taken to be at.
+    """Assumed plan of another agent.
 
     Attributes:
-        performer: Its calls.
-        read: How much of what happened it had perceived when it decided on them.
-        changes: How often it may change its mind yet.
+        performer: Performer of its calls.
+        read: Number of events that the agent had perceived when it decided on the calls.
+        changes: Number of times that it may still replan.
     """
 
     performer: Performer
@@ -85,15 +88,15 @@ class _Course:
 
 @dataclass
 class _Node:
-    """A course of calls, and where it leads.
+    """Node of the search: a sequence of calls and the state after it.
 
     Attributes:
-        mind: What is imagined after the calls.
-        others: What the others are at then.
+        mind: Imagined state after the calls.
+        others: Assumed plans of the other agents at that time.
         elapsed: Ticks since the beginning.
         calls: The calls.
-        reached: The tick at which the goal was reached; None: it is not.
-        violated: The tick at which what must not be was the case; None: never.
+        reached: Tick at which the goal was reached; None: it was not.
+        violated: Tick at which the goal was violated; None: it was not.
     """
 
     mind: Imagination
@@ -116,14 +119,14 @@ class _Node:
 
 
 class Planner:
-    """Plans for agents of one task.
+    """Planner for agents of one task.
 
     Args:
-        brief: What everybody knows of the task.
+        brief: Common knowledge about the task.
 
     Attributes:
-        tried: How many branches were tried so far.
-        guesses: What others were taken to do, by what they were taken to believe.
+        tried: Number of branches tried so far.
+        guesses: Cache of the assumed plans of other agents, by their assumed beliefs.
     """
 
     def __init__(self, brief: Brief) -> None:
@@ -134,14 +137,14 @@ class Planner:
     def plan(
         self, mind: Imagination, agent: str, order: int, ticks: int, bounds: Bounds
     ) -> FoundPlan:
-        """Return the best course that is found; of equals the first and shortest.
+        """Return the best plan found; of equal plans, the first and shortest.
 
         Args:
-            mind: What the agent believes; it is left as it is.
-            agent: Who plans.
-            order: Its order of Theory of Mind.
-            ticks: How many are left.
-            bounds: How much is looked at.
+            mind: Belief of the agent; it is not changed.
+            agent: Name of the planning agent.
+            order: Order of Theory of Mind of the agent.
+            ticks: Number of ticks left.
+            bounds: Bounds of the search.
         """
         return _Planning(self, self._brief, agent, order, min(ticks, bounds.horizon), bounds).best(
             mind
@@ -149,7 +152,7 @@ class Planner:
 
 
 class _Planning:
-    """One plan in the making."""
+    """One run of the search."""
 
     def __init__(
         self,
@@ -171,7 +174,7 @@ class _Planning:
 
     def best(self, mind: Imagination) -> FoundPlan:
         if self._order and self._opponents:
-            # Who reckons with what others are after does not take their word.
+            # An agent that considers the goals of others does not trust their statements.
             mind, self._doubted = mind.doubting(self._opponents)
         first = _Node(mind.fork() if self._order else mind.bare(), {})
         first.others = {
@@ -195,13 +198,13 @@ class _Planning:
         return FoundPlan(best.calls, best.score)
 
     def _imagined(self, mind: Imagination) -> list[str]:
-        """Return the others whose doing is reckoned with."""
+        """Return the other agents whose acts the search simulates."""
         if self._order == 0:
             return []
         return [name for name in sorted(mind.world.agents) if name != self._agent]
 
     def _guess(self, mind: Imagination, other: str, elapsed: int) -> tuple[Call, ...]:
-        """What another is taken to do, planning in what it is believed to believe."""
+        """Return the assumed plan of another agent, planned in its assumed belief."""
         order, left = self._order - 1, self._horizon - elapsed
         known, seen = self._planner.guesses, mind.print_of(other, order)
         key = (other, order, left, self._bounds, seen)
@@ -212,7 +215,7 @@ class _Planning:
         return known[key]
 
     def _expanded(self, node: _Node) -> list[_Node]:
-        """Return the node with each of the calls that can be done next."""
+        """Return the successors of a node: one for each call that can be done next."""
         if node.reached is not None or node.violated is not None or node.elapsed >= self._horizon:
             return []
         found = []
@@ -236,13 +239,13 @@ class _Planning:
         return calls
 
     def _act(self, node: _Node, mine: Performer) -> None:
-        """Let everybody act until the agent has done its calls."""
+        """Let all agents act until the planning agent has done its calls."""
         while not mine.is_done and node.elapsed < self._horizon:
             if not self._pass(node, mine):
                 break
 
     def _value(self, node: _Node) -> None:
-        """Score a node by where it leads if the agent does nothing more."""
+        """Score a node by its state after the others act on and the agent does nothing more."""
         self._planner.tried += 1
         end = node
         if node.others and node.reached is None and node.violated is None:
@@ -264,7 +267,7 @@ class _Planning:
         return (_OPEN, round(distance(self._goal, end.mind), 6), cost)
 
     def _pass(self, node: _Node, mine: Performer | None) -> bool:
-        """Let time pass up to the end of a round at most; whether there is any reason to."""
+        """Let time pass, at most to the end of a round; return True if there was a reason to."""
         passed = node.elapsed % self._round
         if not passed:
             self._change_minds(node)
@@ -276,7 +279,7 @@ class _Planning:
         if all(each.is_done for each in performers.values()):
             if not passed or not any(self._may_change(node, name) for name in node.others):
                 return False
-            # They decide anew when the next round begins.
+            # The others decide again when the next round begins.
             node.mind.world.step(ticks)
             node.elapsed += ticks
             return True
@@ -304,7 +307,7 @@ class _Planning:
             node.reached = node.elapsed
 
     def _change_minds(self, node: _Node) -> None:
-        """Let the others plan anew who are done or may have learnt of something."""
+        """Let those other agents replan that are done or may have perceived something new."""
         for name, course in node.others.items():
             if not self._may_change(node, name):
                 continue
@@ -322,7 +325,7 @@ class _Planning:
         return course.changes > 0 and (news or done or course.performer.failed)
 
     def _exploring(self, mind: Imagination) -> tuple[Call, ...]:
-        """A look into the nearest container that may hold what is wanted, if that is nowhere."""
+        """Return a look into the nearest container that may hold a wanted item of unknown place."""
         world = mind.world
         me = world.agents.get(self._agent)
         known = mind.view().containers
@@ -358,11 +361,11 @@ class _Planning:
 
 @dataclass(frozen=True)
 class Search:
-    """Plans by trying, as deep in others' minds as its order.
+    """Policy that plans by search, with beliefs of others down to its order.
 
     Attributes:
         order: Order of Theory of Mind.
-        bounds: How much it looks at.
+        bounds: Bounds of the search.
     """
 
     order: int
@@ -372,7 +375,7 @@ class Search:
         """Return the calls of its plan, as a program."""
         mind = view.imagine(self.order)
         planner = Planner(view.brief)
-        # Imagined is a scripted world, in which a block on foot takes one tick.
+        # The search imagines a scripted world, in which a block on foot takes one tick.
         ticks = view.ticks_left // view.brief.pace
         plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds)
         return program_of(plan.calls)
@@ -380,11 +383,11 @@ class Search:
 
 @dataclass(frozen=True)
 class Omniscient:
-    """The same, knowing what is the case and what the others really believe: an upper bound.
+    """Policy that plans in reality and knows the true beliefs of others: an upper bound.
 
     Attributes:
         order: Order of Theory of Mind.
-        bounds: How much it looks at.
+        bounds: Bounds of the search.
     """
 
     order: int = 2

@@ -1,4 +1,4 @@
-"""Policies that plan nothing: programs written before, and chance."""
+"""Policies without planning: people, given programs, and random choice."""
 
 import random
 from collections.abc import Sequence
@@ -12,25 +12,25 @@ __all__ = ["Person", "Program", "Random", "Scripted"]
 
 @dataclass(frozen=True)
 class Person:
-    """Somebody at a Minecraft client; what they do in a round is their agent's action.
+    """Person at a Minecraft client, who acts for the agent in a round.
 
     Attributes:
-        is_awaited: Whether a round lasts until they have done or said something.
+        is_awaited: True if a round lasts until the person has done or said something.
     """
 
     is_awaited: bool = False
 
     def act(self, view: AgentView) -> str:
-        """No program: they act themselves."""
+        """Return no program: the person acts."""
         return ""
 
 
 @dataclass(frozen=True)
 class Scripted:
-    """Programs written before, one for each round; after the last it does nothing.
+    """Policy with given programs, one for each round; after the last one it does nothing.
 
     Attributes:
-        programs: Their texts.
+        programs: Texts of the programs.
     """
 
     programs: Sequence[str]
@@ -42,13 +42,13 @@ class Scripted:
 
 @dataclass(frozen=True)
 class Program:
-    """One program, begun when its policy is asked first, which goes on as long as it is cut.
+    """Policy with one program, which starts at the policy's first round and continues when cut.
 
-    On a branch that is the round from which on the agent is played so. That is known from what was
-    decided before, so that whoever resumes an episode goes on with the program.
+    On a branch, the first round is the one from which the policy plays. The policy recognizes it
+    from earlier decisions, so that a resumed episode continues the program.
 
     Attributes:
-        text: The program.
+        text: Text of the program.
     """
 
     text: str
@@ -62,7 +62,7 @@ class Program:
 
 @dataclass(frozen=True)
 class Random:
-    """Any deed or true claim that bears on the agent's goals, or nothing, each as likely."""
+    """Policy that draws a relevant act, a relevant true claim, or nothing, each equally likely."""
 
     def act(self, view: AgentView) -> str:
         """Return a call drawn by the episode's seed, the agent and the round."""

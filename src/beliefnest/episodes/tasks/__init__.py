@@ -1,4 +1,4 @@
-"""The built-in tasks: each a generator of instances from a seed."""
+"""Built-in tasks; each module generates instances of a task from a seed."""
 
 import importlib
 import inspect
@@ -23,12 +23,12 @@ _TASKS: Mapping[str, str] = {
 
 
 def builtin_tasks() -> Mapping[str, str]:
-    """Return the name of each task to the name of its module here."""
+    """Return the names of the tasks' modules, by name of the task."""
     return _TASKS
 
 
 def parameters_of(name: str) -> Mapping[str, tuple[int, int, int]]:
-    """Parameters of a task: name to default, least and greatest value."""
+    """Return default, least and greatest value of each parameter of a task."""
     ranges: Mapping[str, tuple[int, int, int]] = _module(name).PARAMETERS
     return ranges
 
@@ -37,12 +37,12 @@ def generated(name: str, seed: int, parameters: Mapping[str, int]) -> dict[str, 
     """Return an instance of a task, as plain values.
 
     Args:
-        name: The task.
-        seed: Which instance.
-        parameters: Its size; what is not given has its default.
+        name: Name of the task.
+        seed: Number of the instance.
+        parameters: Values of parameters; the others have their defaults.
 
     Raises:
-        UnknownNameError: It has no such parameter.
+        UnknownNameError: A parameter does not exist.
         InputError: A parameter is out of range.
     """
     ranges = parameters_of(name)
@@ -60,7 +60,7 @@ def generated(name: str, seed: int, parameters: Mapping[str, int]) -> dict[str, 
 
 
 def source_of(name: str) -> str:
-    """What a task says of itself: its source in the literature, and what is in it."""
+    """Return the description of a task: its source in the literature, and its setting."""
     return inspect.cleandoc(_module(name).__doc__ or "")
 
 

@@ -1,8 +1,8 @@
-"""A blueprint of which each sees another part (Clark and Krych 2004, building from another's plan).
+"""A blueprint of which each builder sees another part (Clark and Krych 2004).
 
-Blocks are to stand as in a model. Each builder can reach plots whose model only the other sees. Who
-reckons with what the other does not see tells it. Further agents build beside Bob: they see what he
-sees, and say nothing.
+The builders must copy a model with blocks. Each builder can reach plots whose model only the other
+one sees. A builder that considers what the other one does not see says it. Further agents build
+beside Bob: they see what he sees, and say nothing.
 """
 
 import random
@@ -20,13 +20,14 @@ def instance(chance: random.Random, plots: int, agents: int) -> dict[str, Any]:
     """Return an instance.
 
     Args:
-        chance: Draws the model, and what stands on plots at first.
-        plots: How many plots each builder can reach.
-        agents: Anne and Bob, and builders beside Bob who see what he sees and say nothing.
+        chance: Random source of the model and of the first blocks on plots.
+        plots: Number of plots that each builder can reach.
+        agents: Number of agents: Anne, Bob, and builders beside Bob who see what he sees and say
+            nothing.
     """
     width, depth, middle = 26, 3 * plots + 4, 13
     rows = [3 + 3 * number for number in range(plots)]
-    # Models stand behind glass, too far off to be reached; between the halves is a wall of stone.
+    # Models are behind glass and out of reach; a stone wall separates the halves.
     blocks = [
         wall((middle, 1, 0), (middle, 3, depth)),
         wall((6, 1, 0), (6, 3, depth), "glass"),
@@ -73,7 +74,7 @@ def instance(chance: random.Random, plots: int, agents: int) -> dict[str, Any]:
 
 
 def _first(chance: random.Random, wanted: str, *, missing: bool) -> str:
-    """What stands on a plot at first: nothing, what is wanted, or another block."""
+    """Return the first block on a plot: none, the wanted block, or another one."""
     other = next(colour for colour in _COLOURS if colour != wanted)
     kinds = ("air", other) if missing else ("air", other, wanted)
     return chance.choice(kinds)

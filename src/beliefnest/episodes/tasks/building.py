@@ -1,4 +1,4 @@
-"""Parts that built-in tasks have in common: halls with a floor, walls, chests."""
+"""Common parts of built-in tasks: halls with a floor, walls, chests."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -41,12 +41,12 @@ def chest(at: Position, items: Mapping[str, int] | None = None, label: str = "")
 def abreast(
     names: Sequence[str], first: Sequence[float], step: tuple[float, float]
 ) -> dict[str, list[float]]:
-    """Return feet of people in a row.
+    """Return feet positions of agents in a row.
 
     Args:
-        names: Of them all.
-        first: Feet of the first one.
-        step: Blocks in x and z from each to the next.
+        names: Names of the agents.
+        first: Feet of the first agent.
+        step: Blocks in x and z from each agent to the next.
     """
     x, y, z = first
     return {
@@ -57,14 +57,14 @@ def abreast(
 def booths(
     names: Sequence[str], first: int
 ) -> tuple[dict[str, dict[str, Any]], list[dict[str, Any]]]:
-    """Return people in booths of glass, four blocks apart, who see and speak and reach nothing.
+    """Return agents in glass booths, four blocks apart, who can see and speak but reach nothing.
 
     Args:
-        names: Of the people.
-        first: x of the first one.
+        names: Names of the agents.
+        first: Coordinate x of the first agent.
 
     Returns:
-        The people as agents of a scenario, who face north at z = 11, and the blocks around them.
+        The agents as in a scenario, facing north at z = 11, and the blocks around them.
     """
     places = {name: first + 4 * number for number, name in enumerate(names)}
     people = {
@@ -75,14 +75,14 @@ def booths(
 
 
 def also(names: Sequence[str], text: str) -> str:
-    """What a description says of further people, as in " Ben and Cleo can ..."; of none nothing."""
+    """Return a sentence about further agents, such as " Ben and Cleo can ..."; empty for none."""
     return f" {' and '.join(name.capitalize() for name in names)} {text}" if names else ""
 
 
 def belief(
     path: str, contents: Mapping[Position, Mapping[str, int]], *, complete: bool = True
 ) -> dict[str, Any]:
-    """An initial belief about contents of containers; `complete`: there is nothing else in them."""
+    """Return an initial belief about contents of containers; `complete`: they hold nothing else."""
     return {
         "path": path,
         "containers": [
@@ -93,7 +93,7 @@ def belief(
 
 
 def hall(width: int, depth: int, blocks: Iterable[Mapping[str, Any]] = ()) -> dict[str, Any]:
-    """Return a scenario's box and blocks: a hall with a floor that everybody knows.
+    """Return a scenario's box and blocks: a hall with a floor that all agents know.
 
     Feet stand at y = 1; x goes from 0 to `width`, z from 0 to `depth`.
     """

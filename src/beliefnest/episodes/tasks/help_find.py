@@ -1,8 +1,8 @@
-"""Help somebody with a false belief (Buttelmann, Carpenter and Tomasello 2009, as talk).
+"""Help an agent with a false belief (Buttelmann, Carpenter and Tomasello 2009, with speech).
 
-Sally wants a thing that was moved while she was away, and has not the time to look into every
-chest. Anne stands behind glass: she saw it moved, and can do nothing but speak, once. Who does not
-reckon with what Sally believes sees no need to say anything.
+Sally wants a thing that was moved while she was away, and has no time to look into every chest.
+Anne stands behind glass: she saw the move, and can only speak, once. An agent that does not
+consider what Sally believes sees no need to speak.
 """
 
 import random
@@ -20,10 +20,10 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     """Return an instance.
 
     Args:
-        chance: Draws sides, places and the thing.
-        chests: How many chests there are.
+        chance: Random source of sides, places and the thing.
+        chests: Number of chests.
         reach: Blocks from the middle of the hall to its ends.
-        agents: Sally, Anne, and people behind glass who know what Sally knows.
+        agents: Number of agents: Sally, Anne, and agents behind glass who know what Sally knows.
     """
     width, item = 2 * reach, chance.choice(_ITEMS)
     sides = [("west", 1), ("east", width - 1)]
@@ -66,7 +66,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
 def _places(
     chance: random.Random, chests: int, sides: list[tuple[str, int]]
 ) -> list[tuple[int, int, int]]:
-    """Return places of chests; the first at one end of the hall, the second at the other."""
+    """Return places of chests: the first at one end of the hall, the second at the other."""
     rows = {name: chance.sample(range(1, 9), 8) for name, _ in sides}
     places = []
     for number in range(chests):

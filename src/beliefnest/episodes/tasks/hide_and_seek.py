@@ -1,9 +1,9 @@
 """Hide and seek with a deceiver (Sodian 1991; Happé 1994, double bluff).
 
-Bob looks for a treasure and has the time to go to one end of the hall. Eve knows where it is,
-stands behind glass and can do nothing but speak; Bob knows that she does not want him to find it.
-Who takes him for somebody who believes her tells him a lie, which he sees through; who reckons with
-what he makes of what she is after tells him the truth. Further agents look for it beside Bob.
+Bob looks for a treasure and has time to go to one end of the hall. Eve knows where the treasure is,
+stands behind glass and can only speak. Bob knows that she does not want him to find it. If Eve
+expects Bob to believe her, she tells a lie, and he sees through it. If she considers what Bob
+concludes from her goal, she tells the truth. Further agents look for the treasure beside Bob.
 """
 
 import random
@@ -21,10 +21,10 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     """Return an instance.
 
     Args:
-        chance: Draws sides, places and the treasure.
-        chests: How many chests there are.
+        chance: Random source of sides, places and the treasure.
+        chests: Number of chests.
         reach: Blocks from the middle of the hall to its ends.
-        agents: Eve, and seekers side by side, none of whom is to get it.
+        agents: Number of agents: Eve, and seekers side by side, none of whom may get the treasure.
     """
     width, item = 2 * reach, chance.choice(_ITEMS)
     ends = chance.sample([1, width - 1], 2)
@@ -32,7 +32,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     places = [(ends[number > 0], 1, rows[ends[number > 0]].pop()) for number in range(chests)]
     contents = {place: ({item: 1} if place == places[0] else {}) for place in places}
     eve, glass = booths(["eve"], 4)
-    # The treasure is at the end that he is nearer to.
+    # The treasure is at the end that is nearer to Bob.
     start = reach + (2 if ends[0] > reach else -2)
     seekers = _SEEKERS[: agents - 1]
     got = {name: {"agent": name, "items": {item: 1}} for name in seekers}

@@ -1,9 +1,9 @@
 """A joint lift without a word (Sebanz, Bekkering and Knoblich 2006; Tomasello 2014).
 
-A lift rises while both of its levers are on and somebody is at each of them. There are two lifts;
-both people stand nearer to one that Anne sees and Bob does not know of. They do not talk: who
-reckons with what the other sees goes where the other will be. Further agents stand beside Bob and
-see what he sees; each lift then has a lever for each of them.
+A lift rises while both its levers are on, with an agent at each of them. There are two lifts. Both
+agents are nearer to the lift that Anne sees and Bob does not know of. They cannot talk: an agent
+that considers what the other one sees goes where the other one will be. Further agents stand beside
+Bob and see what he sees; each lift then has a lever for each of them.
 """
 
 import random
@@ -20,21 +20,21 @@ def instance(chance: random.Random, far: int, agents: int) -> dict[str, Any]:
     """Return an instance.
 
     Args:
-        chance: Draws the side and the places.
-        far: Blocks between the lift that Bob does not see and the one that he does.
-        agents: Anne and Bob, and people beside Bob who see what he sees; a lever of each lift for
-            each of them.
+        chance: Random source of the side and the places.
+        far: Blocks between the lift that Bob does not see and the lift that he sees.
+        agents: Number of agents: Anne, Bob, and agents beside Bob who see what he sees; each lift
+            has a lever for each agent.
     """
     corner = 5
     width, depth = corner + far + 5, 12
     x, z = corner + far + chance.randint(0, 2), chance.randint(1, 3)
     sites = [_site((0, 1, 0), 6, agents), _site((x, 1, z), 8, agents)]
-    # Behind these walls, with a gap at their corner, is the lift that Bob does not see.
+    # These walls, with a gap at their corner, hide the lift that Bob does not see.
     blocks = [
         wall((corner, 1, 0), (corner, 2, 5)),
         wall((0, 1, 7), (corner + 1, 2, 7)),
     ]
-    # All stand nearer to it than to the other one.
+    # All agents stand nearer to this lift than to the other one.
     companions = _COMPANIONS[: agents - 1]
     feet = {
         "anne": [corner - 1.5, 1, 4.5],
@@ -74,7 +74,7 @@ def instance(chance: random.Random, far: int, agents: int) -> dict[str, Any]:
 
 
 def _site(first: tuple[int, int, int], length: int, levers: int) -> list[tuple[int, int, int]]:
-    """Return places of a lift's levers, in a row from north to south."""
+    """Return the places of a lift's levers, in a row from north to south."""
     x, y, z = first
     return [(x, y, z + length * number // (levers - 1)) for number in range(levers)]
 

@@ -1,9 +1,9 @@
-"""A kitchen with orders and narrow ways (Carroll and others 2019, Overcooked).
+"""A kitchen with orders and hatches (Carroll and others 2019, Overcooked).
 
-What is ordered lies in the pantry, where only the cook can go; tables are where only the waiter can
-go. Between them are hatches. The waiter sees only some of them, and does not look into the others:
-who reckons with what the waiter sees puts what is ordered where it is noticed. Further agents are
-waiters who see what the first one sees.
+The ordered dishes are in the pantry, where only the cook can go. The tables are where only the
+waiter can go. Between both are hatches. The waiter sees the cook only at some hatches, and does not
+look into the others. A cook that considers what the waiter sees uses a hatch where the waiter
+notices it. Further agents are waiters who see what the first waiter sees.
 """
 
 import random
@@ -21,24 +21,24 @@ def instance(chance: random.Random, orders: int, hatches: int, agents: int) -> d
     """Return an instance.
 
     Args:
-        chance: Draws places, dishes, and which hatch can be seen.
-        orders: How many dishes are ordered.
-        hatches: How many hatches there are; the waiter sees the cook at one of them.
-        agents: The cook, and waiters side by side who see the same.
+        chance: Random source of places, dishes, and the visible hatch.
+        orders: Number of ordered dishes.
+        hatches: Number of hatches; the waiter sees the cook at one of them.
+        agents: Number of agents: the cook, and waiters side by side who see the same.
     """
     width, depth = 10 * hatches, 12
     dishes = chance.sample(_DISHES, orders)
     places = [(4 + 10 * number, 1, 6) for number in range(hatches)]
     seen = chance.randrange(hatches)
-    # A wall of stone between pantry and room; glass where the cook is seen.
+    # A stone wall separates pantry and room; glass lets the waiter see the cook.
     glass = places[seen][0]
     blocks = [
         wall((0, 1, 6), (width, 3, 6)),
         wall((glass - 3, 1, 6), (glass + 3, 3, 6), "glass"),
-        # Between hatches, so that through the glass one does not see as far as the next one.
+        # Walls between hatches, so that the glass shows only one hatch.
         *(wall((x + 5, 1, 3), (x + 5, 3, 5)) for x, _, _ in places[:-1]),
     ]
-    # The nearest hatch, and the one nearest to the table, is none at which the cook is seen.
+    # The visible hatch is neither the nearest one nor the one nearest to the table.
     near = chance.choice([x for x, _, _ in places if x != glass])
     store, table = (near, 1, 1), (near, 1, 11)
     first: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in places}

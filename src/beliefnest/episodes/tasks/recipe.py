@@ -1,8 +1,8 @@
-"""A recipe of which each knows a half (Stasser and Titus 1985, hidden profiles).
+"""A recipe of which each cook knows a half (Stasser and Titus 1985, hidden profiles).
 
-Two cooks in rooms apart have one pot between them. What each has to bring lies in its own room, in
-a chest that only the other knows. Whoever reckons with what the other does not know says it.
-Further agents cook beside Bob: they know what he knows, and say nothing.
+Two cooks in separate rooms share one pot. The ingredient that each cook must bring is in the cook's
+own room, in a chest that only the other cook knows. A cook that considers what the other one does
+not know says it. Further agents cook beside Bob: they know what he knows, and say nothing.
 """
 
 import random
@@ -20,10 +20,11 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     """Return an instance.
 
     Args:
-        chance: Draws places and ingredients.
-        chests: How many chests stand in each room.
+        chance: Random source of places and ingredients.
+        chests: Number of chests in each room.
         reach: Blocks from the pot to the end of each room.
-        agents: Anne and Bob, and cooks beside Bob who know what he knows and say nothing.
+        agents: Number of agents: Anne, Bob, and cooks beside Bob who know what he knows and say
+            nothing.
     """
     width, depth = 2 * reach, 8
     wanted = dict(zip(("anne", "bob"), chance.sample(_ITEMS, 2), strict=True))
@@ -74,6 +75,6 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
 def _room(
     chance: random.Random, chests: int, columns: list[int], farthest: int
 ) -> list[tuple[int, int, int]]:
-    """Return places of a room's chests; the first is the farthest from the pot."""
+    """Return the places of a room's chests; the first is the farthest from the pot."""
     places = [(x, 1, chance.choice((0, 8))) for x in sorted(chance.sample(columns, chests - 1))]
     return [(farthest, 1, chance.choice((1, 7))), *places]

@@ -1,9 +1,9 @@
-"""Tell only what the other does not know (Grice 1975; Bard and others 2020 on costly hints).
+"""Tell only what the other agent does not know (Grice 1975; Bard and others 2020, costly hints).
 
-Max has to fetch several things and knows where they were. Some were moved while he was away; Nora
-sees from behind glass where everything is, and has to fetch a book herself, down a long passage.
-Talk takes time: who tells nothing helps nobody, and who tells all there is to tell comes too late
-to the book.
+Max must fetch several things and knows where they were. Some of them were moved while he was away.
+Nora sees from behind glass where everything is, and must fetch a book herself, down a long passage.
+Speech takes time: if Nora says nothing, she does not help Max; if she says everything, she is too
+late for the book.
 """
 
 import random
@@ -27,11 +27,11 @@ def instance(
     """Return an instance.
 
     Args:
-        chance: Draws sides, places and things.
-        items: How many things Max has to fetch.
-        moved: How many of them were moved, at most all.
+        chance: Random source of sides, places and things.
+        items: Number of things that Max must fetch.
+        moved: Number of things that were moved; not more than `items` count.
         reach: Blocks from the middle of the hall to its ends.
-        agents: Max, Nora, and people behind glass who know what Max knows.
+        agents: Number of agents: Max, Nora, and agents behind glass who know what Max knows.
     """
     width, wanted = 2 * reach, chance.sample(_ITEMS, items)
     moved = min(moved, items)
@@ -41,7 +41,7 @@ def instance(
     behind_glass, glass = booths(onlookers, 8)
     fetched = {"agent": "max", "items": dict.fromkeys(wanted, 1)}
     rounds = -(-(reach + 24 + 6 * items + 20 * (moved - 1)) // _ROUND)
-    # As far as she gets in the time that saying what has to be said leaves, and no further.
+    # Exactly as far as Nora can walk in the time that the needed utterances leave.
     book, passage = _passage(width, rounds * _ROUND - _SPEECH * moved - 10)
     return {
         "description": (
@@ -84,12 +84,14 @@ def instance(
 def _placed(
     chance: random.Random, wanted: Sequence[str], moved: int, reach: int
 ) -> tuple[_Contents, _Contents]:
-    """Where things were, and where they are: the moved ones at the ends, the rest between.
+    """Return the first and the present contents of chests.
+
+    Moved things are at the ends of the hall, the other things between.
 
     Args:
-        chance: Draws sides and places.
+        chance: Random source of sides and places.
         wanted: The things.
-        moved: How many of them were moved, the first ones.
+        moved: Number of things that were moved: the first ones of `wanted`.
         reach: Blocks from the middle of the hall to its ends.
     """
     ends = chance.sample([1, 2 * reach - 1], 2)
@@ -108,13 +110,13 @@ def _placed(
 
 
 def _passage(width: int, errand: int) -> tuple[Position, list[dict[str, Any]]]:
-    """Where the book is at the end of a passage behind glass, there and back, and its blocks.
+    """Return the place of the book in a U-shaped passage behind glass, and the passage's blocks.
 
     Args:
-        width: Of the hall.
-        errand: Steps from the passage's beginning to where the book can be reached.
+        width: Width of the hall.
+        errand: Steps from the beginning of the passage to where the book can be reached.
     """
-    # Its two ends lie too far apart to reach from one into the other.
+    # The two legs of the passage are too far apart to reach from one into the other.
     straight, turn = width - 4, 6
     back = errand + _REACH - straight - turn
     book = (2 + errand + _REACH, 1, 14) if back <= 0 else (width - 2 - back, 1, 20)

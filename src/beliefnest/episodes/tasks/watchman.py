@@ -1,9 +1,9 @@
-"""A watchman who must not learn that one knows (Perner and Wimmer 1985, second-order belief).
+"""A watchman who must not learn what the spy knows (Perner and Wimmer 1985, second-order belief).
 
-The watchman knows what is in the coffers and takes it that the spy does not. The spy knows, and
-wants gold. Taken where the watchman looks on, it would tell him that the spy knows what is in them
-now. Whoever does not reckon with what the watchman believes about the spy's own beliefs takes the
-nearest. Further agents are watchmen beside him, who must not learn it either.
+The watchman knows what is in the coffers and believes that the spy does not know it. The spy knows
+it, and wants gold. If the spy takes gold in view of the watchman, the watchman learns that the spy
+knows the contents. A spy that does not consider what the watchman believes about the spy's beliefs
+takes the nearest gold. Further agents are watchmen beside him, who must not learn it either.
 """
 
 import itertools
@@ -22,10 +22,10 @@ def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> di
     """Return an instance.
 
     Args:
-        chance: Draws places and sides.
-        coffers: How many coffers there are; one of them the watchman cannot see.
+        chance: Random source of places and sides.
+        coffers: Number of coffers; the watchman cannot see one of them.
         reach: Blocks from the middle of the hall to its ends.
-        agents: The spy, and watchmen side by side, none of whom must find out.
+        agents: Number of agents: the spy, and watchmen side by side, none of whom may find out.
     """
     width, depth = 2 * reach, 10
     mirrored = chance.random() < 0.5
@@ -80,9 +80,9 @@ def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> di
 def _beliefs(
     watchmen: Sequence[str], contents: Mapping[tuple[int, int, int], Mapping[str, int]]
 ) -> list[dict[str, Any]]:
-    """Return all know what is in the coffers, and each watchman takes it that the spy does not."""
+    """Return initial beliefs: all know the contents; watchmen believe that the spy does not."""
     nothing: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in contents}
-    # So they also take it of one another that they think so.
+    # Watchmen also attribute this belief about the spy to one another.
     pairs = [f"{one}/{other}" for one, other in itertools.permutations(watchmen, 2)]
     known = [f"spy/{name}" for name in watchmen]
     return [
