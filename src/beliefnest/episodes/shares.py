@@ -3,18 +3,17 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from beliefnest.belief.entries import PerceivedEvent
-from beliefnest.scenarios.goals import (
+from beliefnest.belief.conditions import (
     AgentAt,
     BlockIs,
     BlocksAlike,
-    Goal,
     GoalCondition,
     ItemsIn,
     ItemsWith,
     LeversHeld,
-    Progress,
 )
+from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.scenarios.goals import Goal, Progress
 from beliefnest.world.values import EventKind
 
 __all__ = ["Share", "shares_of"]

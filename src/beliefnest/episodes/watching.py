@@ -3,10 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
+from beliefnest.belief.conditions import looking_at
 from beliefnest.belief.view import State
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
-from beliefnest.scenarios.goals import Progress, looking_at
+from beliefnest.scenarios.goals import Progress
 from beliefnest.world.paths import BeliefPath, path_text
 
 __all__ = ["Watch"]

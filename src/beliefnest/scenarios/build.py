@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from beliefnest.belief.condition_form import check_condition
 from beliefnest.belief.entries import InitialBelief
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.unique import unique_fault, unique_items
@@ -48,7 +49,7 @@ from beliefnest.scenarios.functions import judge_of
 from beliefnest.scenarios.inferring import build_inferring, build_infers
 from beliefnest.scenarios.people import build_agents
 from beliefnest.scenarios.reading import template_text
-from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_condition, check_rules
+from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules
 from beliefnest.scenarios.space import (
     UNKNOWN,
     build_box,

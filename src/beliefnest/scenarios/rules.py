@@ -5,32 +5,17 @@ from typing import Annotated, Literal
 
 import msgspec
 
+from beliefnest.belief.condition_form import ConditionEntry, check_condition, conditions_of
 from beliefnest.errors import InputError
-from beliefnest.scenarios.goals import (
-    AgentAt,
-    BlockIs,
-    BlocksAlike,
-    Fact,
-    Goal,
-    GoalCondition,
-    ItemsIn,
-    ItemsWith,
-    LeversHeld,
-)
-from beliefnest.world.paths import parse_path
-from beliefnest.world.registry import Registry
+from beliefnest.scenarios.goals import Goal
 from beliefnest.world.values import Box
 
 __all__ = [
-    "ConditionEntry",
     "EpisodeEntry",
     "GoalEntry",
-    "check_condition",
     "check_rules",
     "goal_of",
 ]
-
-Position = tuple[int, int, int]
 
 
 def _note(text: str) -> msgspec.Meta:
@@ -39,25 +24,6 @@ def _note(text: str) -> msgspec.Meta:
 
 class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     """Base of all parts: a key that is not listed is an error."""
-
-
-class ConditionEntry(_Entry, frozen=True):
-    """A condition: of a container, an agent, agents at levers, or a block."""
-
-    path: Annotated[str, _note("Where it is to be the case; / is reality.")] = "/"
-    container: Annotated[Position | None, _note("A container that holds `items`.")] = None
-    agent: Annotated[str | None, _note("An agent that has `items` or stands `at` a place.")] = None
-    items: Annotated[
-        dict[str, Annotated[int, msgspec.Meta(ge=1)]], _note("Item name to least count.")
-    ] = {}
-    at: Annotated[Position | None, _note("A block position.")] = None
-    within: Annotated[float, _note("Greatest distance from there, in blocks.")] = 1.0
-    block: Annotated[Position | None, _note("A block that is in a state.")] = None
-    state: Annotated[str | None, _note("name or name[property=value,...].")] = None
-    like: Annotated[Position | None, _note("A block that it is to be like.")] = None
-    agents: Annotated[list[str], _note("Agents at levers that are on, each at one, at once.")] = []
-    sites: Annotated[list[list[Position]], _note("Levers of each site; one will do.")] = []
-    property: Annotated[str, _note("In which it is to be `like`; empty: in all that it is.")] = ""
 
 
 class GoalEntry(_Entry, frozen=True):
@@ -106,8 +72,8 @@ def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
     if entry.ticks is not None and not entry.reach:
         raise InputError("a goal has `ticks` and nothing to `reach` within them")
     return Goal(
-        tuple(each for one in entry.reach for each in _conditions_of(one, agents)),
-        tuple(each for one in entry.never for each in _conditions_of(one, agents)),
+        tuple(each for one in entry.reach for each in conditions_of(one, agents)),
+        tuple(each for one in entry.never for each in conditions_of(one, agents)),
         entry.messages,
         entry.ticks,
     )
@@ -131,71 +97,3 @@ def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
     for name in sorted(agents):
         if entry.players and (name in entry.players) == (name in entry.policies):
             raise InputError(f"{name} must be one of `players` or have a policy in `policies`")
-
-
-def check_condition(entry: ConditionEntry, agents: Collection[str], box: Box) -> None:
-    """Check that everything that a condition names exists.
-
-    Raises:
-        InputError: The condition is not valid, or is about a place outside the box.
-        PathError: The belief does not exist.
-        UnknownNameError: The item or block does not exist.
-    """
-    _conditions_of(entry, agents)
-    registry = Registry.load()
-    for name in entry.items:
-        registry.item_stack(name)
-    if entry.state is not None:
-        registry.state_id(entry.state)
-    named = (entry.container, entry.at, entry.block, entry.like)
-    places = [place for place in named if place is not None]
-    for place in (*places, *(lever for site in entry.sites for lever in site)):
-        if place not in box:
-            raise InputError(
-                f"a condition is about {place}, outside the box {box.low} to {box.high}"
-            )
-
-
-def _conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[GoalCondition]:
-    """Return the conditions of an entry, one for each fact and belief that it names.
-
-    Raises:
-        InputError: The entry is not valid.
-        PathError: The belief does not exist.
-    """
-    path = parse_path(entry.path, agents)
-    for name in (*entry.agents, *([] if entry.agent is None else [entry.agent])):
-        if name not in agents:
-            raise InputError(f"a condition is about {name!r}, who is no agent")
-    if any(len(site) != len(entry.agents) for site in entry.sites):
-        raise InputError("each site of a condition must have as many levers as there are `agents`")
-    facts = _facts(entry)
-    if not facts:
-        plain = msgspec.to_builtins(entry)
-        raise InputError(
-            f"the condition {plain} makes no sense; give container and items, agent and items, "
-            "agent and at, agents and sites, block and state, or block and like"
-        )
-    return [GoalCondition(fact, path) for fact in facts]
-
-
-def _facts(entry: ConditionEntry) -> list[Fact]:
-    match entry:
-        case ConditionEntry(container=place) if place is not None:
-            return [ItemsIn(place, item, count) for item, count in entry.items.items()]
-        case ConditionEntry(agent=agent, at=place) if agent is not None and place is not None:
-            return [AgentAt(agent, place, entry.within)]
-        case ConditionEntry(agents=[_, *_], sites=[_, *_]):
-            sites = tuple(tuple(site) for site in entry.sites)
-            return [LeversHeld(tuple(entry.agents), sites)]
-        case ConditionEntry(agent=agent) if agent is not None:
-            return [ItemsWith(agent, item, count) for item, count in entry.items.items()]
-    return _block_facts(entry)
-
-
-def _block_facts(entry: ConditionEntry) -> list[Fact]:
-    if entry.block is None:
-        return []
-    if entry.state is not None:
-        return [BlockIs(entry.block, entry.state)]
-    return [] if entry.like is None else [BlocksAlike(entry.block, entry.like, entry.property)]

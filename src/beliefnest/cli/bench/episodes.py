@@ -2,6 +2,7 @@
 
 import time
 
+from beliefnest.belief.conditions import StateFacts
 from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.bench.figures import Metric
 from beliefnest.episodes.episode import Episode
@@ -9,7 +10,6 @@ from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, sa
 from beliefnest.episodes.policies.search import Bounds, Planner
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
-from beliefnest.scenarios.goals import StateFacts
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import TICKS_PER_SECOND
 

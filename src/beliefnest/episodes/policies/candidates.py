@@ -2,19 +2,19 @@
 
 from collections.abc import Iterator, Sequence
 
-from beliefnest.episodes.policies.distance import MindFacts, name_of
-from beliefnest.nest.acting.imagination import Imagination
-from beliefnest.programs.calls import Call
-from beliefnest.scenarios.goals import (
+from beliefnest.belief.conditions import (
     AgentAt,
     BlockIs,
     BlocksAlike,
-    Goal,
     ItemsIn,
     ItemsWith,
     LeversHeld,
     agrees,
 )
+from beliefnest.episodes.policies.distance import MindFacts, name_of
+from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.programs.calls import Call
+from beliefnest.scenarios.goals import Goal
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_open
 from beliefnest.world.registry import Registry

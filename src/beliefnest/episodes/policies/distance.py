@@ -7,18 +7,18 @@ the ways to walk.
 import math
 from collections.abc import Iterable
 
-from beliefnest.nest.acting.imagination import Imagination
-from beliefnest.scenarios.goals import (
+from beliefnest.belief.conditions import (
     AgentAt,
     BlockIs,
     BlocksAlike,
     Fact,
-    Goal,
     GoalCondition,
     ItemsIn,
     ItemsWith,
     LeversHeld,
 )
+from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.scenarios.goals import Goal
 from beliefnest.world.paths import BeliefPath, normalised
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 
+from beliefnest.belief.conditions import ItemsWith
 from beliefnest.episodes.decided import Spent
 from beliefnest.episodes.view import AgentView
 from beliefnest.llm.asking import ask_for_program
@@ -11,7 +12,7 @@ from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 from beliefnest.programs import skills
 from beliefnest.prompts import built_in_template
-from beliefnest.scenarios.goals import Goal, ItemsWith
+from beliefnest.scenarios.goals import Goal
 
 __all__ = ["ModelPolicy", "OmniscientModelPolicy"]
 

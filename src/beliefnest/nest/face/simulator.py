@@ -296,7 +296,7 @@ class Simulator(ShownSimulator):
             embodying.end(self._path)
 
     @in_turn
-    def imagine(self, depth: int = 1, pace: int = 1) -> Imagination:
+    def imagination(self, depth: int = 1, pace: int = 1) -> Imagination:
         """Return the present state as a world of its own, to try out courses without recording.
 
         That world is scripted, whatever the real world is: see docs/scripted-world.md.

@@ -1,0 +1,130 @@
+"""The form of conditions in files and in calls, and what they mean."""
+
+from collections.abc import Collection
+from typing import Annotated
+
+import msgspec
+
+from beliefnest.belief.conditions import (
+    AgentAt,
+    BlockIs,
+    BlocksAlike,
+    Fact,
+    GoalCondition,
+    ItemsIn,
+    ItemsWith,
+    LeversHeld,
+)
+from beliefnest.errors import InputError
+from beliefnest.world.paths import parse_path
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box
+
+__all__ = ["ConditionEntry", "check_condition", "condition_entry", "conditions_of"]
+
+Position = tuple[int, int, int]
+
+
+def _note(text: str) -> msgspec.Meta:
+    return msgspec.Meta(description=text)
+
+
+class ConditionEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+    """A condition: of a container, an agent, agents at levers, or a block."""
+
+    path: Annotated[str, _note("Where it is to be the case; / is reality.")] = "/"
+    container: Annotated[Position | None, _note("A container that holds `items`.")] = None
+    agent: Annotated[str | None, _note("An agent that has `items` or stands `at` a place.")] = None
+    items: Annotated[
+        dict[str, Annotated[int, msgspec.Meta(ge=1)]], _note("Item name to least count.")
+    ] = {}
+    at: Annotated[Position | None, _note("A block position.")] = None
+    within: Annotated[float, _note("Greatest distance from there, in blocks.")] = 1.0
+    block: Annotated[Position | None, _note("A block that is in a state.")] = None
+    state: Annotated[str | None, _note("name or name[property=value,...].")] = None
+    like: Annotated[Position | None, _note("A block that it is to be like.")] = None
+    agents: Annotated[list[str], _note("Agents at levers that are on, each at one, at once.")] = []
+    sites: Annotated[list[list[Position]], _note("Levers of each site; one will do.")] = []
+    property: Annotated[str, _note("In which it is to be `like`; empty: in all that it is.")] = ""
+
+
+def condition_entry(given: object, agents: Collection[str], box: Box) -> ConditionEntry:
+    """Return a condition that was given as a mapping, checked.
+
+    Raises:
+        InputError, PathError, UnknownNameError: As for `check_condition`.
+    """
+    try:
+        entry = msgspec.convert(given, ConditionEntry)
+    except msgspec.ValidationError as fault:
+        raise InputError(f"the condition {given!r} is malformed: {fault}") from None
+    check_condition(entry, agents, box)
+    return entry
+
+
+def check_condition(entry: ConditionEntry, agents: Collection[str], box: Box) -> None:
+    """Check that everything that a condition names exists.
+
+    Raises:
+        InputError: The condition is not valid, or is about a place outside the box.
+        PathError: The belief does not exist.
+        UnknownNameError: The item or block does not exist.
+    """
+    conditions_of(entry, agents)
+    registry = Registry.load()
+    for name in entry.items:
+        registry.item_stack(name)
+    if entry.state is not None:
+        registry.state_id(entry.state)
+    named = (entry.container, entry.at, entry.block, entry.like)
+    places = [place for place in named if place is not None]
+    for place in (*places, *(lever for site in entry.sites for lever in site)):
+        if place not in box:
+            raise InputError(
+                f"a condition is about {place}, outside the box {box.low} to {box.high}"
+            )
+
+
+def conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[GoalCondition]:
+    """Return the conditions of an entry, one for each fact and belief that it names.
+
+    Raises:
+        InputError: The entry is not valid.
+        PathError: The belief does not exist.
+    """
+    path = parse_path(entry.path, agents)
+    for name in (*entry.agents, *([] if entry.agent is None else [entry.agent])):
+        if name not in agents:
+            raise InputError(f"a condition is about {name!r}, who is no agent")
+    if any(len(site) != len(entry.agents) for site in entry.sites):
+        raise InputError("each site of a condition must have as many levers as there are `agents`")
+    facts = _facts(entry)
+    if not facts:
+        plain = msgspec.to_builtins(entry)
+        raise InputError(
+            f"the condition {plain} makes no sense; give container and items, agent and items, "
+            "agent and at, agents and sites, block and state, or block and like"
+        )
+    return [GoalCondition(fact, path) for fact in facts]
+
+
+def _facts(entry: ConditionEntry) -> list[Fact]:
+    match entry:
+        case ConditionEntry(container=place) if place is not None:
+            return [ItemsIn(place, item, count) for item, count in entry.items.items()]
+        case ConditionEntry(agent=agent, at=place) if agent is not None and place is not None:
+            return [AgentAt(agent, place, entry.within)]
+        case ConditionEntry(agents=[_, *_], sites=[_, *_]):
+            sites = tuple(tuple(site) for site in entry.sites)
+            return [LeversHeld(tuple(entry.agents), sites)]
+        case ConditionEntry(agent=agent) if agent is not None:
+            return [ItemsWith(agent, item, count) for item, count in entry.items.items()]
+    return _block_facts(entry)
+
+
+def _block_facts(entry: ConditionEntry) -> list[Fact]:
+    if entry.block is None:
+        return []
+    if entry.state is not None:
+        return [BlockIs(entry.block, entry.state)]
+    return [] if entry.like is None else [BlocksAlike(entry.block, entry.like, entry.property)]
