@@ -70,8 +70,7 @@ class JavaScriptEngine:
         self._context.set_memory_limit(MEMORY_BYTES)
         self._context.set_max_stack_size(_STACK_BYTES)
         self._context.set_time_limit(_SECONDS)
-        words = struct.unpack("<4i", hashlib.sha256(seed.encode()).digest()[:16])
-        given = json.dumps([list(words), sorted(skills), username])
+        given = json.dumps([_words(seed), sorted(skills), username])
         self.call: Callable[..., Any] = self._context.eval(_text())(given)
         self.skills = frozenset(skills)
         self.names: str = ", ".join(json.loads(self.call("names")))
@@ -79,6 +78,15 @@ class JavaScriptEngine:
     def read(self, text: str) -> Any:
         """Evaluate a program's text and return its value; raises `failed`."""
         return self._context.eval(text)
+
+    @property
+    def draws(self) -> int:
+        """How many random numbers were drawn in it."""
+        return int(self.call("draws"))
+
+    def reseed(self, seed: str) -> None:
+        """Let a seed decide about the random numbers from now on."""
+        self.call("reseed", json.dumps(_words(seed)))
 
     def advance(self) -> bool:
         """Run one pending job; return whether there was any. Raises `failed`."""
@@ -107,6 +115,11 @@ class Engines:
         self._free.append(engine)
 
 
+def _words(seed: str) -> list[int]:
+    """Return the state with which a seed begins."""
+    return list(struct.unpack("<4i", hashlib.sha256(seed.encode()).digest()[:16]))
+
+
 @cache
 def _text() -> str:
     """Return JavaScript that calls a part of the prelude: a function of arguments as JSON.
@@ -127,9 +140,12 @@ date()({{ now: () => time.ms }})
 delete globalThis.performance
 given => {{
   const [words, ...others] = JSON.parse(given)
-  const random = sfc32()(words)
-  Math.random = () => random.fraction()
+  let random = sfc32()(words)
+  let draws = 0
+  Math.random = () => {{ draws += 1; return random.fraction() }}
   const parts = prelude(vec3(), hints(), time, ...others)
+  parts.draws = () => draws
+  parts.reseed = text => {{ random = sfc32()(JSON.parse(text)) }}
   return (part, one, two, three) => parts[part](one, two, three)
 }} }}"""
 

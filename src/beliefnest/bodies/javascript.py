@@ -76,6 +76,16 @@ class JavaScriptProgram:
         except self._engine.failed as error:
             self._fault = _fault_of(str(error), kind="syntax")
 
+    @property
+    def draws(self) -> int:
+        """How many random numbers it has drawn."""
+        return 0 if self._leaves_nothing else self._engine.draws
+
+    def reseed(self, seed: str) -> None:
+        """Let a seed decide about its random numbers from now on."""
+        if not self._leaves_nothing:
+            self._engine.reseed(seed)
+
     def end(self) -> None:
         """Return a shareable engine to the pool; the program must not continue."""
         is_over = self._taken["done"] is not None and self._is_stuck and self._fault is None

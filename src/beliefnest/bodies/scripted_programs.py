@@ -31,7 +31,7 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import AgentState, Box, Event, EventKind, Point, Position
 
-__all__ = ["run_programs"]
+__all__ = ["RunningPrograms", "run_programs"]
 
 _USING = {
     "getItemFromChest",
@@ -91,57 +91,115 @@ def run_programs(
         grounds: Cache of the data of grids.
         engines: Pool of engines to share.
     """
-    first = world.now
-    happened: list[tuple[int, Event]] = []
-    latest: list[Event] = []
-
-    def hear(frame: Frame) -> None:
-        happened.extend((frame.tick, event) for event in frame.events)
-        latest[:] = frame.events
-
-    world.listen(hear)
+    under_way = RunningPrograms(world, programs, senses, rules, seed, grounds, engines)
+    last = world.now + timeout_ticks
     try:
-        begun = {
-            agent: JavaScriptProgram(
-                agent, SKILLS, code, f"{seed} {_begin_of(rules, agent, first)} {agent}", engines
-            )
-            for agent, code in programs.items()
-        }
-        runs = [
-            _begun(world, agent, program, senses, rules, grounds, latest)
-            for agent, program in begun.items()
-        ]
-        _until_over(world, runs, grounds, first + timeout_ticks)
+        while True:
+            with world.tick():
+                under_way.act()
+            under_way.settle()
+            if under_way.are_over:
+                break
+            if world.now >= last:
+                under_way.time_out(timeout_ticks)
+                break
     finally:
-        world.unlisten(hear)
-    for run in runs:
-        run.program.end()
-    return {
-        run.hand.name: _result(run, first, tuple(happened), remembers=rules.remembers)
-        for run in runs
-    }
+        under_way.leave()
+    return under_way.results()
 
 
-def _until_over(world: ScriptedWorld, runs: Sequence[_Run], grounds: Grounds, last: int) -> None:
-    """Let ticks pass until all programs have ended, or are ended at the last tick."""
-    first = world.now
-    while True:
-        with world.tick():
-            done = [(run, _act(run)) for run in runs]
-        # The effects of the tick can be perceived now that it has ended.
-        for run in runs:
-            _hear(run, grounds)
-        for run, answers in done:
+class RunningPrograms:
+    """Programs under way together, advanced tick by tick by whoever makes the ticks.
+
+    For each tick: `act` inside the tick, then `settle`. Arguments as for `run_programs`.
+    """
+
+    def __init__(
+        self,
+        world: ScriptedWorld,
+        programs: Mapping[str, str],
+        senses: Mapping[str, Sense],
+        rules: RunRules,
+        seed: str,
+        grounds: Grounds,
+        engines: Engines,
+    ) -> None:
+        self._world, self._rules, self._grounds = world, rules, grounds
+        self._first = world.now
+        self._happened: list[tuple[int, Event]] = []
+        self._latest: list[Event] = []
+        self._done: list[tuple[_Run, list[tuple[int, bool, object]]]] = []
+        world.listen(self._hear)
+        try:
+            begun = {
+                agent: JavaScriptProgram(
+                    agent,
+                    SKILLS,
+                    code,
+                    f"{seed} {_begin_of(rules, agent, world.now)} {agent}",
+                    engines,
+                )
+                for agent, code in programs.items()
+            }
+            self._runs = [
+                _begun(world, agent, program, senses, rules, grounds, self._latest)
+                for agent, program in begun.items()
+            ]
+        except BaseException:
+            self.leave()
+            raise
+
+    @property
+    def are_over(self) -> bool:
+        """True if all of them have ended."""
+        return all(run.end_tick is not None for run in self._runs)
+
+    @property
+    def draws(self) -> int:
+        """Number of random numbers that they have drawn."""
+        return sum(run.program.draws for run in self._runs)
+
+    def reseed(self, seed: str) -> None:
+        """Let a seed decide about the random numbers of all of them from now on."""
+        for run in self._runs:
+            run.program.reseed(f"{seed} {run.hand.name}")
+
+    def act(self) -> None:
+        """Let all agents act in the tick that is being made."""
+        self._done = [(run, _act(run)) for run in self._runs]
+
+    def settle(self) -> None:
+        """Tell the programs the effects of the tick, after it has ended."""
+        for run in self._runs:
+            _hear(run, self._grounds)
+        for run, answers in self._done:
             for number, ok, value in answers:
-                _settle(run, grounds, number, ok=ok, value=value)
-        for run in runs:
+                _settle(run, self._grounds, number, ok=ok, value=value)
+        for run in self._runs:
             if run.end_tick is None and run.program.ended and not _goes_on(run):
-                run.end_tick = world.now
-        if all(run.end_tick is not None for run in runs):
-            return
-        if world.now >= last:
-            _time_out(runs, world.now, last - first)
-            return
+                run.end_tick = self._world.now
+
+    def time_out(self, timeout_ticks: int) -> None:
+        """End those that go on, because their ticks are over."""
+        _time_out(self._runs, self._world.now, timeout_ticks)
+
+    def leave(self) -> None:
+        """Listen to the world no longer."""
+        self._world.unlisten(self._hear)
+
+    def results(self) -> Mapping[str, ProgramResult]:
+        """Give the engines back, and return what became of the programs."""
+        for run in self._runs:
+            run.program.end()
+        happened, remembers = tuple(self._happened), self._rules.remembers
+        return {
+            run.hand.name: _result(run, self._first, happened, remembers=remembers)
+            for run in self._runs
+        }
+
+    def _hear(self, frame: Frame) -> None:
+        self._happened.extend((frame.tick, event) for event in frame.events)
+        self._latest[:] = frame.events
 
 
 def _begin_of(rules: RunRules, agent: str, now: int) -> int:

@@ -46,6 +46,17 @@ class Scene:
         self._doubted, self._diagonal, self._key = tuple(doubted), diagonal, key
         self._stages: dict[Position, Stage] = {}
 
+    def with_worlds(self, worlds: Worlds, key: bytes) -> "Scene":
+        """Return a scene of other alternatives, with a digest of how they differ from these."""
+        return Scene(
+            self._registry,
+            worlds,
+            self._goals,
+            self._doubted,
+            diagonal=self._diagonal,
+            key=self._key + key,
+        )
+
     def stage(self, *cells: Position) -> Stage:
         """Return the stage of all cells that can be got to from some."""
         for known in self._stages.values():

@@ -27,6 +27,8 @@ from beliefnest.world.values import Placements, Position
 if TYPE_CHECKING:  # What draws or infers takes long to import, and few nests are asked to.
     from beliefnest.minds.inference import Inference
     from beliefnest.minds.model import MindModel
+    from beliefnest.nest.acting.script import Progress
+    from beliefnest.nest.face.imagining import Imagined
     from beliefnest.pictures.figure import Figure
     from beliefnest.pictures.scene import Scene
 
@@ -134,6 +136,65 @@ class ShownSimulator(ABC):
         last = self._tick if until is None else tick_of(until)
         recording, path = self._recording, self._path
         return infer_in(recording, path, model, tick_of(since), last, ended=ended, smooth=smooth)
+
+    @in_turn
+    def imagine(
+        self,
+        since: int,
+        until: int | None = None,
+        *,
+        actors: "Mapping[str, Mapping[str, object]]",
+        n: int = 200,
+        seed: int = 0,
+        weights: Mapping[str, Mapping[str, float]] | None = None,
+        evidence: Sequence[Mapping[str, Any]] | None = None,
+        tolerance: tuple[int, int] = (0, 0),
+        on_progress: "Progress | None" = None,
+    ) -> "Imagined":
+        """Draw what may have happened unseen, as weighted histories; nothing is recorded.
+
+        Each history is a fork of this simulator at `since`, in a scripted world of its own, in
+        which each actor follows one of its candidates. Other agents do what this simulator holds
+        that they did. A history counts if the owner of this belief would have perceived in it what
+        it perceived; see docs/imagine.md.
+
+        Args:
+            since: The tick at which histories begin.
+            until: The tick at which they end; None: the tick that the simulator shows.
+            actors: Candidates by name, by agent. A candidate is a program (JavaScript; empty:
+                nothing), a `MindModel` of that agent, or a policy: a function that takes the
+                agent's simulator in the history and returns its next program.
+            n: How many histories.
+            seed: Decides about all that is random.
+            weights: Probabilities of candidates by name, by agent; None: uniform.
+            evidence: Conditions at `until` that count in place of what was perceived, in the
+                language of goals, each with an optional probability of being `mistaken`.
+            tolerance: Cells by which agents may be elsewhere, and ticks by which things may have
+                happened earlier or later.
+            on_progress: Takes what is being done, how many ticks of it, and of how many.
+
+        Raises:
+            InputError: An argument is of the wrong form, an actor's place is not known, or a
+                candidate's program has a syntax error.
+            PathError: There is no such agent.
+            TickError: A tick lies in the future or before the start, or `since` after `until`.
+        """
+        from beliefnest.nest.face.imagining import imagine_in
+
+        last = self._tick if until is None else until
+        return imagine_in(
+            self._recording,
+            self._path,
+            since,
+            last,
+            actors,
+            n,
+            seed,
+            weights,
+            evidence,
+            tolerance,
+            on_progress,
+        )
 
     @in_turn
     def credence(

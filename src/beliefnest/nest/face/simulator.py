@@ -23,7 +23,7 @@ from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Model
 
-__all__ = ["Simulator", "check_senses"]
+__all__ = ["Simulator", "check_branch_name", "check_senses"]
 
 Mode = Literal["control", "follow"]
 
@@ -78,7 +78,7 @@ class Simulator(ShownSimulator):
             BranchError: The name is not allowed, or `at` is given for a known branch or `follow`.
             TickError: `at` is not a whole number, or in the future or before the start.
         """
-        _check_branch_name(name)
+        check_branch_name(name)
         if name == FOLLOW:
             if at is not None:
                 raise BranchError(
@@ -107,7 +107,7 @@ class Simulator(ShownSimulator):
         Raises:
             BranchError: There is no branch `old`, or one `new`, or the name is not allowed.
         """
-        _check_branch_name(new)
+        check_branch_name(new)
         if new == FOLLOW:
             raise BranchError(f"{FOLLOW!r} is reserved for follow mode; choose another branch")
         self._engine.rename(TimelineKey(self._path, old), new)
@@ -339,7 +339,8 @@ def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineK
     return [info.key for info in reversed(infos) if info.key in resting and info.key != key]
 
 
-def _check_branch_name(name: object) -> None:
+def check_branch_name(name: object) -> None:
+    """Refuse what can name no branch; BranchError says so."""
     if not isinstance(name, str) or not name or not name.isprintable() or set(name) & set("/[]"):
         raise BranchError(
             f"{name!r} is not a branch name; use printable text without '/', '[' and ']'"

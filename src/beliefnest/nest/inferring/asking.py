@@ -12,12 +12,13 @@ from beliefnest.minds.hypotheses import Hypotheses
 from beliefnest.minds.inference import Inference, reported_credence
 from beliefnest.minds.model import MindModel
 from beliefnest.minds.planner import count_values
+from beliefnest.minds.scene import Scene
 from beliefnest.minds.tracking import Tracker, known_after
 from beliefnest.nest.inferring.reading import Question, Reading
 from beliefnest.nest.past.recording import Recording
 from beliefnest.world.paths import BeliefPath, path_text
 
-__all__ = ["credence_in", "infer_in"]
+__all__ = ["ModelStart", "credence_in", "infer_in", "start_of_model"]
 
 _ROOM = 2**27
 """Bytes that values may take in one chunk of utilities."""
@@ -54,6 +55,36 @@ def infer_in(
     step_ticks = model.step_ticks or _STEP_TICKS.get(recording.world, _MINECRAFT_STEP)
     _check_goals(model, work.reading.moments)
     return work.inferred(model, since, step_ticks, ended=ended, smooth=smooth)
+
+
+@dataclass(frozen=True, eq=False)
+class ModelStart:
+    """What a model begins with at one tick of a node.
+
+    Attributes:
+        model: The model.
+        scene: All alternatives then.
+        agrees: The alternatives that agree with what the node holds from then on.
+        step_ticks: Ticks that an action takes.
+    """
+
+    model: MindModel
+    scene: Scene
+    agrees: int
+    step_ticks: int
+
+
+def start_of_model(
+    recording: Recording, path: BeliefPath, model: MindModel, since: int, until: int
+) -> ModelStart:
+    """Return what a model begins with at a tick, known up to another one what agrees.
+
+    Raises:
+        InputError, PathError, TickError: As for `infer_in`.
+    """
+    reading = _work_on(recording, path, model, since, until).reading
+    step_ticks = model.step_ticks or _STEP_TICKS.get(recording.world, _MINECRAFT_STEP)
+    return ModelStart(model, reading.moments[0].scene, reading.agrees, step_ticks)
 
 
 @dataclass

@@ -1,0 +1,270 @@
+"""Courses of a modelled agent, sampled action by action from the planner's policy."""
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass
+from random import Random
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.minds.hypotheses import Hypotheses, conditioned
+from beliefnest.minds.model import MindModel
+from beliefnest.minds.planner import Knowledge
+from beliefnest.minds.scene import Scene
+from beliefnest.minds.stage import Stage
+from beliefnest.minds.worlds import Pose, World, Worlds
+from beliefnest.perception.sight import Sight
+from beliefnest.world.values import Items, Position
+
+__all__ = ["Act", "Changes", "Draw", "Open", "Step", "Strategy", "Walker"]
+
+_MOST_POLICIES = 512
+
+
+@dataclass(frozen=True, slots=True)
+class Draw:
+    """One hypothesis that was drawn, by numbers.
+
+    Attributes:
+        rationality: Number of the rationality.
+        utility: Row of the utilities.
+        credence: Row of the initial credences.
+        actual: Number of the alternative that is the case.
+    """
+
+    rationality: int
+    utility: int
+    credence: int
+    actual: int
+
+
+@dataclass(frozen=True, slots=True)
+class Changes:
+    """What has changed in a history since it began.
+
+    Attributes:
+        blocks: Indices into the grid with the new block states.
+        moved: Container, item and the number that came in since then.
+    """
+
+    blocks: tuple[tuple[tuple[int, int, int], int], ...] = ()
+    moved: tuple[tuple[Position, str, int], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step into a cell; the own cell: the agent stays, or bumps into something."""
+
+    cell: Position
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """A look into a container."""
+
+    place: Position
+
+
+@dataclass(frozen=True, slots=True)
+class Act:
+    """An act on a goal, which ends the course; the item that it takes, if it does."""
+
+    item: str | None
+
+
+class Strategy:
+    """How the agent of a model chooses, for all hypotheses and all that may change.
+
+    Args:
+        model: The hypotheses.
+        scene: All alternatives where histories begin.
+        agrees: The alternatives that agree with the observer's node, as a set of bits.
+        step_ticks: Ticks that an action takes.
+        sight: How agents see.
+        transparent: Whether contents are perceived with the container's block.
+    """
+
+    def __init__(
+        self,
+        model: MindModel,
+        scene: Scene,
+        agrees: int,
+        step_ticks: int,
+        sight: Sight,
+        *,
+        transparent: bool,
+    ) -> None:
+        self.model, self.step_ticks = model, step_ticks
+        self._scene, self._sight, self._transparent = scene, sight, transparent
+        self._hypotheses = Hypotheses.of(model, step_ticks)
+        weights = model.actual_weights
+        self._actual = [
+            float(agrees >> a & 1) if weights is None else weights[name]
+            for a, name in enumerate(model.alternative_names)
+        ]
+        self._prior = np.cumsum(model.prior_weights.reshape(-1))
+        self._scenes: dict[Changes, Scene] = {Changes(): scene}
+        self._policies: dict[tuple[Stage, Position, Knowledge], npt.NDArray[np.float64]] = {}
+        self._sums: dict[tuple[Stage, Position, Knowledge, int, int, int], list[float]] = {}
+        self._looks: dict[tuple[int, Pose], list[int]] = {}
+
+    def draw_actual(self, chance: Random) -> int:
+        """Draw the number of the alternative that is the case."""
+        return chance.choices(range(len(self._actual)), self._actual)[0]
+
+    def draw(self, chance: Random, actual: int) -> Draw:
+        """Draw a hypothesis from the prior."""
+        _, credences = self.model.prior_weights.shape
+        number = int(np.searchsorted(self._prior, chance.random() * self._prior[-1], "right"))
+        number = min(number, len(self._prior) - 1)
+        rationality = chance.randrange(len(self.model.rationalities))
+        return Draw(rationality, number // credences, number % credences, actual)
+
+    def scene(self, changes: Changes) -> Scene:
+        """Return all alternatives, with what has changed in a history since it began."""
+        found = self._scenes.get(changes)
+        if found is None:
+            found = self._scenes[changes] = self._changed(changes)
+        return found
+
+    def sums(self, stage: Stage, cell: Position, knowledge: Knowledge, draw: Draw) -> list[float]:
+        """Return the cumulative probabilities of all actions."""
+        key = (stage, cell, knowledge, draw.rationality, draw.utility, draw.credence)
+        found = self._sums.get(key)
+        if found is None:
+            policy = self._policy(stage, cell, knowledge)
+            credence = draw.credence if policy.shape[3] > 1 else 0
+            column = policy[:, draw.rationality, draw.utility, credence]
+            found = self._sums[key] = np.cumsum(np.exp(column)).tolist()
+        return found
+
+    def alike(self, scene: Scene, pose: Pose, actual: int) -> int:
+        """Return the alternatives with the same percept from a pose as the actual one."""
+        if self._sight.field_of_view >= 360:
+            pose = (pose[0], 0.0, 0.0)
+        key = (id(scene), pose)
+        found = self._looks.get(key)
+        if found is None:
+            found = self._looks[key] = scene.worlds.alike(*pose, all_round=False)
+        return found[actual]
+
+    def told(self, draw: Draw) -> dict[str, float | str]:
+        """Return a hypothesis by the names of its factors."""
+        model = self.model
+        told: dict[str, float | str] = {
+            f"utility.{goal}": float(model.utility_rows[draw.utility, n])
+            for n, goal in enumerate(model.goals)
+        }
+        if model.doubt is not None:
+            row = model.credence_rows[draw.credence]
+            told |= {
+                f"credence.{name}": float(row[n]) for n, name in enumerate(model.alternative_names)
+            }
+            told["actual"] = model.alternative_names[draw.actual]
+        if len(model.rationalities) > 1:
+            told["rationality"] = model.rationalities[draw.rationality]
+        return told
+
+    def _policy(
+        self, stage: Stage, cell: Position, knowledge: Knowledge
+    ) -> npt.NDArray[np.float64]:
+        key = (stage, cell, knowledge)
+        found = self._policies.get(key)
+        if found is None:
+            found = self._policies[key] = self._hypotheses.log_policy(stage, cell, knowledge)
+            while len(self._policies) > _MOST_POLICIES:
+                del self._policies[next(iter(self._policies))]
+        return found
+
+    def _changed(self, changes: Changes) -> Scene:
+        before = self._scene.worlds
+        grids: dict[int, npt.NDArray[np.int32]] = {}
+        worlds = []
+        for world in before.worlds:
+            grid = grids.get(id(world.blocks))
+            if grid is None:
+                grid = grids[id(world.blocks)] = world.blocks.copy()
+                for index, state in changes.blocks:
+                    grid[index] = state
+            contents = {place: dict(items) for place, items in world.contents.items()}
+            for place, item, count in changes.moved:
+                held = contents.setdefault(place, {})
+                held[item] = max(0, held.get(item, 0) + count)
+            kept = {place: _without_nothing(items) for place, items in contents.items()}
+            worlds.append(World(grid, kept, world.agents))
+        made = Worlds(
+            self._sight,
+            before.box,
+            worlds,
+            before.items,
+            self.model.agent,
+            transparent=self._transparent,
+        )
+        return self._scene.with_worlds(made, repr(changes).encode())
+
+
+class Walker:
+    """An agent under way, whose course is sampled from the planner's policy.
+
+    Args:
+        strategy: How it chooses.
+        draw: Its hypothesis.
+        pose: Where it begins.
+        cell: The cell it begins in.
+    """
+
+    def __init__(self, strategy: Strategy, draw: Draw, pose: Pose, cell: Position) -> None:
+        self.strategy, self.draw, self.cell = strategy, draw, cell
+        self.is_over = False
+        everyone = (1 << len(strategy.model.alternatives)) - 1
+        self._scene = strategy.scene(Changes())
+        self._knowledge: Knowledge = (everyone, everyone)
+        self._perceive(pose)
+
+    @property
+    def name(self) -> str:
+        """The agent."""
+        return self.strategy.model.agent
+
+    def again(self) -> "Walker":
+        """Return the same once more, to go another way."""
+        other = Walker.__new__(Walker)
+        other.__dict__.update(self.__dict__)
+        return other
+
+    def choose(self, chance: Random, changes: Changes) -> Step | Open | Act:
+        """Choose the next action in the world as it is now."""
+        self._scene = self.strategy.scene(changes)
+        stage = self._scene.stage(self.cell)
+        sums = self.strategy.sums(stage, self.cell, self._knowledge, self.draw)
+        action = min(bisect_right(sums, chance.random() * sums[-1]), len(sums) - 1)
+        steps = stage.moves.shape[2]
+        if action <= steps:
+            if action == 0:
+                return Step(self.cell)
+            number = stage.index[self.cell]
+            return Step(stage.cells[int(stage.moves[self.draw.actual, number, action - 1])])
+        if action <= steps + len(stage.boxes):
+            box = action - 1 - steps
+            self._learn(int(stage.content[box, self.draw.actual]))
+            return Open(stage.boxes[box])
+        self.is_over = True
+        goal = list(self.strategy.model.goal_values.values())[action - 1 - steps - len(stage.boxes)]
+        return Act(goal.item)
+
+    def arrive(self, pose: Pose, cell: Position) -> None:
+        """Be in a cell, and perceive from there."""
+        self.cell = cell
+        self._perceive(pose)
+
+    def _perceive(self, pose: Pose) -> None:
+        self._learn(self.strategy.alike(self._scene, pose, self.draw.actual))
+
+    def _learn(self, mask: int) -> None:
+        if self._knowledge[0] & mask != self._knowledge[0]:
+            self._knowledge = conditioned(self._knowledge, mask)
+
+
+def _without_nothing(items: Mapping[str, int]) -> Items:
+    return {name: count for name, count in items.items() if count > 0}

@@ -1,0 +1,246 @@
+"""Agreement of a course with what an observer perceived."""
+
+from collections import Counter
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from beliefnest.nest.acting.courses import Course, Glimpse
+from beliefnest.nest.past.percepts import Percept, cell_in
+from beliefnest.perception.sight import Geometry, Sight
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Point, Position
+
+__all__ = ["Agreement", "Tolerance", "Witness"]
+
+_MOST_GRIDS = 4096
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """What may differ.
+
+    Attributes:
+        cells: Greatest distance of an agent from where it was seen, in cells along each axis.
+        ticks: Ticks by which something may have happened earlier or later.
+    """
+
+    cells: int = 0
+    ticks: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Witness:
+    """Who perceived what.
+
+    Attributes:
+        owner: The observer; None: it is nobody, and everything is perceived.
+        percepts: What it perceived, oldest first.
+        agents: The agents that are in question.
+        ignored: Flat cells of blocks that are drawn whatever was perceived of them.
+        ignored_contents: Containers whose contents are.
+        unknown_contents: Containers whose contents it did not know when courses begin.
+        items: Dropped items when courses begin.
+        box: The part of space.
+        sight: How agents see.
+        tolerance: What may differ.
+    """
+
+    owner: str | None
+    percepts: Sequence[Percept]
+    agents: Collection[str]
+    ignored: frozenset[int]
+    ignored_contents: frozenset[Position]
+    unknown_contents: frozenset[Position]
+    items: Sequence[DroppedItem]
+    box: Box
+    sight: Sight
+    tolerance: Tolerance
+
+
+@dataclass(eq=False)
+class Agreement:
+    """Compares courses with what was perceived, tick by tick.
+
+    Args:
+        witness: What was perceived.
+    """
+
+    witness: Witness
+    _grids: dict[int, tuple[BlockGrid, bytes]] = field(default_factory=dict)
+    _geometries: dict[bytes, Geometry] = field(default_factory=dict)
+    _sees: dict[tuple[bytes, Point, float, float, Point], bool] = field(default_factory=dict)
+    _blocks: dict[tuple[bytes, int], bool] = field(default_factory=dict)
+    _lying: dict[tuple[bytes, Point, float, float], Counter[tuple[str, Position]]] = field(
+        default_factory=dict
+    )
+
+    def __post_init__(self) -> None:
+        percepts = self.witness.percepts
+        ignored = np.array(sorted(self.witness.ignored), dtype=np.int64)
+        self._numbers = {percept.tick: number for number, percept in enumerate(percepts)}
+        self._keep = [~np.isin(percept.cells, ignored) for percept in percepts]
+        self._number = 0
+
+    def expected(self, tick: int) -> int:
+        """Return the number of the percept that holds at a tick."""
+        while (
+            self._number + 1 < len(self.witness.percepts)
+            and self.witness.percepts[self._number + 1].tick <= tick
+        ):
+            self._number += 1
+        while self.witness.percepts[self._number].tick > tick and self._number:
+            self._number -= 1
+        return self._number
+
+    def is_due(self, tick: int) -> bool:
+        """Return True if a percept begins at a tick."""
+        return tick in self._numbers
+
+    def holds(self, course: Course, glimpse: Glimpse) -> bool:
+        """Return True if a course looks at a tick as was perceived."""
+        if course.contradiction is not None:
+            return False
+        number = self.expected(glimpse.tick)
+        percept = self.witness.percepts[number]
+        if not glimpse.is_new and percept.tick != glimpse.tick:
+            return True
+        deeds = percept.deeds if percept.tick == glimpse.tick else ()
+        return self.fits(course, glimpse, number) and self._deeds_fit(glimpse, percept, deeds)
+
+    def holds_within(self, course: Course, glimpses: Sequence[Glimpse], tick: int) -> bool:
+        """Return True if a course looked as was perceived at a tick, at one of some ticks."""
+        if course.contradiction is not None:
+            return False
+        number = self._numbers[tick]
+        percept = self.witness.percepts[number]
+        seen = {deed for glimpse in glimpses for deed in self._witnessed(glimpse, percept)}
+        mine = {deed for deed in percept.deeds if deed[1] in self.witness.agents}
+        return mine <= seen and any(self.fits(course, each, number) for each in glimpses)
+
+    def fits(self, course: Course, glimpse: Glimpse, number: int) -> bool:
+        """Return True if what is the case at a tick could have been perceived as a percept says."""
+        percept = self.witness.percepts[number]
+        if not percept.present:
+            return True
+        grid = self._grid(glimpse.blocks)
+        return (
+            self._blocks_fit(grid, glimpse.blocks, number)
+            and self._contents_fit(course, glimpse, percept)
+            and self._agents_fit(grid, glimpse, percept)
+            and self._items_fit(grid, glimpse, percept)
+        )
+
+    def _deeds_fit(self, glimpse: Glimpse, percept: Percept, deeds: Sequence[object]) -> bool:
+        if not glimpse.deeds and not deeds:
+            return True
+        mine = tuple(deed for deed in percept.deeds if deed[1] in self.witness.agents)
+        expected = mine if deeds else ()
+        return self._witnessed(glimpse, percept) == expected
+
+    def _witnessed(self, glimpse: Glimpse, percept: Percept) -> tuple[object, ...]:
+        """Return the deeds of a tick that the observer would have seen."""
+        if not glimpse.deeds or not percept.present:
+            return ()
+        grid = self._grid(glimpse.blocks)
+        return tuple(
+            deed
+            for deed in glimpse.deeds
+            if deed[1] == self.witness.owner
+            or self._sees_agent(grid, glimpse, glimpse.agents[deed[1]].position)
+        )
+
+    def _blocks_fit(self, grid: bytes, blocks: BlockGrid, number: int) -> bool:
+        key = (grid, number)
+        found = self._blocks.get(key)
+        if found is None:
+            percept, keep = self.witness.percepts[number], self._keep[number]
+            there = blocks.reshape(-1)[percept.cells[keep]]
+            found = self._blocks[key] = bool(np.array_equal(there, percept.states[keep]))
+        return found
+
+    def _contents_fit(self, course: Course, glimpse: Glimpse, percept: Percept) -> bool:
+        witness = self.witness
+        for place, items in percept.contents.items():
+            if place in witness.ignored_contents:
+                continue
+            if place in witness.unknown_contents and place not in course.touched:
+                continue
+            if glimpse.containers.get(place, {}) != items:
+                return False
+        return True
+
+    def _agents_fit(self, grid: bytes, glimpse: Glimpse, percept: Percept) -> bool:
+        for name in self.witness.agents:
+            state, seen = glimpse.agents.get(name), percept.agents.get(name)
+            if state is None:
+                if seen is not None:
+                    return False
+                continue
+            is_seen = name == self.witness.owner or self._sees_agent(grid, glimpse, state.position)
+            far = self.witness.tolerance.cells
+            if seen is None:
+                if is_seen:
+                    return False
+            elif not (is_seen or far) or not _near(state.position, seen[0], far):
+                return False
+        return True
+
+    def _items_fit(self, grid: bytes, glimpse: Glimpse, percept: Percept) -> bool:
+        witness = self.witness
+        if not witness.items and not percept.items:
+            return True
+        if witness.owner is None:
+            lying = Counter((item.name, cell_in(item.position)) for item in witness.items)
+            return lying == percept.items
+        eye = _eye(glimpse, witness.owner)
+        key = (grid, *eye)
+        if key not in self._lying:
+            geometry = self._geometry(grid, glimpse.blocks)
+            places = [cell_in(item.position) for item in witness.items]
+            seen = geometry.sees_blocks(*eye, np.array(places, dtype=np.int64).reshape(-1, 3))
+            self._lying[key] = Counter(
+                (item.name, place)
+                for item, place, is_seen in zip(witness.items, places, seen.tolist(), strict=True)
+                if is_seen
+            )
+        return self._lying[key] == percept.items
+
+    def _sees_agent(self, grid: bytes, glimpse: Glimpse, feet: Point) -> bool:
+        owner = self.witness.owner
+        if owner is None:
+            return True
+        eye = _eye(glimpse, owner)
+        key = (grid, *eye, feet)
+        found = self._sees.get(key)
+        if found is None:
+            geometry = self._geometry(grid, glimpse.blocks)
+            found = self._sees[key] = bool(geometry.sees_agents(*eye, [feet])[0])
+        return found
+
+    def _grid(self, blocks: BlockGrid) -> bytes:
+        known = self._grids.get(id(blocks))
+        if known is None or known[0] is not blocks:
+            while len(self._grids) >= _MOST_GRIDS:
+                del self._grids[next(iter(self._grids))]
+            known = self._grids[id(blocks)] = (blocks, blocks.tobytes())
+        return known[1]
+
+    def _geometry(self, grid: bytes, blocks: BlockGrid) -> Geometry:
+        found = self._geometries.get(grid)
+        if found is None:
+            made = self.witness.sight.geometry(blocks, self.witness.box.low)
+            found = self._geometries[grid] = made
+        return found
+
+
+def _eye(glimpse: Glimpse, owner: str) -> tuple[Point, float, float]:
+    state = glimpse.agents[owner]
+    x, y, z = state.position
+    return (x, y + EYE_HEIGHT, z), state.yaw, state.pitch
+
+
+def _near(feet: Point, other: Point, cells: int) -> bool:
+    pairs = zip(cell_in(feet), cell_in(other), strict=True)
+    return max(abs(one - two) for one, two in pairs) <= cells

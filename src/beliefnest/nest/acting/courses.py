@@ -1,0 +1,439 @@
+"""Courses: one way in which things may have gone on from a moment, in a scripted world of its own.
+
+Agents follow programs, policies or models of minds; those who are not in question do what they were
+perceived to do. A course is a function of what it begins with and of its seeds, so that it can be
+run again up to any tick.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.bodies.engines import Engines
+from beliefnest.bodies.grounds import Grounds
+from beliefnest.bodies.protocol import Fault, RunRules
+from beliefnest.bodies.scripted_programs import RunningPrograms
+from beliefnest.errors import InputError, WorldError
+from beliefnest.minds.walking import Act, Changes, Draw, Open, Step, Strategy, Walker
+from beliefnest.minds.worlds import middle_of
+from beliefnest.nest.past.percepts import HANDLING, Deed, Percept, cell_in, deed_of
+from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.world.signs import plain_state
+from beliefnest.world.values import AgentState, EventKind, Items, Point, Position
+
+__all__ = ["Candidate", "Course", "CoursePlan", "Glimpse", "PolicyProgram", "Seeds"]
+
+PolicyProgram = Callable[["Course", str], str]
+"""Returns the next program of an agent in a course; empty: it does nothing more."""
+
+Seeds = tuple[tuple[int, str], ...]
+"""From which tick on which seed decides."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """What an agent may have done.
+
+    Attributes:
+        name: Its name.
+        program: JavaScript; empty: nothing.
+        strategy: Of a model of its mind.
+        policy: Of a policy.
+    """
+
+    name: str
+    program: str = ""
+    strategy: Strategy | None = None
+    policy: PolicyProgram | None = None
+
+    @property
+    def is_fixed(self) -> bool:
+        """Return True if it is a program, which draws nothing unless it says so."""
+        return self.strategy is None and self.policy is None
+
+
+@dataclass(frozen=True, eq=False)
+class CoursePlan:
+    """What all courses of one call have in common.
+
+    Attributes:
+        agents: Those that are in question, in order.
+        percepts: What the observer perceived, oldest first; what the others did is among it.
+        speech_ticks: Ticks that it takes somebody to say something.
+        starts: What courses begin with, by the edits that were drawn.
+    """
+
+    agents: tuple[str, ...]
+    percepts: Sequence[Percept]
+    speech_ticks: int
+    starts: Callable[[tuple[int, ...]], Snapshot]
+
+    @cached_property
+    def grounds(self) -> Grounds:
+        """What was made of grids of blocks."""
+        return Grounds()
+
+    @cached_property
+    def engines(self) -> Engines:
+        """Engines of programs that may be used again."""
+        return Engines()
+
+    @cached_property
+    def _worlds(self) -> dict[tuple[int, ...], ScriptedWorld]:
+        return {}
+
+    @cached_property
+    def by_tick(self) -> Mapping[int, Percept]:
+        """Percepts by tick."""
+        return {percept.tick: percept for percept in self.percepts}
+
+    def world(self, drawn: tuple[int, ...]) -> ScriptedWorld:
+        """Return a new world at the beginning."""
+        if drawn not in self._worlds:
+            self._worlds[drawn] = ScriptedWorld.from_snapshot(self.starts(drawn))
+        return self._worlds[drawn].again()
+
+
+@dataclass(frozen=True, slots=True)
+class Glimpse:
+    """What can be perceived of a course at one tick.
+
+    Attributes:
+        tick: When.
+        blocks: Block states; a grid does not change once it was handed out.
+        agents: All agents.
+        containers: What containers hold.
+        deeds: What was done at containers in this tick.
+        is_new: False: nothing of it differs from the tick before.
+    """
+
+    tick: int
+    blocks: BlockGrid
+    agents: Mapping[str, AgentState]
+    containers: Mapping[Position, Items]
+    deeds: tuple[Deed, ...]
+    is_new: bool
+
+
+class Course:
+    """A course under way.
+
+    Args:
+        plan: What it has in common with others.
+        drawn: The alternatives that are the case, by doubt.
+        candidates: By agent.
+        draws: The hypotheses of agents whose candidate is a model.
+        seeds: Which seed decides from when on.
+
+    Attributes:
+        frames: What has happened, without quiet ticks.
+        touched: Containers whose contents changed.
+        contradiction: What others were seen to do that is not possible in it; None: nothing.
+        faults: Why programs failed, by agent.
+    """
+
+    def __init__(
+        self,
+        plan: CoursePlan,
+        drawn: tuple[int, ...],
+        candidates: Mapping[str, Candidate],
+        draws: Mapping[str, Draw],
+        seeds: Seeds,
+    ) -> None:
+        self.plan, self.drawn, self.candidates, self.draws = plan, drawn, candidates, draws
+        self.seeds = seeds
+        self.frames: list[Frame] = []
+        self.touched: frozenset[Position] = frozenset()
+        self.contradiction: str | None = None
+        self.faults: dict[str, Fault] = {}
+        self.world = plan.world(drawn)
+        self.start = self.world.now
+        self._changed_blocks: dict[tuple[int, int, int], int] = {}
+        self._moved: dict[tuple[Position, str], int] = {}
+        self._changes = Changes()
+        self._latest: Frame | None = None
+        self._has_drawn = False
+        self._programs: dict[str, RunningPrograms] = {}
+        self.world.listen(self._take)
+        self._seed(seeds[0][1])
+        self._walkers = [
+            self._walker(name, candidate.strategy, draws[name])
+            for name, candidate in candidates.items()
+            if candidate.strategy is not None
+        ]
+        self._begin_programs()
+
+    @property
+    def tick(self) -> int:
+        """The latest tick."""
+        return self.world.now
+
+    @property
+    def is_shared(self) -> bool:
+        """True if histories with other seeds would have gone the same way so far."""
+        return not self._has_drawn and all(each.is_fixed for each in self.candidates.values())
+
+    def again(self, seeds: Seeds) -> "Course":
+        """Return the same course, which goes on with other seeds that begin as its own do."""
+        if self._programs or any(each.policy is not None for each in self.candidates.values()):
+            other = Course(self.plan, self.drawn, self.candidates, self.draws, seeds)
+            other.run_to(self.tick)
+            other.reseed()
+            return other
+        other = Course.__new__(Course)
+        other.__dict__.update(self.__dict__)
+        other.seeds = seeds
+        other.frames, other.faults = list(self.frames), dict(self.faults)
+        other._changed_blocks, other._moved = dict(self._changed_blocks), dict(self._moved)
+        other._walkers = [walker.again() for walker in self._walkers]
+        other._programs = {}
+        other.world = self.world.again()
+        other.world.listen(other._take)
+        other.reseed()
+        return other
+
+    def reseed(self) -> None:
+        """Let the seed decide that begins at the latest tick."""
+        tick, seed = self.seeds[-1]
+        if tick == self.tick and len(self.seeds) > 1:
+            self._seed(seed)
+
+    def run_to(self, tick: int) -> None:
+        """Go on up to a tick, with the seeds that decided."""
+        later = dict(self.seeds[1:])
+        while self.tick < tick and self.contradiction is None:
+            if self.tick in later:
+                self._seed(later[self.tick])
+            self.step()
+
+    def step(self) -> Glimpse:
+        """Let one tick pass."""
+        world, now = self.world, self.world.now + 1
+        self._latest = None
+        done = self.plan.by_tick.get(now)
+        if done is not None:
+            self._let_in(done)
+        with world.tick():
+            if done is not None:
+                self._do_as_seen(done)
+            for walker in self._walkers:
+                self._walk(walker, now)
+            for programs in self._programs.values():
+                programs.act()
+        if self._programs:
+            self._settle()
+        return self._glimpse()
+
+    def glimpse(self) -> Glimpse:
+        """Return what can be perceived at the beginning."""
+        return self._glimpse()
+
+    # Seeds
+
+    def _seed(self, seed: str) -> None:
+        self._chances = {
+            name: Random(f"{seed} {name}")
+            for name, candidate in self.candidates.items()
+            if candidate.strategy is not None
+        }
+        for name, programs in self._programs.items():
+            programs.reseed(f"{seed} {name}")
+        self._seed_text = seed
+
+    # Programs
+
+    def _begin_programs(self) -> None:
+        for name, candidate in self.candidates.items():
+            code = candidate.program if candidate.policy is None else candidate.policy(self, name)
+            self._begin(name, code)
+
+    def _begin(self, name: str, code: str) -> None:
+        if not code.strip():
+            return
+        programs = RunningPrograms(
+            self.world,
+            {name: code},
+            {},
+            RunRules(self.plan.speech_ticks),
+            self._seed_text,
+            self.plan.grounds,
+            self.plan.engines,
+        )
+        self._has_drawn |= programs.draws > 0
+        self._programs[name] = programs
+
+    def _settle(self) -> None:
+        for name, programs in list(self._programs.items()):
+            programs.settle()
+            self._has_drawn |= programs.draws > 0
+            if not programs.are_over:
+                continue
+            del self._programs[name]
+            programs.leave()
+            fault = programs.results()[name].error
+            if fault is not None:
+                if fault.kind == "syntax":
+                    candidate = self.candidates[name].name
+                    raise InputError(f"candidate {candidate!r} of {name}: {fault}")
+                self.faults[name] = fault
+            policy = self.candidates[name].policy
+            if policy is not None:
+                self._begin(name, policy(self, name))
+
+    # Models of minds
+
+    def _walker(self, name: str, strategy: Strategy, draw: Draw) -> Walker:
+        state = self.world.agent(name)
+        pose = (state.position, state.yaw, state.pitch)
+        return Walker(strategy, draw, pose, cell_in(state.position))
+
+    def _walk(self, walker: Walker, now: int) -> None:
+        if walker.is_over or (now - self.start) % walker.strategy.step_ticks:
+            return
+        action = walker.choose(self._chances[walker.name], self._changes)
+        world, name = self.world, walker.name
+        state = world.agent(name)
+        if isinstance(action, Step):
+            if action.cell != walker.cell:
+                yaw = _yaw(state.position, middle_of(action.cell))
+                world.place_agent(name, middle_of(action.cell), yaw=yaw, pitch=0.0)
+                state = world.agent(name)
+        elif isinstance(action, Open):
+            world.open(name, action.place)
+        elif isinstance(action, Act) and action.item is not None:
+            self._take_item(walker, action.item)
+        if not walker.is_over:
+            cell = action.cell if isinstance(action, Step) else walker.cell
+            walker.arrive((state.position, state.yaw, state.pitch), cell)
+
+    def _take_item(self, walker: Walker, item: str) -> None:
+        """Take an item out of the nearest container; one that lies about stays where it is."""
+        x, y, z = walker.cell
+        held = [
+            (abs(place[0] - x) + abs(place[2] - z), abs(place[1] - y), place)
+            for place, items in self.world.containers.items()
+            if items.get(item)
+        ]
+        for aside, up, place in sorted(held)[:1]:
+            if aside <= 1 + walker.strategy.model.diagonal and up <= 1:
+                self.world.withdraw(walker.name, place, {item: 1})
+
+    # Those who are not in question
+
+    def _let_in(self, now: Percept) -> None:
+        """Let those be there who are seen, with what they are seen to hand out."""
+        agents = dict(self.world.agents)
+        for name, (feet, _, _) in now.agents.items():
+            if name not in self.plan.agents and name not in agents:
+                agents[name] = AgentState(feet)
+        for event in now.events:
+            if event.kind not in _HANDED_OUT or event.actor in self.plan.agents:
+                continue
+            if (holder := agents.get(event.actor or "")) is not None:
+                held = dict(holder.inventory)
+                for item, count in event.detail["items"].items():
+                    held[item] = max(count, held.get(item, 0))
+                if held != holder.inventory:
+                    agents[event.actor or ""] = replace(holder, inventory=held)
+        if agents != self.world.agents:
+            self.world.set_state(replace(self.world.snapshot(), agents=agents))
+
+    def _do_as_seen(self, now: Percept) -> None:
+        for name, (feet, yaw, pitch) in now.agents.items():
+            if name in self.plan.agents:
+                continue
+            state = self.world.agent(name)
+            if (state.position, state.yaw, state.pitch) != (feet, yaw, pitch):
+                self.world.place_agent(name, feet, yaw=yaw, pitch=pitch)
+        for event in now.events:
+            if event.actor is not None and event.actor not in self.plan.agents:
+                self._do_event(event)
+
+    def _do_event(self, event: PerceivedEvent) -> None:
+        name, do = event.actor or "", _AS_SEEN.get(event.kind)
+        if do is None or name not in self.world.agents:
+            return
+        try:
+            do(self.world, name, event.detail)
+        except WorldError as fault:
+            self.contradiction = f"{name} was seen to {event.kind}, but {fault}"
+
+    # What has happened
+
+    def _take(self, frame: Frame) -> None:
+        self._latest = frame
+        if frame.is_empty:
+            return
+        self.frames.append(frame)
+        if not (frame.blocks or frame.containers):
+            return
+        box = self.world.box
+        for place, block in frame.blocks.items():
+            self._changed_blocks[box.index(place)] = plain_state(block)
+        for event in frame.events:
+            sign = _SIGNS.get(event.kind)
+            if sign is not None:
+                place = _place(event.detail)
+                for item, count in event.detail["items"].items():
+                    key = (place, item)
+                    self._moved[key] = self._moved.get(key, 0) + sign * count
+        self.touched = self.touched | frame.containers.keys()
+        self._changes = Changes(
+            tuple(sorted(self._changed_blocks.items())),
+            tuple(sorted((*key, count) for key, count in self._moved.items() if count)),
+        )
+
+    def _glimpse(self) -> Glimpse:
+        world, frame = self.world, self._latest
+        deeds: tuple[Deed, ...] = ()
+        if frame is not None and frame.events:
+            found = [
+                deed_of(event.kind, event.actor, event.detail)
+                for event in frame.events
+                if event.kind in HANDLING and event.actor in self.plan.agents
+            ]
+            deeds = tuple(sorted(found))
+        is_new = frame is None or not frame.is_empty
+        containers = dict(world.containers)
+        return Glimpse(world.now, world.blocks, world.agents, containers, deeds, is_new)
+
+
+_HANDED_OUT = (EventKind.DEPOSIT_ITEM_INTO_CHEST, EventKind.GIVE_ITEM_TO_OTHER)
+_SIGNS = {EventKind.GET_ITEM_FROM_CHEST: -1, EventKind.DEPOSIT_ITEM_INTO_CHEST: 1}
+
+
+def _place(detail: Mapping[str, Any]) -> Position:
+    x, y, z = detail["position"]
+    return (int(x), int(y), int(z))
+
+
+def _yaw(before: Point, after: Point) -> float:
+    return float(np.arctan2(before[0] - after[0], before[2] - after[2]))
+
+
+def _spoken(world: ScriptedWorld, name: str, detail: Mapping[str, Any]) -> None:
+    if detail.get("to") is None:
+        world.say(name, detail["text"])
+    else:
+        world.whisper(name, detail["to"], detail["text"])
+
+
+_AS_SEEN: Mapping[EventKind, Callable[[ScriptedWorld, str, Mapping[str, Any]], None]] = {
+    EventKind.OPEN_CONTAINER: lambda world, name, d: world.open(name, _place(d)),
+    EventKind.GET_ITEM_FROM_CHEST: lambda w, name, d: w.withdraw(name, _place(d), d["items"]),
+    EventKind.DEPOSIT_ITEM_INTO_CHEST: lambda w, name, d: w.deposit(name, _place(d), d["items"]),
+    EventKind.USE_DOOR: lambda w, name, d: w.use_door(name, _place(d), open=d["open"]),
+    EventKind.USE_LEVER: lambda w, name, d: w.use_lever(name, _place(d), powered=d["powered"]),
+    EventKind.PRESS_BUTTON: lambda w, name, d: w.press_button(name, _place(d)),
+    EventKind.MINE_BLOCK: lambda w, name, d: w.set_block(_place(d), "air", name),
+    EventKind.PLACE_BLOCK: lambda w, name, d: w.set_block(_place(d), d["block"], name),
+    EventKind.CHAT: _spoken,
+    EventKind.GIVE_ITEM_TO_OTHER: lambda w, name, d: w.give(name, d["other"], d["items"]),
+}
+"""How an agent that is not in question does what it was seen to do."""

@@ -1,0 +1,244 @@
+"""Weighted histories: drawn, compared with what was perceived, resampled (a particle filter).
+
+Gordon, Salmond and Smith 1993; systematic resampling after Kitagawa 1996. Histories that go the
+same way whatever their seeds share one course, which is run once.
+"""
+
+import math
+from collections import Counter, deque
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from random import Random
+
+from beliefnest.minds.walking import Draw
+from beliefnest.nest.acting.agreement import Agreement
+from beliefnest.nest.acting.courses import Candidate, Course, CoursePlan, Glimpse, Seeds
+
+__all__ = ["Drawing", "Drawn", "Lost", "Particle", "spread"]
+
+OnTick = Callable[[int, int], None]
+
+
+@dataclass(eq=False)
+class Particle:
+    """One history under way.
+
+    Attributes:
+        ancestor: Number of the history that it was at the beginning.
+        course: Its course, which it may share.
+        seeds: Its seeds.
+        weight: Its weight; those of all sum to 1.
+    """
+
+    ancestor: int
+    course: Course
+    seeds: Seeds
+    weight: float
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What was drawn for one history at the beginning."""
+
+    alternatives: tuple[int, ...]
+    candidates: Mapping[str, Candidate]
+    draws: Mapping[str, Draw]
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """The tick at which no history agreed any more.
+
+    Attributes:
+        tick: When.
+        text: What the last ones did not explain.
+    """
+
+    tick: int
+    text: str
+
+    def __str__(self) -> str:
+        return f"tick {self.tick}: {self.text}"
+
+
+@dataclass(eq=False)
+class Drawing:
+    """Histories being drawn.
+
+    Args:
+        plan: What their courses have in common.
+        drawn: What was drawn for each.
+        agreement: Compares them with what was perceived; None: that does not count.
+        seed: Decides about all that is random.
+
+    Attributes:
+        particles: The histories, or after the last was lost those that were lost last.
+        log_evidence: Natural logarithm of the probability of what was perceived.
+        lost: When the last one was lost; None: some are left.
+    """
+
+    plan: CoursePlan
+    drawn: Sequence[Drawn]
+    agreement: Agreement | None
+    seed: int
+    particles: list[Particle] = field(default_factory=list)
+    log_evidence: float = 0.0
+    lost: Lost | None = None
+    _windows: dict[Course, deque[Glimpse]] = field(default_factory=dict)
+
+    def run(self, until: int, on_tick: OnTick) -> None:
+        """Draw all histories up to a tick."""
+        self._begin()
+        first = self.particles[0].course.tick
+        glimpses = {course: course.glimpse() for course in self._courses()}
+        self._compare(glimpses, first, until)
+        for tick in range(first + 1, until + 1):
+            if self.lost is not None:
+                return
+            on_tick(tick - first, until - first)
+            glimpses = {course: course.step() for course in self._courses()}
+            self._split(glimpses)
+            self._compare(glimpses, tick, until)
+
+    @property
+    def effective_size(self) -> float:
+        """The effective number of ancestors (Kish): the square of the sum by the sum of squares."""
+        return _effective(self.particles)
+
+    def _courses(self) -> list[Course]:
+        return list(dict.fromkeys(particle.course for particle in self.particles))
+
+    def _begin(self) -> None:
+        shared: dict[object, Course] = {}
+        weight = 1 / len(self.drawn)
+        for number, drawn in enumerate(self.drawn):
+            seeds: Seeds = ((-1, f"{self.seed} {number}"),)
+            key = (drawn.alternatives, tuple(each.name for each in drawn.candidates.values()))
+            course = shared.get(key)
+            if course is None or not course.is_shared:
+                course = Course(self.plan, drawn.alternatives, drawn.candidates, drawn.draws, seeds)
+                shared[key] = course
+            self.particles.append(Particle(number, course, seeds, weight))
+
+    def _split(self, glimpses: dict[Course, Glimpse]) -> None:
+        """Give each history a course of its own whose program has drawn a number."""
+        sharing: dict[Course, int] = Counter(particle.course for particle in self.particles)
+        for particle in self.particles:
+            course = particle.course
+            if sharing[course] < 2 or course.is_shared or particle.seeds == course.seeds:
+                continue
+            sharing[course] -= 1
+            particle.course = Course(
+                self.plan, course.drawn, course.candidates, course.draws, particle.seeds
+            )
+            particle.course.run_to(course.tick - 1)
+            particle.course.reseed()
+            glimpses[particle.course] = particle.course.step()
+            if course in self._windows:
+                self._windows[particle.course] = self._windows[course].copy()
+
+    def _compare(self, glimpses: Mapping[Course, Glimpse], tick: int, until: int) -> None:
+        agreement = self.agreement
+        if agreement is None:
+            return
+        ticks = agreement.witness.tolerance.ticks
+        if ticks == 0:
+            self._keep({c: agreement.holds(c, g) for c, g in glimpses.items()}, tick)
+            return
+        for course, glimpse in glimpses.items():
+            self._windows.setdefault(course, deque(maxlen=2 * ticks + 1)).append(glimpse)
+        last = until if tick == until else tick - ticks
+        for moment in range(tick - ticks, last + 1):
+            if self.lost is not None or not agreement.is_due(moment):
+                continue
+            self._keep(
+                {
+                    course: agreement.holds_within(
+                        course,
+                        [g for g in self._windows[course] if abs(g.tick - moment) <= ticks],
+                        moment,
+                    )
+                    for course in self._courses()
+                },
+                tick,
+            )
+
+    def _keep(self, holds: Mapping[Course, bool], tick: int) -> None:
+        """Keep the histories that agree, and resample if they are of too few ancestors."""
+        kept = [particle for particle in self.particles if holds[particle.course]]
+        if not kept:
+            self.lost = self._lost(tick)
+            return
+        if len(kept) == len(self.particles):
+            return
+        total = math.fsum(particle.weight for particle in kept)
+        self.log_evidence += math.log(total)
+        for particle in kept:
+            particle.weight /= total
+        self.particles = kept
+        if self.effective_size < len(self.drawn) / 2:
+            self._resample(tick)
+
+    def _lost(self, tick: int) -> Lost:
+        found = [each.course.contradiction for each in self.particles]
+        reasons = Counter(reason for reason in found if reason is not None)
+        if reasons:
+            return Lost(tick, reasons.most_common(1)[0][0])
+        count = len(self.particles)
+        many = "the last history" if count == 1 else f"the last {count} histories"
+        return Lost(tick, f"{many} led to something else than what was perceived")
+
+    def _resample(self, tick: int) -> None:
+        count = len(self.drawn)
+        chance = Random(f"{self.seed} resampling at {tick}")
+        weights = [particle.weight for particle in self.particles]
+        sharing = Counter(particle.course for particle in self.particles)
+        chosen: list[Particle] = []
+        copies: Counter[int] = Counter()
+        for number in spread(weights, count, chance):
+            particle = self.particles[number]
+            copies[number] += 1
+            if copies[number] == 1:
+                particle.weight = 1 / count
+                chosen.append(particle)
+                continue
+            seeds = (*particle.seeds, (tick, f"{particle.seeds[-1][1]} {tick}.{copies[number]}"))
+            course = particle.course
+            if not course.is_shared:
+                window = self._windows.get(course)
+                course = course.again(seeds)
+                if window is not None:
+                    self._windows[course] = window.copy()
+            sharing[course] += 1
+            chosen.append(Particle(particle.ancestor, course, seeds, 1 / count))
+        self.particles = chosen
+
+
+def spread(weights: Sequence[float], count: int, chance: Random) -> list[int]:
+    """Return numbers of weights by systematic sampling: each as often as it weighs, but for one.
+
+    Args:
+        weights: From 0, with a sum above 0.
+        count: How many numbers.
+        chance: Gives the one random number that is drawn.
+    """
+    total = math.fsum(weights)
+    start, number, reached = chance.random(), 0, weights[0] / total
+    found = []
+    for each in range(count):
+        wanted = (each + start) / count
+        while wanted > reached and number + 1 < len(weights):
+            number += 1
+            reached += weights[number] / total
+        found.append(number)
+    return found
+
+
+def _effective(particles: Sequence[Particle]) -> float:
+    shares: dict[int, float] = {}
+    for particle in particles:
+        shares[particle.ancestor] = shares.get(particle.ancestor, 0.0) + particle.weight
+    total = math.fsum(shares.values())
+    if total <= 0:
+        return 0.0
+    return total**2 / math.fsum(share**2 for share in shares.values())

@@ -1,0 +1,174 @@
+"""Percepts: what the owner of a node perceived, tick by tick, read from its timeline.
+
+A percept is what was current in the node (semantics, section 5): blocks, contents, dropped items,
+and agents by the cell they were in. Ticks at which nothing changed for the owner have none of their
+own: the percept before goes on.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.belief.columns import cell_of
+from beliefnest.belief.entries import AgentBelief, PerceivedEvent
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.node_view import NodeView
+from beliefnest.nest.past.recording import Recording
+from beliefnest.timeline.journal import ForkPoint
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.paths import BeliefPath
+from beliefnest.world.values import EventKind, Items, Point, Position
+
+__all__ = ["HANDLING", "Deed", "Percept", "cell_in", "deed_of", "percepts_of"]
+
+HANDLING = (
+    EventKind.OPEN_CONTAINER,
+    EventKind.GET_ITEM_FROM_CHEST,
+    EventKind.DEPOSIT_ITEM_INTO_CHEST,
+)
+"""Events by which somebody who looks on learns about contents."""
+
+Deed = tuple[str, str, Position, tuple[tuple[str, int], ...]]
+"""Kind, actor, container, and the items that were seen to be moved."""
+
+
+@dataclass(frozen=True, eq=False)
+class Percept:
+    """What the owner of a node perceived at one tick.
+
+    Attributes:
+        tick: When; it goes on until the next one.
+        present: False: the owner is credited with no percept (semantics, section 5.1).
+        cells: int64 (n,), flat cells of the blocks that it saw.
+        states: int32 (n,), their block states.
+        contents: Complete contents that it perceived.
+        agents: Feet, yaw and pitch of the agents that it perceived, its own included.
+        items: Names and cells of the dropped items that it saw, with their numbers.
+        deeds: What it saw done at containers in this very tick.
+        events: All that it perceived in this very tick.
+    """
+
+    tick: int
+    present: bool
+    cells: npt.NDArray[np.int64]
+    states: npt.NDArray[np.int32]
+    contents: Mapping[Position, Items]
+    agents: Mapping[str, tuple[Point, float, float]]
+    items: Mapping[tuple[str, Position], int]
+    deeds: tuple[Deed, ...]
+    events: tuple[PerceivedEvent, ...]
+
+    def is_new_after(self, before: "Percept") -> bool:
+        """Return True if it differs from the percept before, or something was perceived."""
+        return bool(
+            self.events
+            or self.present != before.present
+            or not np.array_equal(self.cells, before.cells)
+            or not np.array_equal(self.states, before.states)
+            or self.contents != before.contents
+            or self.agents != before.agents
+            or self.items != before.items
+        )
+
+
+def cell_in(point: Point) -> Position:
+    """Return the cell that a point lies in."""
+    return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
+
+
+def deed_of(kind: EventKind, actor: str, detail: Mapping[str, Any]) -> Deed:
+    """Return what somebody is seen to do at a container."""
+    place = detail["position"]
+    items: Mapping[str, int] = detail.get("items", {})
+    at = (int(place[0]), int(place[1]), int(place[2]))
+    return (str(kind), actor, at, tuple(sorted(items.items())))
+
+
+def percepts_of(
+    recording: Recording, path: BeliefPath, start: ForkPoint, until: ForkPoint
+) -> list[tuple[Percept, BlockGrid]]:
+    """Return the percepts of a node's owner, each with the blocks that it believed.
+
+    Args:
+        recording: Where the node is.
+        path: The node.
+        start: The moment of the first percept.
+        until: The moment after which none is read.
+    """
+    found: list[tuple[Percept, BlockGrid]] = []
+    for percept, blocks in _read(recording, path, start, until):
+        if not found or percept.is_new_after(found[-1][0]):
+            found.append((percept, blocks))
+    return found
+
+
+def _read(
+    recording: Recording, path: BeliefPath, start: ForkPoint, until: ForkPoint
+) -> Iterator[tuple[Percept, BlockGrid]]:
+    journal, history = recording.journal, recording.history
+    stretches = recording.stretches(until)
+    first = next(n for n, each in enumerate(stretches) if each.timeline == start.timeline)
+    for number, stretch in enumerate(stretches[first:]):
+        key, begin = stretch.timeline, start.entries if number == 0 else 0
+        forest = history.walk(key, [path])
+        history.advance(key, forest, begin)
+        events = journal.events_until(key, begin)
+        if number == 0:
+            before = journal.entries_until(key, start.tick - 1)
+            yield _percept(forest, path, start.tick, journal.events_until(key, before))
+        entries = list(journal.entries(key, begin, stretch.entries))
+        for offset, entry in enumerate(entries):
+            history.advance(key, forest, begin + offset + 1)
+            following = entries[offset + 1] if offset + 1 < len(entries) else None
+            if following is None or following.tick > entry.tick:
+                yield _percept(forest, path, entry.tick, events)
+                events = forest.count_of_events
+
+
+def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[Percept, BlockGrid]:
+    view, context = NodeView(forest, path), forest.context
+    owner = path[-1] if path else None
+    agents = view.agents
+    blocks = view.blocks.reshape(-1)
+    present = owner is None or agents[owner].current
+    seen = forest.current_blocks(path, range(len(blocks))) if present else set()
+    cells = np.array(sorted(seen), dtype=np.int64)
+    contents = {
+        place: dict(held.items)
+        for place, held in view.containers.items()
+        if present and held.current and held.complete
+    }
+    events = tuple(event for event in view.events_since(before) if event.tick == tick)
+    deeds = [
+        deed_of(event.kind, event.actor, event.detail)
+        for event in events
+        if event.kind in HANDLING and event.actor is not None
+    ]
+    lying = Counter(
+        (item.name, cell_in(item.position))
+        for item in view.items.values()
+        if cell_in(item.position) in context.box
+        and cell_of(context.box, cell_in(item.position)) in seen
+    )
+    percept = Percept(
+        tick,
+        present,
+        cells,
+        blocks[cells],
+        contents,
+        {name: _pose(agent) for name, agent in agents.items() if agent.current},
+        lying,
+        tuple(sorted(deeds)),
+        events,
+    )
+    return percept, view.blocks
+
+
+def _pose(agent: AgentBelief) -> tuple[Point, float, float]:
+    assert agent.position is not None
+    return agent.position, agent.yaw, agent.pitch

@@ -1,0 +1,325 @@
+"""What happened unseen: weighted histories."""
+
+import math
+import warnings
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.errors import (
+    BranchError,
+    InputError,
+    PathError,
+    StoreError,
+    TickError,
+    UnknownNameError,
+)
+from beliefnest.nest.acting.particles import spread
+from beliefnest.nest.face.imagining import ImaginationWarning
+
+CHEST = (9, 1, 2)
+TAKE = f"await getItemFromChest(bot, new Vec3{CHEST}, {{ diamond: 1 }})"
+
+
+def kitchen(store=None, perception=None, further=()):
+    """Two rooms with a doorway between; Anne knows of the diamond in the chest of the second."""
+    blocks = {(x, 0, z): "stone" for x in range(12) for z in range(5)}
+    for z in (0, 1, 3, 4):
+        blocks |= {(5, 1, z): "stone", (5, 2, z): "stone"}
+    world = bn.ScriptedWorld(
+        box=((0, 0, 0), (11, 3, 4)),
+        blocks=blocks,
+        agents={"anne": (1.5, 1, 0.5), "bob": (7.5, 1, 2.5), **dict(further)},
+        containers={CHEST: {"diamond": 1}},
+    )
+    known = bn.InitialBelief(
+        ("anne",), containers={CHEST: ({"diamond": 1}, True)}, agents={"bob": (7.5, 1, 2.5)}
+    )
+    return bn.Nest(
+        world,
+        perception=perception,
+        static_blocks=["stone", "air", "chest"],
+        initial_beliefs=[known],
+        store=store,
+    )
+
+
+def look_into_chest(nest, *, is_taken):
+    """Let Anne look into the chest, from which Bob has taken the diamond or not."""
+    world = nest.scripted_world
+    since = nest.tick
+    world.step(5)
+    if is_taken:
+        world.withdraw("bob", CHEST, {"diamond": 1})
+    world.step(5)
+    world.open("anne", CHEST)
+    return since
+
+
+def test_an_absent_item_tells_who_took_it():
+    for is_taken in (True, False):
+        with kitchen() as nest:
+            since = look_into_chest(nest, is_taken=is_taken)
+            imagined = nest["/anne"].imagine(since, actors={"bob": {"fetch": TAKE, "idle": ""}})
+            assert imagined.impossible is None
+            shares = imagined.by_candidate("bob")
+            assert shares == pytest.approx({"fetch": float(is_taken), "idle": float(not is_taken)})
+            took = imagined.share({"agent": "bob", "items": {"diamond": 1}})
+            assert took == pytest.approx(float(is_taken))
+            there = imagined.share({"container": CHEST, "items": {"diamond": 1}})
+            assert there == pytest.approx(float(not is_taken))
+            assert imagined.effective_size == pytest.approx(100)
+            assert imagined.log_evidence == pytest.approx(math.log(0.5))
+
+
+def test_without_evidence_shares_are_the_weights():
+    with kitchen() as nest:
+        nest.scripted_world.step(20)
+        imagined = nest["/anne"].imagine(
+            0,
+            actors={"bob": {"fetch": TAKE, "idle": ""}},
+            n=1000,
+            weights={"bob": {"fetch": 0.2, "idle": 0.8}},
+        )
+        assert imagined.by_candidate("bob") == pytest.approx({"fetch": 0.2, "idle": 0.8}, abs=1e-3)
+
+
+def test_evidence_with_mistakes_as_bayes_says():
+    with kitchen() as nest:
+        nest.scripted_world.step(20)
+        imagined = nest["/anne"].imagine(
+            0,
+            actors={"bob": {"fetch": TAKE, "idle": ""}},
+            n=1000,
+            weights={"bob": {"fetch": 0.3, "idle": 0.7}},
+            evidence=[
+                {"container": CHEST, "items": {"diamond": 1}, "mistaken": 0.1},
+                {"agent": "bob", "items": {"diamond": 1}, "mistaken": 0.25},
+            ],
+        )
+        # Fetched: seen in the chest by mistake (0.1), with Bob rightly (0.75); idle: 0.9, 0.25.
+        fetched, idle = 0.3 * 0.1 * 0.75, 0.7 * 0.9 * 0.25
+        shares = imagined.by_candidate("bob")
+        assert shares["fetch"] == pytest.approx(fetched / (fetched + idle), abs=2e-3)
+        assert imagined.log_evidence == pytest.approx(math.log(fetched + idle), abs=1e-2)
+
+
+def test_evidence_that_nothing_explains_is_impossible():
+    with kitchen() as nest:
+        nest.scripted_world.step(3)
+        with pytest.warns(ImaginationWarning, match="none of 10 histories"):
+            imagined = nest["/anne"].imagine(
+                0,
+                actors={"bob": {"idle": ""}},
+                n=10,
+                evidence=[{"agent": "bob", "items": {"diamond": 1}}],
+            )
+        assert imagined.impossible.tick == 3
+        assert imagined.effective_size == 0
+        assert len(imagined) == 10
+
+
+def test_says_when_the_last_history_was_lost():
+    with kitchen() as nest:
+        since = look_into_chest(nest, is_taken=True)
+        with pytest.warns(ImaginationWarning, match="lost at|none of"):
+            imagined = nest["/anne"].imagine(since, actors={"bob": {"idle": ""}}, n=10)
+        assert imagined.impossible.tick == nest.tick
+        assert imagined.log_evidence == -math.inf
+        assert imagined[0].state.containers[CHEST].items == {"diamond": 1}
+        assert f"tick {nest.tick}" in repr(imagined)
+
+
+def test_few_histories_are_warned_of():
+    with kitchen() as nest:
+        since = look_into_chest(nest, is_taken=True)
+        with pytest.warns(ImaginationWarning, match=r"effective size is 1\.0 of 20"):
+            nest["/anne"].imagine(
+                since,
+                actors={"bob": {"fetch": TAKE, "idle": ""}},
+                n=20,
+                weights={"bob": {"fetch": 0.05, "idle": 0.95}},
+            )
+
+
+def test_histories_are_looked_at_asked_and_forked():
+    with kitchen() as nest:
+        since = look_into_chest(nest, is_taken=True)
+        before = len(nest["/anne"].branches())
+        imagined = nest["/anne"].imagine(since, actors={"bob": {"fetch": TAKE, "idle": ""}}, n=8)
+        history = imagined[0]
+        assert history.candidates == {"bob": "fetch"}
+        assert history.weight == pytest.approx(1 / len(imagined))
+        assert history.state.agents["bob"].inventory == {"diamond": 1}
+        assert history["/bob"].state.containers[CHEST].items == {}
+        assert history.at(since).state.containers[CHEST].items == {"diamond": 1}
+        assert "svg" in history.figure()._repr_html_()
+        believed = {"path": "/bob", "container": CHEST, "items": {"diamond": 1}}
+        assert imagined.share(believed) == 0
+        fork = history.fork("what if")
+        back = f"await depositItemIntoChest(bot, new Vec3{CHEST}, {{ diamond: 1 }})"
+        assert fork.run("bob", back).ok
+        assert fork.state.containers[CHEST].items == {"diamond": 1}
+        assert history.state.containers[CHEST].items == {}
+        assert len(nest["/anne"].branches()) == before
+
+
+def test_a_history_is_kept_by_name_alone(tmp_path):
+    store = tmp_path / "run.db"
+    with kitchen(store) as nest:
+        since = look_into_chest(nest, is_taken=True)
+        anne = nest["/anne"]
+        imagined = anne.imagine(since, actors={"bob": {"fetch": TAKE, "idle": ""}}, n=8)
+        imagined.keep(0, "fetched")
+        assert [info.key.branch for info in anne.branches()] == ["fetched"]
+        with pytest.raises(BranchError, match="already has a branch"):
+            imagined.keep(1, "fetched")
+        anne.switch("fetched")
+        assert anne.state.agents["bob"].inventory == {"diamond": 1}
+    with bn.Nest.read(store) as recorded:
+        again = recorded["/anne"]
+        recorded.select("/anne", "follow")
+        imagined = again.imagine(since, actors={"bob": {"fetch": TAKE, "idle": ""}}, n=8)
+        assert imagined.by_candidate("bob")["fetch"] == pytest.approx(1)
+        with pytest.raises(StoreError, match="only read"):
+            imagined.keep(0, "other")
+
+
+def test_same_seed_same_histories():
+    place = "new Vec3(7 + Math.floor(5 * Math.random()), 1, 1)"
+    program = f"for (let i = 0; i < 3; i++) await goToPosition(bot, {place}, 0)"
+
+    def drawn(seed):
+        with kitchen() as nest:
+            nest.scripted_world.step(20)
+            imagined = nest["/anne"].imagine(0, actors={"bob": {"walk": program}}, n=30, seed=seed)
+            return [history.state.agents["bob"].position for history in imagined]
+
+    first = drawn(1)
+    assert first == drawn(1)
+    assert first != drawn(2)
+    assert len(set(first)) > 2
+
+
+def test_what_the_observer_cannot_perceive_changes_nothing():
+    def result(is_taken):
+        with kitchen() as nest:
+            world = nest.scripted_world
+            world.step(5)
+            if is_taken:
+                world.withdraw("bob", CHEST, {"diamond": 1})
+                world.place_agent("bob", (10.5, 1, 0.5))
+            else:
+                world.step(2)
+            world.place_agent("anne", (2.5, 1, 0.5))
+            model = walking()
+            imagined = nest["/anne"].imagine(
+                0, actors={"bob": {"fetch": TAKE, "model": model, "idle": ""}}, n=60
+            )
+            return (
+                imagined.weights,
+                imagined.by_candidate("bob"),
+                [history.state.agents["bob"].position for history in imagined],
+            )
+
+    assert result(True) == result(False)
+
+
+def walking(**further):
+    """A model of Bob in the second room, who wants one of its corners."""
+    return bn.MindModel(
+        "bob",
+        goals={"near": {"at": (7, 1, 0)}, "far": {"at": (11, 1, 0)}},
+        utilities={"near": [0, 8], "far": [0, 8]},
+        rationality=1.0,
+        **further,
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "text"),
+    [
+        ({"since": 30}, TickError, "after until"),
+        ({"until": 99}, TickError, "future"),
+        ({"actors": {"carl": {"a": ""}}}, PathError, "no agent 'carl'"),
+        ({"actors": {}}, InputError, "give candidates by name"),
+        ({"actors": {"bob": {}}}, InputError, "candidates of bob"),
+        ({"actors": {"bob": {"a": 3}}}, InputError, "give a program"),
+        ({"actors": {"bob": {"a": "await ("}}}, InputError, "candidate 'a' of bob"),
+        ({"weights": {"bob": {"fetch": 0.5}}}, InputError, "sum to 0.5"),
+        ({"weights": {"bob": {"steal": 1}}}, InputError, "name steal"),
+        ({"weights": {"anne": {"fetch": 1}}}, PathError, "no candidates"),
+        ({"n": 0}, InputError, "n is 0"),
+        ({"seed": "x"}, InputError, "seed is"),
+        ({"tolerance": (1,)}, InputError, "tolerance is"),
+        ({"evidence": []}, InputError, "evidence is"),
+        ({"evidence": [{"agent": "bob", "mistaken": 2}]}, InputError, "mistaken is 2"),
+        ({"evidence": [{"container": CHEST}]}, InputError, "makes no sense"),
+    ],
+)
+def test_bad_input_gets_one_clear_error(arguments, error, text):
+    with kitchen() as nest:
+        nest.scripted_world.step(20)
+        given = {"since": 0, "actors": {"bob": {"fetch": TAKE, "idle": ""}}, "n": 4, **arguments}
+        with pytest.raises(error, match=text):
+            nest["/anne"].imagine(**given)
+
+
+def test_bad_questions_get_one_clear_error():
+    with kitchen() as nest:
+        nest.scripted_world.step(2)
+        imagined = nest["/anne"].imagine(0, actors={"bob": {"idle": ""}}, n=4)
+        with pytest.raises(PathError, match="no candidates"):
+            imagined.by_candidate("anne")
+        with pytest.raises(InputError, match="makes no sense"):
+            imagined.share({"container": CHEST})
+        with pytest.raises(UnknownNameError, match="diamnd"):
+            imagined.share({"container": CHEST, "items": {"diamnd": 1}})
+        with pytest.raises(InputError, match="no history 4"):
+            imagined[4]
+
+
+def test_an_actor_whose_place_is_unknown_is_refused():
+    with kitchen() as nest:
+        nest.scripted_world.step(2)
+        with pytest.raises(InputError, match="where anne was at tick 0 is not known in /bob"):
+            nest["/bob"].imagine(0, actors={"anne": {"idle": ""}}, n=4)
+
+
+def test_the_real_world_is_imagined_too():
+    with kitchen() as nest:
+        since = look_into_chest(nest, is_taken=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ImaginationWarning)
+            exact = nest["/"].imagine(since, actors={"bob": {"fetch": TAKE, "idle": ""}}, n=20)
+        # Bob took it at tick 6; the program opens the chest before.
+        assert exact.impossible is not None
+        lax = nest["/"].imagine(
+            since, actors={"bob": {"fetch": TAKE, "idle": ""}}, n=20, tolerance=(3, 6)
+        )
+        assert lax.by_candidate("bob")["fetch"] == pytest.approx(1)
+
+
+def test_a_policy_decides_in_each_history():
+    asked = []
+
+    def policy(simulator):
+        asked.append(simulator.path)
+        has = simulator.state.agents["bob"].inventory.get("diamond", 0)
+        return "" if has or len(asked) > 6 else TAKE
+
+    with kitchen() as nest:
+        since = look_into_chest(nest, is_taken=True)
+        imagined = nest["/anne"].imagine(since, actors={"bob": {"policy": policy}}, n=3)
+        assert imagined.share({"agent": "bob", "items": {"diamond": 1}}) == pytest.approx(1)
+        # Asked at the beginning and when the program was over, in each history.
+        assert asked == ["/anne/bob"] * 6
+
+
+def test_spreads_by_weight():
+    import random
+
+    weights = [0.5, 0.25, 0.25, 0.0]
+    for seed in range(20):
+        numbers = spread(weights, 8, random.Random(seed))
+        assert [numbers.count(number) for number in range(4)] == [4, 2, 2, 0]
