@@ -1,7 +1,7 @@
 """Read-only methods of simulators and nests, for the present and the past. Nothing here acts."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -27,7 +27,6 @@ from beliefnest.world.values import Placements, Position
 if TYPE_CHECKING:  # What draws or infers takes long to import, and few nests are asked to.
     from beliefnest.minds.inference import Inference
     from beliefnest.minds.model import MindModel
-    from beliefnest.nest.acting.script import Progress
     from beliefnest.nest.face.imagining import Imagined
     from beliefnest.pictures.figure import Figure
     from beliefnest.pictures.scene import Scene
@@ -149,7 +148,7 @@ class ShownSimulator(ABC):
         weights: Mapping[str, Mapping[str, float]] | None = None,
         evidence: Sequence[Mapping[str, Any]] | None = None,
         tolerance: tuple[int, int] = (0, 0),
-        on_progress: "Progress | None" = None,
+        on_progress: Callable[[str, int, int], None] | None = None,
     ) -> "Imagined":
         """Draw what may have happened unseen, as weighted histories; nothing is recorded.
 
