@@ -188,7 +188,7 @@ MOVED = Rewriting(lambda place, _: (-place[0], place[1], place[2]), str, str)
         ("bot.entity.position.x > 3", "computes with 'x'"),
         ("for (const [x, z] of [[1, 0]]) {}", "which may be a position"),
         ("say(bot, 'go north')", "names a direction"),
-        ("await (", "is not JavaScript"),
+        ("await (", "is not valid JavaScript"),
         ("bot.pathfinder.goto(new goals.GoalXZ(1, 2))", "holds positions by 'goals'"),
     ],
 )

@@ -1,4 +1,4 @@
-"""The form of conditions in files and in calls, and what they mean."""
+"""Conditions: their form in files and in calls, and their meaning."""
 
 from collections.abc import Collection
 from typing import Annotated
@@ -30,22 +30,22 @@ def _note(text: str) -> msgspec.Meta:
 
 
 class ConditionEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """A condition: of a container, an agent, agents at levers, or a block."""
+    """A condition on a container, an agent, agents at levers, or a block."""
 
-    path: Annotated[str, _note("Where it is to be the case; / is reality.")] = "/"
+    path: Annotated[str, _note("Belief path in which it must hold; / is reality.")] = "/"
     container: Annotated[Position | None, _note("A container that holds `items`.")] = None
     agent: Annotated[str | None, _note("An agent that has `items` or stands `at` a place.")] = None
     items: Annotated[
         dict[str, Annotated[int, msgspec.Meta(ge=1)]], _note("Item name to least count.")
     ] = {}
     at: Annotated[Position | None, _note("A block position.")] = None
-    within: Annotated[float, _note("Greatest distance from there, in blocks.")] = 1.0
-    block: Annotated[Position | None, _note("A block that is in a state.")] = None
+    within: Annotated[float, _note("Greatest distance from `at`, in blocks.")] = 1.0
+    block: Annotated[Position | None, _note("A block that has a state.")] = None
     state: Annotated[str | None, _note("name or name[property=value,...].")] = None
-    like: Annotated[Position | None, _note("A block that it is to be like.")] = None
-    agents: Annotated[list[str], _note("Agents at levers that are on, each at one, at once.")] = []
-    sites: Annotated[list[list[Position]], _note("Levers of each site; one will do.")] = []
-    property: Annotated[str, _note("In which it is to be `like`; empty: in all that it is.")] = ""
+    like: Annotated[Position | None, _note("A block that it must equal.")] = None
+    agents: Annotated[list[str], _note("Agents that hold levers at once, one each.")] = []
+    sites: Annotated[list[list[Position]], _note("Levers of each site; one site is enough.")] = []
+    property: Annotated[str, _note("Property to compare with `like`; empty: the state.")] = ""
 
 
 def condition_entry(given: object, agents: Collection[str], box: Box) -> ConditionEntry:

@@ -1,7 +1,7 @@
-"""The form of a scenario file: what may be written where.
+"""Form of scenario files: the allowed keys and values.
 
 These types are the single source of the published JSON schema (`docs/scenario.schema.json`)
-and of the check of a file's form. Whether the content makes sense is checked in `build`.
+and of the check of a file's form. The module `build` checks if the content is consistent.
 """
 
 from typing import Annotated, Any, Literal
@@ -43,7 +43,7 @@ def _note(text: str) -> msgspec.Meta:
 
 
 _WIDEST = 1_000
-"""Radians either way."""
+"""Greatest angle in radians, in both directions."""
 _LONGEST_TIMEOUT = 10_000_000
 """Ticks; about six days."""
 
@@ -56,11 +56,11 @@ _ItemsField = Annotated[dict[str, int], _note("Item name to count.")]
 
 
 class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Base of all parts of a scenario file: a key that is not listed is an error."""
+    """Base of all parts of a scenario file; unknown keys are errors."""
 
 
 class BlockEntry(_Entry, frozen=True):
-    """Blocks of one kind; exactly one of `at`, `fill` and `walls`. Later entries win."""
+    """Blocks of one kind, with one of `at`, `fill` and `walls`. Later entries replace earlier."""
 
     block: Annotated[str | None, _note("A block state: name or name[property=value,...].")]
     at: Annotated[Position | None, _note("One position.")] = None
@@ -69,69 +69,69 @@ class BlockEntry(_Entry, frozen=True):
     ] = None
     walls: Annotated[
         tuple[Position, Position] | None,
-        _note("Two inclusive corners; the four upright sides of what lies between them."),
+        _note("Two inclusive corners; the four vertical sides of the box between them."),
     ] = None
 
 
 class ContainerEntry(_Entry, frozen=True):
-    """A container, its block included."""
+    """A container with its block."""
 
-    at: Annotated[Position, _note("Where its block is.")]
+    at: Annotated[Position, _note("Position of its block.")]
     block: Annotated[str, _note("A block state of a container.")] = "chest"
     items: _ItemsField = {}
-    label: Annotated[str, _note("What people call it, in tables and pictures.")] = ""
-    looks: Annotated[str, _note("What it looks as if it held, in words; see the key `labels`.")] = (
-        ""
-    )
+    label: Annotated[str, _note("Its name in tables and pictures.")] = ""
+    looks: Annotated[str, _note("What it seems to contain, in words; see the key `labels`.")] = ""
 
 
 _SignText = Annotated[
     str,
-    _note("What is written on its front: at most 4 lines of 45 characters, split by line breaks."),
+    _note("Text on its front: at most 4 lines of 45 characters, separated by line breaks."),
 ]
 
 
 class ClaimEntry(_Entry, frozen=True):
-    """A claim: what a text states."""
+    """A claim that a text makes."""
 
     kind: Annotated[
         Literal["located", "absent", "position", "block"],
-        _note("That an item is in a container, or not; where an agent is; which block is there."),
+        _note("An item is in a container, or not; an agent is at a place; a block has a state."),
     ]
-    place: Annotated[Point, _note("The container, the agent's feet, or the block's position.")]
+    place: Annotated[
+        Point, _note("Position of the container, of the agent's feet, or of the block.")
+    ]
     item: Annotated[str | None, _note("The item of `located` and `absent`.")] = None
     agent: Annotated[str | None, _note("The agent of `position`.")] = None
     state: Annotated[str | None, _note("The block of `block`: name[property=value,...].")] = None
 
 
 class SignEntry(_Entry, frozen=True):
-    """A sign, its block included, and what is written on it."""
+    """A sign with its block and its text."""
 
-    at: Annotated[Position, _note("Where its block is.")]
+    at: Annotated[Position, _note("Position of its block.")]
     text: _SignText = ""
     block: Annotated[str, _note("A block state of a sign.")] = "oak_sign"
-    claims: Annotated[list[ClaimEntry], _note("What the text claims, for those who read it.")] = []
+    claims: Annotated[list[ClaimEntry], _note("Claims of the text, for its readers.")] = []
 
 
 class BelievedSignEntry(_Entry, frozen=True):
-    """A sign that is believed to be somewhere, and to say something."""
+    """A believed sign and its text."""
 
     at: Annotated[Position, _note("Its position.")]
     text: _SignText = ""
     block: Annotated[
-        str | None, _note("A block state of a sign; null: that of the sign which stands there.")
+        str | None, _note("A block state of a sign; null: that of the real sign there.")
     ] = None
 
 
 class EquipmentEntry(_Entry, frozen=True):
-    """What an agent wears or holds: slot to item."""
+    """Equipment of an agent: items by slot."""
 
-    head: Annotated[str | None, _note("A helmet, or another item that is worn there.")] = None
+    head: Annotated[str | None, _note("A helmet, or another item worn on the head.")] = None
     chest: Annotated[str | None, _note("A chestplate.")] = None
     legs: Annotated[str | None, _note("Leggings.")] = None
     feet: Annotated[str | None, _note("Boots.")] = None
-    main_hand: Annotated[str | None, _note("What it holds; mostly the right hand.")] = None
-    off_hand: Annotated[str | None, _note("What it holds in the other hand.")] = None
+    main_hand: Annotated[str | None, _note("Item in the main hand.")] = None
+    off_hand: Annotated[str | None, _note("Item in the other hand.")] = None
 
 
 class AgentEntry(_Entry, frozen=True):
@@ -140,20 +140,20 @@ class AgentEntry(_Entry, frozen=True):
     position: Annotated[world.Point, _note("Middle of the feet, in blocks.")]
     facing: Annotated[
         Literal["north", "east", "south", "west"] | Point | None,
-        _note("A direction, or a point to look at; in place of yaw and pitch."),
+        _note("A direction, or a point to look at; instead of yaw and pitch."),
     ] = None
     yaw: Annotated[_Angle | None, _note("Radians; 0 looks north (-z), pi/2 west (-x).")] = None
     pitch: Annotated[_Angle | None, _note("Radians, positive upwards.")] = None
     inventory: Annotated[
         dict[str, int],
-        _note("Item name to count; what is worn or held counts in and need not be listed."),
+        _note("Counts by item name; equipment is added if it is not listed."),
     ] = {}
-    equipment: Annotated[EquipmentEntry, _note("What it wears and holds.")] = EquipmentEntry()
+    equipment: Annotated[EquipmentEntry, _note("Worn and held items.")] = EquipmentEntry()
     health: Annotated[float, msgspec.Meta(gt=0, le=20, description="Half hearts.")] = 20.0
     food: Annotated[float, msgspec.Meta(ge=0, le=20, description="Half drumsticks.")] = 20.0
     type: Annotated[
         Literal["bot", "human"],
-        _note("Who acts: a bot by programs, or a person who joins by the agent's name."),
+        _note("A bot that runs programs, or a person who joins with the agent's name."),
     ] = "bot"
 
 
@@ -164,57 +164,55 @@ class RadiusEntry(_Entry, frozen=True):
 
 
 class PerceptionEntry(_Entry, frozen=True):
-    """What agents can perceive; the same for all of them, at every depth."""
+    """Perception of agents; the same for all agents, at every depth."""
 
     max_visible_distance: Annotated[float | None, _note("In blocks; null: no limit.")] = 20.0
     field_of_view: Annotated[float, _note("Full angle of sight in degrees, up to 360.")] = 360.0
-    hearing: Annotated[Literal["global", "sight"] | RadiusEntry, _note("Whom an agent hears.")] = (
-        "global"
-    )
+    hearing: Annotated[
+        Literal["global", "sight"] | RadiusEntry, _note("Speakers that an agent hears.")
+    ] = "global"
     containers: Annotated[
-        Literal["opaque", "transparent"], _note("Whether contents show from outside.")
+        Literal["opaque", "transparent"], _note("Whether contents are visible from outside.")
     ] = "opaque"
-    transparent_blocks: Annotated[list[str], _note("Further blocks to see through.")] = []
+    transparent_blocks: Annotated[list[str], _note("Further blocks that do not block sight.")] = []
     negative_evidence: Annotated[
-        bool, _note("Whether a place seen empty makes a pose believed there unknown.")
+        bool, _note("Whether seeing an empty place makes a pose believed there unknown.")
     ] = False
     testimony: Annotated[
         Literal["none", "accept", "informed"],
-        _note(
-            "How hearers take claims: none, all, or those of who may know better than one can see."
-        ),
+        _note("Claims that hearers believe: none, all, or those of speakers who may know better."),
     ] = "none"
     grace: Annotated[
         int,
         msgspec.Meta(ge=0, description="Ticks out of sight after which a speaker may know better."),
     ] = 100
     sincere: Annotated[
-        bool, _note("Whether speakers are taken to believe what is not believed of them.")
+        bool, _note("Whether hearers assume that speakers believe what they say.")
     ] = True
     speech_ticks: Annotated[
-        int, msgspec.Meta(ge=0, le=1200, description="Ticks that it takes to say something.")
+        int, msgspec.Meta(ge=0, le=1200, description="Ticks needed to say something.")
     ] = 0
 
 
 class _BelievedContainerEntry(_Entry, frozen=True):
-    """What a container is believed to hold."""
+    """Believed contents of a container."""
 
     at: Annotated[Position, _note("Its position.")]
     items: _ItemsField = {}
-    complete: Annotated[bool, _note("Whether these are believed to be all.")] = True
+    complete: Annotated[bool, _note("Whether these are believed to be all items in it.")] = True
 
 
 class InitialBeliefEntry(_Entry, frozen=True):
-    """What a belief holds before anything happens."""
+    """Initial content of a belief."""
 
     path: Annotated[
         str,
-        _note("A belief path such as /observer/sally; /** at its end: that and all below it."),
+        _note("A belief path such as /observer/sally; with /** at the end, also all below it."),
     ]
     containers: Annotated[
-        list[_BelievedContainerEntry], _note("What containers are believed to hold.")
+        list[_BelievedContainerEntry], _note("Believed contents of containers.")
     ] = []
-    blocks: Annotated[list[BlockEntry], _note("Believed blocks; block null: unknown.")] = []
+    blocks: Annotated[list[BlockEntry], _note("Believed blocks; `block` null: unknown.")] = []
     signs: Annotated[list[BelievedSignEntry], _note("Believed signs.")] = []
     agents: Annotated[dict[str, Point], _note("Believed positions of the feet.")] = {}
 
@@ -222,20 +220,20 @@ class InitialBeliefEntry(_Entry, frozen=True):
 class StepEntry(_Entry, frozen=True):
     """Programs that run together in the real world; `agent` and `program`, or `programs`."""
 
-    label: Annotated[str, _note("What happens, for progress, messages and overrides.")] = ""
+    label: Annotated[str, _note("What happens; used in progress, messages and overrides.")] = ""
     agent: Annotated[str | None, _note("The agent of a single program.")] = None
     program: Annotated[str | None, _note("JavaScript, the body of an async function.")] = None
-    programs: Annotated[dict[str, str], _note("Agent to program.")] = {}
+    programs: Annotated[dict[str, str], _note("Programs by agent.")] = {}
     senses: Annotated[
         Literal["world", "percepts"] | None,
-        _note("What programs read: everything, or what their agents perceive or remember."),
+        _note("Facts that programs read: all, or what their agents perceive or remember."),
     ] = None
     timeout_ticks: Annotated[
         int,
         msgspec.Meta(
             gt=0,
             le=_LONGEST_TIMEOUT,
-            description="Ticks of 50 ms after which the step has failed.",
+            description="Ticks of 50 ms after which the step fails.",
         ),
     ] = 1200
 
@@ -243,32 +241,34 @@ class StepEntry(_Entry, frozen=True):
 class AnswersEntry(_Entry, frozen=True):
     """A question to the model, and its right answers."""
 
-    question: Annotated[str, _note("What is asked.")]
+    question: Annotated[str, _note("The question.")]
     right: Annotated[
         str | list[str],
-        _note("The right answer, or several; of words, what a right answer has in it."),
+        _note("Right answers; a right answer in words contains one of them."),
     ]
     options: Annotated[
-        list[str], _note("What it chooses from, shuffled by the seed; else it answers in words.")
+        list[str], _note("Options to choose from, shuffled by the seed; empty: an answer in words.")
     ] = []
-    wrong: Annotated[list[str], _note("What an answer in words may not have in it.")] = []
-    reason: Annotated[bool, _note("Whether it is asked why; what it says is kept.")] = False
+    wrong: Annotated[list[str], _note("Texts that an answer in words must not contain.")] = []
+    reason: Annotated[
+        bool, _note("Whether the model is also asked for a reason, which is recorded.")
+    ] = False
 
 
 class ExpectationEntry(_Entry, frozen=True):
-    """What a belief should hold in the end: a container, agent, sign, block, or what was heard."""
+    """Expected content of a belief: a container, agent, sign, block, or utterance."""
 
-    path: Annotated[str, _note("The belief; / is the real world.")]
+    path: Annotated[str, _note("Belief path; / is the real world.")]
     label: Annotated[str, _note("A name for tables and overrides.")] = ""
     container: Annotated[Position | None, _note("A container that holds `items`.")] = None
-    items: Annotated[dict[str, int] | None, _note("Exactly the items known to be in it.")] = None
+    items: Annotated[dict[str, int] | None, _note("Exactly the known items in it.")] = None
     agent: Annotated[str | None, _note("An agent that stands at `position`.")] = None
     sign: Annotated[Position | None, _note("A sign that says `text`.")] = None
-    text: Annotated[str | None, _note("Exactly what is written; null: that is not known.")] = None
+    text: Annotated[str | None, _note("Exact text of the sign; null: unknown.")] = None
     block: Annotated[Position | None, _note("A block that is `state`.")] = None
-    state: Annotated[str | None, _note("A block state; null: it is not known.")] = None
-    heard: Annotated[str | None, _note("Part of an utterance that is known of.")] = None
-    not_heard: Annotated[str | None, _note("Part of no utterance that is known of.")] = None
+    state: Annotated[str | None, _note("A block state; null: unknown.")] = None
+    heard: Annotated[str | None, _note("Part of a known utterance.")] = None
+    not_heard: Annotated[str | None, _note("Text that no known utterance contains.")] = None
     position: Annotated[Point | None, _note("Middle of the feet.")] = None
     within: Annotated[
         float,
@@ -279,51 +279,51 @@ class ExpectationEntry(_Entry, frozen=True):
 
 
 class InferredEntry(_Entry, frozen=True):
-    """What a posterior mean should be: above something, below something, or both."""
+    """Bounds of a posterior mean: above a value, below a value, or both."""
 
     above: Annotated[float | str | None, _note("A number, or a factor with a lower mean.")] = None
     below: Annotated[float | str | None, _note("A number, or a factor with a higher mean.")] = None
 
 
 class ExpectEntry(_Entry, frozen=True):
-    """What should come of a probe: at least one of these, all of them together."""
+    """Expectations about a probe: at least one of these; all of them must hold."""
 
-    opens: Annotated[Position | None, _note("The container that is opened first.")] = None
-    arrives: Annotated[Point | None, _note("Where the agent stands in the end.")] = None
+    opens: Annotated[Position | None, _note("The container that the agent opens first.")] = None
+    arrives: Annotated[Point | None, _note("Place of the agent at the end.")] = None
     intends: Annotated[
         Point | None,
-        _note("The container or place that the program makes for, also if it never gets there."),
+        _note("Container or place that the program heads for, even if it never gets there."),
     ] = None
     within: Annotated[
         float,
         msgspec.Meta(gt=0, le=FARTHEST, description="Greatest distance from there, in blocks."),
     ] = 2.0
     takes: Annotated[
-        dict[str, int] | None, _note("Items that are taken out of containers, and how many.")
+        dict[str, int] | None, _note("Counts of items that the agent takes out of containers.")
     ] = None
-    says: Annotated[str | None, _note("Part of what the agent says.")] = None
+    says: Annotated[str | None, _note("Part of an utterance of the agent.")] = None
     answers: Annotated[
-        AnswersEntry | list[AnswersEntry] | None, _note("What the model answers to questions.")
+        AnswersEntry | list[AnswersEntry] | None, _note("Questions to the model and right answers.")
     ] = None
     believes: Annotated[
         ExpectationEntry | list[ExpectationEntry] | None,
-        _note("What a belief holds once the program has ended."),
+        _note("Content of a belief after the program has ended."),
     ] = None
     inferred: Annotated[
         dict[str, InferredEntry] | None,
-        _note("Factor, such as utility.K or credence.L, to what its posterior mean should be."),
+        _note("Expected posterior means by factor, such as utility.K or credence.L."),
     ] = None
     function: Annotated[
         Any,
         _note(
-            "module:function, given the trial; it is imported and run, so trust who wrote it. "
+            "module:function of the trial; it is imported and run, so use only trusted code. "
             "In code, the function itself."
         ),
     ] = None
 
 
 class _MindGoalEntry(_Entry, frozen=True):
-    """What an agent may want to reach; exactly one of the keys."""
+    """A possible goal of an agent; exactly one of the keys."""
 
     at: Annotated[Position | None, _note("The cell in which to stand.")] = None
     block: Annotated[str | None, _note("Name of the block on which to stand.")] = None
@@ -361,22 +361,22 @@ class _DoubtedContainerEntry(_Entry, frozen=True):
 
 
 class DoubtEntry(_Entry, frozen=True):
-    """An alternative: one way the world could be, which sets the same as all others do."""
+    """An alternative state of the world; all alternatives set the same blocks and contents."""
 
     blocks: Annotated[list[_DoubtedBlockEntry], _note("Blocks.")] = []
     containers: Annotated[list[_DoubtedContainerEntry], _note("Contents of containers.")] = []
-    agents: Annotated[dict[str, Point], _note("Agents to the middle of their feet.")] = {}
+    agents: Annotated[dict[str, Point], _note("Middle of the feet, by agent.")] = {}
 
 
 class InferEntry(_Entry, frozen=True):
-    """What an agent wants and believes, inferred from what the probe's `path` holds of its course.
+    """Inference of an agent's goals and beliefs from its motion, as known at the probe's `path`.
 
     The keys are those of `MindModel` and `Simulator.infer`.
     """
 
     agent: Annotated[str, _note("The agent that is modelled.")]
     goals: Annotated[
-        dict[str, _MindGoalEntry], msgspec.Meta(min_length=1, description="Name to goal.")
+        dict[str, _MindGoalEntry], msgspec.Meta(min_length=1, description="Goals by name.")
     ]
     utilities: Annotated[
         dict[str, float | list[float] | LevelsEntry] | list[dict[str, float]],
@@ -392,7 +392,7 @@ class InferEntry(_Entry, frozen=True):
     ] = None
     actual: Annotated[
         str | dict[str, float] | None,
-        _note("An alternative, `unknown`, or weights; null: what the probe's path holds."),
+        _note("An alternative, `unknown`, or weights; null: the state at the probe's path."),
     ] = None
     prior: Annotated[
         list[list[float]] | None, _note("Weights, utilities by credences; null: uniform.")
@@ -409,7 +409,7 @@ class InferEntry(_Entry, frozen=True):
         int | None, _note("Ticks without movement that are one stay; null: by the world.")
     ] = None
     stays: Annotated[bool, _note("Whether ticks without movement are evidence.")] = True
-    lapse: Annotated[float, _note("What is left of a contradicted alternative.")] = 0.0
+    lapse: Annotated[float, _note("Weight that a contradicted alternative keeps.")] = 0.0
     since: Annotated[int, msgspec.Meta(ge=0, description="The first tick that counts.")] = 0
     until: Annotated[
         Annotated[int, msgspec.Meta(ge=0)] | None,
@@ -422,16 +422,17 @@ class InferEntry(_Entry, frozen=True):
 
 
 class ProbeEntry(_Entry, frozen=True):
-    """A model is asked from one belief; its program runs in a simulator and is judged there.
+    """A request to a model, with a prompt from one belief.
 
-    `acts_in`, `agent` and `task` may be missing where nothing but `answers` is expected. With
-    `infer` no model is asked, and `path`, `label` and `expect` alone may stand beside it.
+    The model's program runs in a simulator and is judged there. `acts_in`, `agent` and `task` may
+    be missing if only `answers` are expected. With `infer` no model is asked, and only `path`,
+    `label` and `expect` may stand beside it.
     """
 
-    path: Annotated[str, _note("The belief that the prompt is rendered from.")]
-    acts_in: Annotated[str | None, _note("The simulator that the program runs in.")] = None
-    agent: Annotated[str | None, _note("The agent that runs it.")] = None
-    task: Annotated[str | None, _note("What the model is asked to make the agent do.")] = None
+    path: Annotated[str, _note("Belief path from which the prompt is rendered.")]
+    acts_in: Annotated[str | None, _note("Path of the simulator in which the program runs.")] = None
+    agent: Annotated[str | None, _note("The agent that runs the program.")] = None
+    task: Annotated[str | None, _note("Task of the agent, for the model.")] = None
     label: Annotated[str, _note("A name for tables and overrides.")] = ""
     template: Annotated[
         str | None,
@@ -440,104 +441,102 @@ class ProbeEntry(_Entry, frozen=True):
     expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
     infer: Annotated[
         InferEntry | None,
-        _note("What is inferred of an agent from what `path` holds; no model is asked."),
+        _note("Inference about an agent from the state at `path`; no model is asked."),
     ] = None
     senses: Annotated[
         Literal["world", "percepts"] | None,
-        _note("What programs read: everything, or what their agents perceive or remember."),
+        _note("Facts that programs read: all, or what their agents perceive or remember."),
     ] = None
     timeout_ticks: Annotated[
         int,
         msgspec.Meta(
             gt=0,
             le=_LONGEST_TIMEOUT,
-            description="Ticks of 50 ms after which the program has failed.",
+            description="Ticks of 50 ms after which the program fails.",
         ),
     ] = 1200
 
 
 class ParameterEntry(_Entry, frozen=True):
-    """A parameter: `${name}` in any value stands for its value."""
+    """A parameter, whose value replaces `${name}` in any value."""
 
-    default: Annotated[Any, _note("Its value where none is given.")]
-    values: Annotated[list[Any], _note("What it may be; empty: `range`, or only the default.")] = []
-    range: Annotated[
-        tuple[int | float, int | float] | None, _note("Its lowest and highest value.")
-    ] = None
+    default: Annotated[Any, _note("Value if none is given.")]
+    values: Annotated[list[Any], _note("Allowed values; empty: `range`, or only the default.")] = []
+    range: Annotated[tuple[int | float, int | float] | None, _note("Lowest and highest value.")] = (
+        None
+    )
     step: Annotated[
         int | float | None,
-        _note("Between values in `range`; 0: any number. 1 for whole bounds, else 0."),
+        _note("Step in `range`; 0: any number. Default: 1 for whole bounds, else 0."),
     ] = None
-    description: Annotated[str, _note("What it is.")] = ""
+    description: Annotated[str, _note("Description.")] = ""
 
 
 class ScenarioFile(_Entry, frozen=True):
-    """A scenario: a world, agents, what they do, and what they should come to believe."""
+    """A scenario: a world, agents, a script, and expected beliefs."""
 
     name: Annotated[str, _note("Short name, for tables and folders.")]
     box: Annotated[
-        tuple[Position, Position], _note("Two inclusive corners of the part of space it plays in.")
+        tuple[Position, Position], _note("Two inclusive corners of the scenario's space.")
     ]
     agents: Annotated[
         dict[str, AgentEntry],
-        msgspec.Meta(min_length=1, description="Who lives there: name to agent."),
+        msgspec.Meta(min_length=1, description="Agents by name."),
     ]
-    description: Annotated[str, _note("What it is about.")] = ""
+    description: Annotated[str, _note("Description of the scenario.")] = ""
     reported_by: Annotated[
-        str, _note("Who reported what is expected, as in 'as the paper reports'.")
+        str, _note("Source of the expectations, as in 'as the paper reports'.")
     ] = ""
     parameters: Annotated[
-        dict[str, ParameterEntry], _note("What `${name}` in other values stands for.")
+        dict[str, ParameterEntry], _note("Parameters, which replace `${name}` in other values.")
     ] = {}
     constraints: Annotated[
-        list[str], _note("Expressions over parameters that hold, such as `gap < 4`.")
+        list[str], _note("Expressions over parameters that must hold, such as `gap < 4`.")
     ] = []
-    blocks: Annotated[list[BlockEntry], _note("The rest of the box is air.")] = []
+    blocks: Annotated[list[BlockEntry], _note("Blocks in the box; the rest is air.")] = []
     containers: Annotated[
-        list[ContainerEntry], _note("What containers hold at the start, and what people call them.")
+        list[ContainerEntry], _note("Containers, their initial contents, and their names.")
     ] = []
-    signs: Annotated[list[SignEntry], _note("Signs, and what is written on them.")] = []
-    places: Annotated[dict[str, Position], _note("What people call places: name to block.")] = {}
+    signs: Annotated[list[SignEntry], _note("Signs and their texts.")] = []
+    places: Annotated[dict[str, Position], _note("Named places: block positions by name.")] = {}
     perception: Annotated[
         PerceptionEntry,
-        _note("How far agents see and hear, and what they make of what they are told."),
+        _note("Range of sight and hearing, and effect of claims."),
     ] = PerceptionEntry()
     senses: Annotated[
         Literal["world", "percepts"],
-        _note("What programs read: everything, or what their agents perceive or remember."),
+        _note("Facts that programs read: all, or what their agents perceive or remember."),
     ] = "world"
     static_blocks: Annotated[
         list[str | Position],
-        _note("Blocks that everybody knows from the start: names, or positions."),
+        _note("Blocks that all agents know from the start: names, or positions."),
     ] = []
     unique: Annotated[
         list[str],
         _note(
-            "Items of which everybody knows that there is one: seen in one place, an item is "
-            "believed nowhere else."
+            "Items that all agents know to exist only once: an agent that sees one believes that "
+            "it is nowhere else."
         ),
     ] = []
     labels: Annotated[
         bool,
-        _note("Whether prompts say what containers are called and look as if they held."),
+        _note("Whether prompts contain `label` and `looks` of containers."),
     ] = False
-    initial_beliefs: Annotated[
-        list[InitialBeliefEntry], _note("What is believed before anything happens.")
-    ] = []
-    script: Annotated[list[StepEntry], _note("What happens in the real world, in order.")] = []
-    probes: Annotated[list[ProbeEntry], _note("What is asked once the script has ended.")] = []
+    initial_beliefs: Annotated[list[InitialBeliefEntry], _note("Beliefs before the script.")] = []
+    script: Annotated[list[StepEntry], _note("Steps in the real world, in order.")] = []
+    probes: Annotated[list[ProbeEntry], _note("Requests to models after the script.")] = []
     expectations: Annotated[
-        list[ExpectationEntry], _note("What should be believed once the script has ended.")
+        list[ExpectationEntry], _note("Expected beliefs after the script.")
     ] = []
     episode: Annotated[
         EpisodeEntry | None,
-        _note("What agents are after, and the rules by which they act round after round."),
+        _note("Goals of agents, and the rules of play in rounds."),
     ] = None
     conditions: Annotated[
         dict[int, dict[str, Any]],
         _note(
-            "Number to what differs: a mapping is merged key by key, anything else replaces. "
-            "For a list of labelled entries, a mapping changes the entries with these labels."
+            "Overrides by number: a mapping is merged key by key, any other value replaces. For a "
+            "list of labelled entries, a mapping changes the entries with these labels."
         ),
     ] = {}
 

@@ -23,41 +23,41 @@ def _note(text: str) -> msgspec.Meta:
 
 
 class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """Base of all parts: a key that is not listed is an error."""
+    """Base of all parts; unknown keys are errors."""
 
 
 class GoalEntry(_Entry, frozen=True):
-    """What somebody is after."""
+    """A goal of an agent or of a task."""
 
-    reach: Annotated[list[ConditionEntry], _note("True at one and the same tick.")] = []
-    never: Annotated[list[ConditionEntry], _note("True at no tick until then.")] = []
+    reach: Annotated[list[ConditionEntry], _note("Must hold, all at the same tick.")] = []
+    never: Annotated[list[ConditionEntry], _note("Must not hold at any tick until then.")] = []
     messages: Annotated[
         Annotated[int, msgspec.Meta(ge=0)] | None, _note("Most utterances of all players.")
     ] = None
     ticks: Annotated[
         Annotated[int, msgspec.Meta(ge=1)] | None,
-        _note("Most ticks from the first round until all of `reach` is the case."),
+        _note("Most ticks from the first round until all of `reach` holds."),
     ] = None
 
 
 class EpisodeEntry(_Entry, frozen=True, kw_only=True):
-    """What agents are after, and the rules of play."""
+    """Goals of agents, and the rules of play."""
 
-    goal: Annotated[GoalEntry, _note("What makes the episode a success; the players' goal.")] = (
+    goal: Annotated[GoalEntry, _note("Goal of the players; it decides about success.")] = (
         GoalEntry()
     )
-    goals: Annotated[dict[str, GoalEntry], _note("Of agents who are after something else.")] = {}
+    goals: Annotated[dict[str, GoalEntry], _note("Goals of agents that have other goals.")] = {}
     order: Annotated[int, msgspec.Meta(ge=0, description="Order of Theory of Mind it needs.")] = 0
     players: Annotated[
         list[str],
-        _note("Whose policies are put to the test; empty: all who are not in `policies`."),
+        _note("Agents whose policies are tested; empty: all agents not in `policies`."),
     ] = []
-    policies: Annotated[dict[str, str], _note("Policies of agents who are no players.")] = {}
-    talk: Annotated[list[str], _note("Who may speak.")] = []
-    play: Annotated[Literal["together", "turns"], _note("How programs of a round run.")] = (
-        "together"
-    )
-    rounds: Annotated[int, msgspec.Meta(ge=1, description="Rounds until it is over.")] = 10
+    policies: Annotated[dict[str, str], _note("Policies of agents that are no players.")] = {}
+    talk: Annotated[list[str], _note("Agents that may speak.")] = []
+    play: Annotated[
+        Literal["together", "turns"], _note("Whether programs of a round run together or in turn.")
+    ] = "together"
+    rounds: Annotated[int, msgspec.Meta(ge=1, description="Greatest number of rounds.")] = 10
     round_ticks: Annotated[
         int, msgspec.Meta(ge=1, le=12_000, description="Ticks after which programs are cut.")
     ] = 20

@@ -51,7 +51,7 @@ class MindFacts:
         return {} if there is None else there.inventory
 
     def feet_of(self, agent: str) -> Point | None:
-        """Where an agent stands."""
+        """Return the position of an agent's feet; None: unknown."""
         there = self._agents.get(agent)
         return None if there is None else there.position
 
@@ -98,7 +98,7 @@ class BeliefFacts:
         return self._view.agents[agent].inventory
 
     def feet_of(self, agent: str) -> Point | None:
-        """Where an agent stands."""
+        """Return the position of an agent's feet; None: unknown."""
         return self._view.agents[agent].position
 
     def block(self, place: Position) -> str | None:
