@@ -86,7 +86,7 @@ def test_an_interrupted_study_keeps_whole_cells(server, tmp_path):
     _, told = process.communicate()
     ended.set()
     assert process.returncode == 130
-    assert "the same command goes on" in told
+    assert "run the same command to continue" in told
     file.write_text(varied, encoding="utf-8")
     subprocess.run([*command, str(tmp_path / "whole"), "--jobs", "1"], check=True)
     kept, whole = (

@@ -122,14 +122,14 @@ def _kernels() -> str:
 
     if is_compiled(kernel.fold):
         return "compiled"
-    return "not compiled yet; the first belief will wait for it, or `beliefnest doctor --warm` now"
+    return "not compiled yet; the first belief waits for it, or run `beliefnest doctor --warm` now"
 
 
 def _one_belief() -> None:
     from beliefnest.nest.face.nest import Nest
     from beliefnest.world.scripted import ScriptedWorld
 
-    sys.stderr.write("compiling what beliefs are computed with (once, some 15 to 30 seconds)\n")
+    sys.stderr.write("compiling the kernels of beliefs (once, some 15 to 30 seconds)\n")
     agents = {"ann": (0.5, 0.0, 0.5), "bob": (2.5, 0.0, 2.5)}
     with Nest(ScriptedWorld(box=((0, 0, 0), (2, 2, 2)), agents=agents)) as nest:
         nest["/ann/bob"].state.blocks.named(frozenset({"stone"}))

@@ -48,7 +48,7 @@ _REPORTS = 10
 
 @dataclass(frozen=True, slots=True)
 class FilmOptions:
-    """What was asked for on the command line.
+    """Options of `beliefnest suite food-trucks`.
 
     Attributes:
         data: File of films.

@@ -82,7 +82,7 @@ def play_task(options: PlayOptions) -> int:
             on_progress(f"round {episode.rounds + 1}", episode.rounds, limit)
             episode.play(1)
         if options.measures_help:
-            on_progress("playing what would have been without help", limit, limit)
+            on_progress("playing branches without help", limit, limit)
             episode.help()
         on_progress("over", limit, limit)
         report = _report(episode, measures_help=options.measures_help)

@@ -230,9 +230,9 @@ def placed_lines(placed: Placements) -> list[str]:
 
 def _placed_line(key: str | Position, start: Point | str | None, end: Point | str) -> str:
     if isinstance(start, tuple) and isinstance(end, tuple):
-        return f"{key} begins at {point_text(end)}, could not be at {point_text(start)}"
+        return f"{key} begins at {point_text(end)}: {point_text(start)} is not possible"
     believed = "an unknown block" if start is None else start
-    return f"a {end} stands at {key}, in place of {believed}, for what is believed to be in it"
+    return f"a {end} stands at {key} instead of {believed}, to hold the believed contents"
 
 
 def _verb(scenario: Scenario) -> str:

@@ -72,7 +72,7 @@ def serve(options: ServeOptions) -> None:
         token = None if _is_loopback(options.address) else secrets.token_urlsafe(24)
         host = Host(lambda: _stores(folder), _open, options.depth)
         for fault in host.discover():
-            sys.stderr.write(f"beliefnest: not on the page until it can be read: {fault}\n")
+            sys.stderr.write(f"beliefnest: missing on the page until it can be read: {fault}\n")
         host.follow()
         query = "" if token is None else f"?token={token}"
         address = f"http://{_host(options.address)}:{port}/{query}"

@@ -89,7 +89,7 @@ def run_study(options: StudyOptions) -> int:
                 on_progress=told,
             )
         except KeyboardInterrupt:
-            sys.stderr.write(f"what has ended is kept in {folder}; the same command goes on\n")
+            sys.stderr.write(f"finished cells are in {folder}; run the same command to continue\n")
             raise
     by = options.by or result.groups
     _write_files(result, by)

@@ -1,4 +1,4 @@
-"""Inference in scenarios: what `infer:` of a probe means, and how its result is judged."""
+"""Inference in scenarios: meaning of a probe's `infer`, and judging of its result."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -32,21 +32,21 @@ __all__ = [
 ]
 
 MOST_HYPOTHESES = 2_000_000
-"""Combinations of utilities, credences and alternatives that fit into memory."""
+"""Greatest number of combinations of utilities, credences and alternatives."""
 
 _SLACK = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Inferring:
-    """What a probe infers.
+    """Inference of a probe.
 
     Attributes:
         model: The hypotheses.
         since: The first tick that counts.
         until: The last tick that counts; None: the end of the script.
-        ended: Whether the agent acted on the goal at its place after the last tick.
-        smooth: Whether current credences use later evidence too.
+        ended: True if the agent acted on the goal at its place after the last tick.
+        smooth: True if current credences use later evidence too.
         where: File and line, for messages.
     """
 
@@ -85,7 +85,7 @@ class Inferred:
 
 
 def why_not_inferred(expected: Infers, inferred: Inferred) -> str | None:
-    """Return what is inferred instead of what was expected; None: just that."""
+    """Return how the inferred means differ from the expected ones; None: they do not."""
     if inferred.impossible is not None:
         return inferred.impossible
     mean = inferred.means[expected.factor]
@@ -103,17 +103,17 @@ def why_not_inferred(expected: Infers, inferred: Inferred) -> str | None:
 
 
 def means_text(means: Mapping[str, float], factors: Sequence[str] = ()) -> str:
-    """Return means in words, of some factors; none named: of all."""
+    """Return the means of some factors in words; without names, of all factors."""
     return ", ".join(f"{name} {means[name]:.3g}" for name in factors or means)
 
 
 def build_inferring(
     document: Document, path: KeyPath, entry: InferEntry, snapshot: Snapshot
 ) -> Inferring:
-    """Return what a probe infers.
+    """Build the inference of a probe.
 
     Raises:
-        ScenarioError: The model does not fit together, or names what is not in the scenario.
+        ScenarioError: The model is not consistent, or names something that does not exist.
     """
     if entry.agent not in snapshot.agents:
         known = ", ".join(snapshot.agents)
@@ -173,10 +173,10 @@ def build_inferring(
 def build_infers(
     document: Document, path: KeyPath, entries: Mapping[str, InferredEntry], model: MindModel
 ) -> list[Infers]:
-    """Return what is expected of inferred means.
+    """Build the expectations about inferred means.
 
     Raises:
-        ScenarioError: A factor is not one of the model's, or nothing is said of it.
+        ScenarioError: A factor is not in the model, or has no bounds.
     """
     if not entries:
         raise document.fault(path, "expects nothing; name a factor, such as utility.K")
@@ -218,7 +218,7 @@ def _levels(document: Document, path: KeyPath, entry: LevelsEntry) -> list[float
 
 
 def _check_count(document: Document, path: KeyPath, entry: InferEntry) -> None:
-    """Refuse more hypotheses than fit into memory, before they are made."""
+    """Refuse more hypotheses than fit into memory before creating them."""
     given, alternatives = entry.utilities, len(entry.doubt or {}) or 1
     count = len(given) if isinstance(given, list) else 1
     for levels in () if isinstance(given, list) else given.values():
@@ -235,7 +235,7 @@ def _check_count(document: Document, path: KeyPath, entry: InferEntry) -> None:
     if count * alternatives > MOST_HYPOTHESES:
         raise document.fault(
             path,
-            f"has {count * alternatives:,} hypotheses, at most {MOST_HYPOTHESES:,} are counted; "
+            f"has {count * alternatives:,} hypotheses, at most {MOST_HYPOTHESES:,} are possible; "
             "name fewer utilities, or a coarser grid of credences",
         )
 

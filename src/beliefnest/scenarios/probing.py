@@ -70,7 +70,7 @@ def run_probe(
     Raises:
         ModelError: The model failed, or gave no working program (`Asking.keeps_unanswered`).
         BodyError: The Minecraft side died.
-        ScenarioError: What is to be inferred does not fit what happened.
+        ScenarioError: The inference does not fit the recorded events.
     """
     if probe.infer is not None:
         return _infer(nest, probe, probe.infer)

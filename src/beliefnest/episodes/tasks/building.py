@@ -34,7 +34,7 @@ def wall(low: Position, high: Position, block: str = WALL) -> dict[str, Any]:
 
 
 def chest(at: Position, items: Mapping[str, int] | None = None, label: str = "") -> dict[str, Any]:
-    """Return a chest with what is in it."""
+    """Return a chest with its contents."""
     return {"at": list(at), "items": dict(items or {}), "label": label}
 
 
