@@ -63,9 +63,9 @@ class Guard:
 
     def _problem(self, scope: Scope, headers: dict[str, str]) -> str | None:
         if headers.get("host", "") not in self._hosts:
-            return "this server is not known by that name; use the address that it printed"
+            return "this host name is not allowed; use the address that the server printed"
         if headers.get("sec-fetch-site", "none") not in {"none", "same-origin"}:
-            return "requests of other sites are not answered"
+            return "requests from other sites are refused; use the address that the server printed"
         if self._token is None:
             return None
         known = self._given(scope) or self._kept(headers)

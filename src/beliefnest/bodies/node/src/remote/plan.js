@@ -1,7 +1,9 @@
 'use strict'
 /**
- * Planner of the commands that turn a box of blocks into another one: as few fills as it finds, each within the
- * command's limit.
+ * Planner of the commands that turn a box of blocks into another one: few fills, each within the command's limit.
+ *
+ * The planner is greedy: from each differing cell that no fill covers yet, in array order, it grows the cuboid of equal
+ * wanted states as far as possible. A minimal cover would be expensive to find and saves little on built structures.
  */
 
 const MOST_BLOCKS = 32768

@@ -10,7 +10,7 @@ const MAX_RANGE = 256
 const MAX_DEPTH = 10
 // Largest reach; a player reaches no further, and rays are no longer.
 const MAX_REACH = 8
-// Fuel per ray check of a goal, charged at every near enough position of a path; also the fuel for a Movements object.
+// Fuel for the ray check of a goal at each near enough position of a path, and for making a Movements object.
 const RAYS_COST = 5000
 const MOVEMENTS_COST = 200_000
 const coordinate = (exchange, wire, where) => exchange.coordinate(wire, where)

@@ -92,7 +92,7 @@ export class Detail {
     else if (told.error) refill(why, element('p', {}, told.error))
     else {
       const lines = told.lines.map(line => element('p', {}, line))
-      if (told.t !== tick) lines.push(element('p', { class: 'hint' }, `This was worked out for tick ${told.t}.`))
+      if (told.t !== tick) lines.push(element('p', { class: 'hint' }, `This explanation is for tick ${told.t}.`))
       refill(why, ...lines)
     }
   }

@@ -45,7 +45,7 @@ function entry (from, to, cell) {
 export function lookWords (run, viewer, thing, look) {
   const name = run.head.agents[viewer].name
   const target = run.thingName(thing)
-  if (look === null) return `Where ${name} is, is not known here.`
+  if (look === null) return `The place of ${name} is not known here.`
   const [view, distance, blocker] = look
   if (view === 'seen') return `${name} sees ${target}, ${distance} blocks away.`
   if (view === 'blocked' && blocker) {
@@ -53,6 +53,6 @@ export function lookWords (run, viewer, thing, look) {
     return `${name} does not see ${target}: the ${what ?? 'block'} at (${x}, ${y}, ${z}) is in the way.`
   }
   if (view === 'too far') return `${name} does not see ${target}: it is ${distance} blocks away, too far.`
-  if (view === 'place unknown') return `Where ${target} is, is not known here.`
+  if (view === 'place unknown') return `The place of ${target} is not known here.`
   return `${name} does not see ${target}: ${view}.`
 }
