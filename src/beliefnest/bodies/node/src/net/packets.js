@@ -4,9 +4,16 @@
  * a region's own coordinates uses only this table. Relative positions (rel_entity_move, offsets of an explosion, block
  * entities of a chunk) are the same on both sides and are not listed.
  *
- * Kinds: `point` is x, y, z as numbers in the packet (or in the object named by `field`); `block` the same for
- * integers; `fixed` eighths of a block; `chunk` chunk numbers under the two names given; `player` a player's name;
- * `text` a chat component; `vec` is a point that may be absent.
+ * An entry applies to the packet itself, or to the object in its `field` if that is present. Its kind is one of:
+ *
+ * - `point`: x, y, z as fractions, which are rounded (steps.js); `block` and `flat`: x, y, z or x, z, kept exactly
+ * - `fixed`: x, y, z in eighths of a block
+ * - `absolute`: a point whose flags say which coordinates are relative
+ * - `dig`: the location of block_dig, which is meaningless for some statuses
+ * - `death`: the location of the last death
+ * - `chunk`: chunk numbers under the two names given; `chunks`: a list of objects with a chunk's `position`
+ * - `players`: a list of objects with a player's name
+ * - `text`: a chat component; `words`: a command whose words may be names
  */
 const point = { kind: 'point' }
 const block = { kind: 'block', field: 'location' }
