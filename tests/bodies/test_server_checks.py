@@ -194,15 +194,15 @@ def test_an_agent_does_not_have_the_operators_name(server):
 @pytest.mark.parametrize(
     ("address", "said"),
     [
-        ("minecraft://", "no address of a server"),
-        ("minecraft://host:port", "no port that there is"),
-        ("minecraft://host/world", "no address of a server"),
-        ("minecraft://user:secret@host", "no name or password"),
+        ("minecraft://", "not the address of a server"),
+        ("minecraft://host:port", "no valid port"),
+        ("minecraft://host/world", "not the address of a server"),
+        ("minecraft://user:secret@host", "must not contain a name or password"),
         ("minecraft://host?at=1,16", "multiples of 16"),
         ("minecraft://host?operator=a-b", "1 to 16 letters"),
         ("minecraft://host?patience=0", "from 1 to 3600"),
         ("minecraft://host?keep=perhaps", "yes or no"),
-        ("minecraft://host?where=here", "there are version, operator, at"),
+        ("minecraft://host?where=here", "known options are version, operator, at"),
         ("Minecraft://host?at=0,0&at=16,16", "option 'at' twice"),
     ],
 )
