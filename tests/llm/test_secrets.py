@@ -201,6 +201,8 @@ def test_addresses_are_shown_without_what_is_secret(url: str, shown: str) -> Non
     "url", ["http://[::1", "http://host:port/v1", "secretword", "http://:secret@/v1"]
 )
 def test_what_is_no_address_is_refused_without_being_shown(url: str) -> None:
-    with pytest.raises(ModelError, match="COMPATIBLE_BASE_URL is no address of a server") as caught:
+    with pytest.raises(
+        ModelError, match="COMPATIBLE_BASE_URL is not the address of a server"
+    ) as caught:
         open_model("compatible:m", {"COMPATIBLE_BASE_URL": url}, Connection())
     assert url not in "".join(traceback.format_exception(caught.value))

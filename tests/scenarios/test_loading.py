@@ -207,8 +207,14 @@ FAULTS_OF_TALK = [
         "initial_beliefs[1].path",
         "may only stand at its end, once",
     ),
-    ("path: /ann", "path: ann/**", 7, "initial_beliefs[1].path", "'ann/**' is no belief path"),
-    ("path: /ann", "path: /eve/**", 7, "initial_beliefs[1].path", "'/eve/**' names 'eve'"),
+    ("path: /ann", "path: ann/**", 7, "initial_beliefs[1].path", "'ann/**' is not a belief path"),
+    (
+        "path: /ann",
+        "path: /eve/**",
+        7,
+        "initial_beliefs[1].path",
+        "'/eve/**' names an unknown agent 'eve'",
+    ),
 ]
 
 

@@ -254,7 +254,7 @@ def test_the_nearest_checkpoint_lies_at_or_before(journal, make_history):
     assert journal.nearest_checkpoint(MAIN, "b", 14) is None
     assert journal.nearest_checkpoint(MAIN, "b", 16) == (15, b"b15")
     for place in (-1, journal.info(MAIN).entries + 1):
-        with pytest.raises(InputError, match="no checkpoint"):
+        with pytest.raises(InputError, match="nothing can be stored after"):
             journal.put_checkpoint(MAIN, "a", place, b"")
 
 

@@ -106,7 +106,7 @@ BAD = [
     ({"tick": 1, "agents": {"sally": {"equipment": {"head": "eggg"}}}}, "eggg"),
     ({"tick": 1, "agents": {"sally": {"inventory": {"egg": -1}}}}, "counts must be positive"),
     ({"tick": 1, "items": {"1": {"name": "eggg", "count": 1, "position": [1, 1, 1]}}}, "eggg"),
-    ({"tick": 1, "events": [{"kind": "dance", "actor": "sally"}]}, "no event 'dance'"),
+    ({"tick": 1, "events": [{"kind": "dance", "actor": "sally"}]}, "unknown event 'dance'"),
     ({"tick": 1, "events": [{"kind": "chat"}]}, "no actor"),
     (
         {

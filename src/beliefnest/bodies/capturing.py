@@ -66,7 +66,7 @@ def capture_server(address: ServerAddress, box: Box) -> Captured:
         InputError: The box is too large, or outside the world.
     """
     if fault := box_fault(box):
-        raise InputError(f"the box {fault}")
+        raise InputError(fault)
     channel, _ = joined(address, 0, ProcessLimits())
     told = _asked(channel, "capture", box=[box.low, box.high])
     found = msgspec.convert(told, _Found)
@@ -102,7 +102,7 @@ def capture_file(data: bytes, corner: Position) -> Captured:
     high = tuple(low + side - 1 for low, side in zip(corner, place.shape, strict=True))
     box = Box(corner, (high[0], high[1], high[2]))
     if fault := box_fault(box):
-        raise InputError(f"the box of the file {fault}")
+        raise InputError(f"the file has a bad box: {fault}")
     registry = Registry.load()
     states, unknown = _states(place.palette, registry)
     cells = np.frombuffer(place.blocks, dtype="<i4").reshape(box.shape)

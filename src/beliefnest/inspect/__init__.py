@@ -5,4 +5,4 @@ from importlib.util import find_spec
 from beliefnest.errors import MissingExtraError
 
 if find_spec("inspect_ai") is None:
-    raise MissingExtraError("tasks of Inspect AI need it", "inspect")
+    raise MissingExtraError("tasks of Inspect AI need inspect_ai", "inspect")

@@ -201,7 +201,7 @@ def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
         )
     if not _is_address(url):
         raise ModelError(
-            f"{provider.url_variable} is no address of a server; write it as "
+            f"{provider.url_variable} is not the address of a server; write it as "
             "http://localhost:8000/v1, with special characters of a password as %40"
         )
     for variable in provider.key_variables:

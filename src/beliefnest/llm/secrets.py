@@ -82,6 +82,8 @@ def _forms(secret: str) -> Iterator[str]:
         yield re.escape(plain)
     for encoded in (quote(secret), quote(secret, safe=""), quote_plus(secret)):
         yield re.sub(r"%[0-9A-F]{2}", lambda found: f"(?i:{found[0]})", re.escape(encoded))
+    # Hexadecimal bytes, then base64 of a longer text that contains the secret: its encoding
+    # depends on the number of preceding bytes modulo 3, and may use either alphabet.
     content = secret.encode(errors="surrogatepass")
     yield f"(?i:{content.hex()})"
     for before in range(3):

@@ -101,6 +101,9 @@ class Chunks:
         if count - packed + len(encoded) < CHUNK_ENTRIES:
             self._write(timeline, count, encoded, entries, None)
             return packed
+        # The uncompressed tail and the new entries fill at least one compressed chunk: read the
+        # tail, delete its chunks, and write all of it again in chunks of CHUNK_ENTRIES. Only the
+        # last of these chunks can be shorter and stays uncompressed.
         tail = list(self.raw(timeline, packed, count))
         loose = [*tail, *encoded]
         decoded = [*(codec.decode_entry(entry) for entry in tail), *entries]
@@ -206,6 +209,8 @@ class Chunks:
 
         The caller makes sure that all queries see one state of the file.
         """
+        # Start with the agents stored with the last compressed chunk that ends in time, then add
+        # the states in the entries after it. These are fewer than CHUNK_ENTRIES.
         last = self._chunk(timeline, "first <= ? AND compressed ORDER BY first DESC", entries - 1)
         first = 0
         agents: dict[str, AgentState | None] = {}

@@ -68,7 +68,7 @@ class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=Tr
 def _plain(value: object) -> object:
     if isinstance(value, np.generic):
         return value.item()
-    raise TypeError(f"{type(value).__name__} is no value of a world")
+    raise TypeError(f"{type(value).__name__} is not a value of a world")
 
 
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_plain)
@@ -113,6 +113,7 @@ def decode_last_agents(entries: Iterable[msgspec.Raw]) -> dict[str, AgentState |
     Raises:
         StoreError: Some bytes are not an entry.
     """
+    # Keep the states encoded while scanning: most are overwritten by later entries.
     last: dict[str, msgspec.Raw] = {}
     for entry in entries:
         last.update(_decoded(_ENTRY_AGENTS, entry, "entry of a timeline")[1].agents)

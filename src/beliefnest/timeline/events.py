@@ -1,4 +1,4 @@
-"""Events as other programs record them: which details each kind has to have."""
+"""Validation of events that other programs recorded."""
 
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
@@ -67,7 +67,7 @@ def event_from(
             type.
     """
     if kind not in set(EventKind):
-        raise InputError(f"there is no event {kind!r}; there are {', '.join(EventKind)}")
+        raise InputError(f"unknown event {kind!r}; events are {', '.join(EventKind)}")
     known = EventKind(kind)
     if actor is None and known is not EventKind.BLOCK_UPDATE:
         raise InputError(f"event {kind!r} has no actor; name the agent who did it")
@@ -90,5 +90,8 @@ def event_from(
         raise InputError(f"event {kind!r} has the detail 'claims_from' without 'claims'")
     for name in (actor, values.get("other"), values.get("to")):
         if name is not None and name not in agents:
-            raise InputError(f"event {kind!r} names an unknown agent {name!r}")
+            known_agents = ", ".join(sorted(agents))
+            raise InputError(
+                f"event {kind!r} names an unknown agent {name!r}; agents are {known_agents}"
+            )
     return Event(known, actor, values)

@@ -1,8 +1,8 @@
 """Timelines: append-only logs of facts of control-mode simulators (semantics, section 6).
 
 A timeline is one branch of one simulator. Its entries are frames and edits. It begins at its base,
-which is a point on another timeline, or at the world's first snapshot. Journals store nothing but
-timelines and caches of them: every follow-mode belief is computed from them.
+which is a point on another timeline, or at the world's first snapshot. No other
+facts are stored: every follow-mode belief is computed from timelines.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -183,7 +183,7 @@ def check_place(info: TimelineInfo, entries: int) -> None:
     if not 0 <= entries <= info.entries:
         raise InputError(
             f"branch {info.key.branch!r} of {path_text(info.key.path)} has {info.entries} "
-            f"entries; no checkpoint lies after {entries}"
+            f"entries; nothing can be stored after entry {entries}"
         )
 
 

@@ -260,6 +260,7 @@ def _stated(text: str) -> str:
         state = registry.state_id(text)
     except BeliefNestError as fault:
         raise type(fault)(f"a claim about a block: {fault}") from None
+    # Keep only the properties that the text names, in sorted order; a claim is silent on others.
     name, _, inner = text.strip().partition("[")
     stated = sorted(part.partition("=")[0].strip() for part in inner.rstrip("]").split(",") if part)
     properties = registry.properties(state)

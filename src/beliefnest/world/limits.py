@@ -86,9 +86,14 @@ def box_fault(box: Box) -> str | None:
         return f"the box {box.low} to {box.high} is empty; give its lower corner first"
     volume = math.prod(sides)
     if volume > _MOST_BLOCKS:
-        return f"holds {volume} blocks; at most {_MOST_BLOCKS} are possible: make it smaller"
+        return (
+            f"the box holds {volume} blocks; at most {_MOST_BLOCKS} are possible: make it smaller"
+        )
     if max(sides) > _LONGEST_SIDE:
-        return f"is {max(sides)} blocks long; at most {_LONGEST_SIDE} are possible: make it smaller"
+        return (
+            f"the box is {max(sides)} blocks long; at most {_LONGEST_SIDE} are possible: "
+            "make it smaller"
+        )
     return None
 
 
@@ -121,7 +126,7 @@ def items_fault(
             return f"the count of {name!r} is {_short(count)}; it must be a whole number above 0"
         needed += -(-count // registry.item_stack(name))
     if needed > slots:
-        return f"fill {_short(needed)} slots; {holder} has {slots}"
+        return f"the items need {_short(needed)} slots; {holder} has {slots}"
     return None
 
 

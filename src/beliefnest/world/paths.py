@@ -40,16 +40,18 @@ def parse_path(text: str, agents: Collection[str]) -> BeliefPath:
 def _parsed(text: str, written: str, agents: Collection[str]) -> BeliefPath:
     """Parse a path; `written` is the text that messages quote."""
     if not isinstance(text, str) or not text.startswith("/"):
-        raise PathError(f"{_short(written)} is no belief path; write '/' or '/agent/agent'")
+        raise PathError(f"{_short(written)} is not a belief path; write '/' or '/agent/agent'")
     if text == "/":
         return ()
     names = text[1:].removesuffix("/").split("/")
     if "" in names:
-        raise PathError(f"{_short(written)} is no belief path: a name between slashes is empty")
+        raise PathError(f"{_short(written)} is not a belief path: a name between slashes is empty")
     for name in names:
         if name not in agents:
             there = ", ".join(sorted(agents))
-            raise PathError(f"{_short(written)} names {_short(name)}; the agents are {there}")
+            raise PathError(
+                f"{_short(written)} names an unknown agent {_short(name)}; agents are {there}"
+            )
     return normalised(names)
 
 
@@ -64,7 +66,7 @@ def parse_pattern(text: str, agents: Collection[str]) -> BeliefPath:
     above = text.removesuffix(f"/{AND_BELOW}")
     if above == text or AND_BELOW in above.split("/"):
         raise PathError(
-            f"{_short(text)} is no belief path: '/{AND_BELOW}' may only stand at its end, once"
+            f"{_short(text)} is not a belief path: '/{AND_BELOW}' may only stand at its end, once"
         )
     return (*_parsed(above or "/", text, agents), AND_BELOW)
 

@@ -204,5 +204,5 @@ class ScriptedState:
         """Return the items of a holder after a transfer; WorldError if they do not fit."""
         items = sum_of(held, moved)
         if fault := items_fault(items, self._registry, slots, who):
-            raise WorldError(f"{moved} cannot be moved: they would {fault}")
+            raise WorldError(f"{moved} cannot be moved: {fault}")
         return items
