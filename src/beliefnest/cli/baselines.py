@@ -25,6 +25,8 @@ __all__ = ["BaselineOptions", "page_of", "run_baselines"]
 
 _POLICIES, _ORDERS = ("random", "search", "omniscient:search"), (0, 1, 2)
 """Policies and orders of the players; all other agents follow the task's script."""
+_HIDDEN_POLICIES, _HIDDEN_ORDERS = ("random", "search", "infer", "omniscient:search"), (0, 1)
+"""Policies and orders of the players in tasks with hidden goals."""
 _BY = ("task", "needs", "policy")
 
 _REPORTS = 20
@@ -66,6 +68,7 @@ def run_baselines(options: BaselineOptions) -> int:
     Returns:
         Exit status: 0 if every task needs exactly the order that it states, else 1. A task needs
         order n if `search:n` reaches the goal in all episodes and `search:n-1` in none.
+        If goals are hidden, `infer:n` reaches it in all, and `search:n` not in all.
 
     Raises:
         BeliefNestError: The input is wrong, or episodes have no result.
@@ -86,10 +89,32 @@ def run_baselines(options: BaselineOptions) -> int:
 
 
 def _played(names: Sequence[str], options: BaselineOptions) -> list[dict[str, Any]]:
-    """Play a study of all baselines and return its summary rows."""
-    study = Study(tasks=names, policies=_POLICIES, orders=_ORDERS, seeds=options.seeds)
+    """Return the summary of studies of all baselines, in the order of the names."""
+    hidden = [name for name in names if _hides_goals(name)]
+    known = [name for name in names if name not in hidden]
+    found: list[dict[str, Any]] = []
+    if known:
+        study = Study(tasks=known, policies=_POLICIES, orders=_ORDERS, seeds=options.seeds)
+        found += _summary(study, options, "known")
+    if hidden:
+        study = Study(
+            tasks=hidden, policies=_HIDDEN_POLICIES, orders=_HIDDEN_ORDERS, seeds=options.seeds
+        )
+        found += _summary(study, options, "hidden")
+    return sorted(found, key=lambda each: names.index(each["task"]))
+
+
+def _hides_goals(name: str) -> bool:
+    return not Task.load(name).form.goals_known
+
+
+def _summary(study: Study, options: BaselineOptions, part: str) -> list[dict[str, Any]]:
+    """Return the summary of one study, in a folder of its own."""
     with ExitStack() as stack:
-        folder = options.out or stack.enter_context(tempfile.TemporaryDirectory())
+        out = options.out
+        if out is None:
+            out = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        folder = out / part
         on_progress = stack.enter_context(progress_on("baselines"))
         step = max(1, len(study.plan().cells) // _REPORTS)
 
@@ -109,9 +134,11 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
     lines = [
         "# Tasks",
         "",
-        "Eight built-in tasks for agents that act round after round ([episodes](episodes.md)).",
+        f"{len(names)} built-in tasks for agents that act round after round"
+        " ([episodes](episodes.md)).",
         "Each instance comes from a seed; `search` of the order that a task needs solves it, and",
-        "of one order less does not: tests hold that. This page is written by",
+        "of one order less does not: tests hold that. In tasks with hidden goals `infer` of that",
+        "order does, and `search`, which does not infer, by luck alone. This page is written by",
         f"`beliefnest play --baselines --seeds {seeds} --page docs/tasks.md`;",
         "`make baselines` takes 50 seeds.",
         "",
@@ -133,7 +160,8 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
             for key, (default, low, high) in parameters_of(name).items()
         )
         lines += ["", f"## {name}", "", f"**{first}**", "", rest, ""]
-        lines += [f"Order {Task.load(name).order}. Sizes: {sizes}.", ""]
+        goals = " Goals are hidden." if _hides_goals(name) else ""
+        lines += [f"Order {Task.load(name).order}.{goals} Sizes: {sizes}.", ""]
         lines += [f"`beliefnest play {name}`", "", f"![An instance of {name}](img/task-{name}.png)"]
     return "\n".join(lines) + "\n"
 
@@ -163,9 +191,14 @@ def _mean(found: Group, name: str) -> str:
 
 
 def _is_as_claimed(found: Group) -> bool:
-    if found["policy"] == f"search:{found['needs']}":
-        return bool(found["right"] == found["judged"])
-    return bool(found["policy"] != f"search:{found['needs'] - 1}" or found["right"] == 0)
+    needs, is_solved = found["needs"], bool(found["right"] == found["judged"])
+    if _hides_goals(found["task"]):
+        if found["policy"] == f"search:{needs}":
+            return not is_solved
+        return is_solved or found["policy"] != f"infer:{needs}"
+    if found["policy"] == f"search:{needs}":
+        return is_solved
+    return bool(found["policy"] != f"search:{needs - 1}" or found["right"] == 0)
 
 
 def _print(found: Sequence[Group]) -> None:

@@ -379,11 +379,12 @@ class Episode:
         nest = self.nest
         policy = self._policies[agent]
         # Policies that are upper bounds may read the whole nest; no other policy can.
-        path = "/" if getattr(policy, "sees_all", False) else path_text((agent,))
+        sees_all = getattr(policy, "sees_all", False)
+        path = "/" if sees_all else path_text((agent,))
         own = nest[path]
         return AgentView(
             agent,
-            self._brief,
+            Brief.of(self.task, self.seed, None if sees_all else agent),
             len(self._parts) // len(self._slots),
             latest_end(self._parts, agent),
             nest.at(nest.tick)[path],

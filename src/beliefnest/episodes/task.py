@@ -190,9 +190,26 @@ class Task:
         return goal_of(self.form.goal, self.form.scenario["agents"])
 
     def goal_of(self, agent: str) -> Goal:
-        """Return the goal of an agent."""
+        """Return the goal of an agent; if it helps another agent, the goal of that one."""
+        own = self.told_goal(agent)
+        return own if own.helps is None else self.told_goal(own.helps)
+
+    def told_goal(self, agent: str) -> Goal:
+        """Return the goal of an agent as the agent is told it."""
         entry = self.form.goals.get(agent, self.form.goal)
         return goal_of(entry, self.form.scenario["agents"])
+
+    @property
+    def possible_goals(self) -> Mapping[str, Mapping[str, Goal]]:
+        """By agent and name the goals that it may have, as far as the others know.
+
+        Empty where all goals are known.
+        """
+        agents = self.form.scenario["agents"]
+        return {
+            agent: {name: goal_of(entry, agents) for name, entry in possible.items()}
+            for agent, possible in self.form.possible_goals.items()
+        }
 
     def at_pace(self, pace: int) -> "Task":
         """Return the task with rounds, speech and deadlines scaled to the pace of walking.
@@ -212,6 +229,10 @@ class Task:
             scenario=scenario,
             goal=self._slower(self.form.goal, pace),
             goals={name: self._slower(goal, pace) for name, goal in self.form.goals.items()},
+            possible_goals={
+                agent: {name: self._slower(goal, pace) for name, goal in possible.items()}
+                for agent, possible in self.form.possible_goals.items()
+            },
         )
         return replace(self, form=form)
 

@@ -1,7 +1,7 @@
 """View of a policy: its agent's own belief, the beliefs below it, and the task."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
 from beliefnest.belief.view import State
@@ -10,11 +10,14 @@ from beliefnest.errors import PathError
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.scenarios.goals import Goal
+from beliefnest.world.claims import Claim
 from beliefnest.world.values import Position
 
 if TYPE_CHECKING:  # Importing models and tasks takes long.
     from beliefnest.episodes.task import Task
     from beliefnest.llm.messages import Model
+    from beliefnest.minds.inference import Inference
+    from beliefnest.minds.model import MindModel
 
 __all__ = ["GO_ON", "AgentView", "Brief", "Policy", "RoundFacts"]
 
@@ -24,11 +27,14 @@ GO_ON = "go on"
 
 @dataclass(frozen=True, slots=True)
 class Brief:
-    """Common knowledge about a task; the task's description is not part of it.
+    """Knowledge of one agent about a task; the task's description is not part of it.
 
     Attributes:
         task: Name of the task.
-        goals: Goal of each agent.
+        agents: Names of all agents, sorted.
+        goals: Goals that the agent knows: of all agents, or of itself alone.
+        possible_goals: Goals that other agents may have, by agent and name; empty where all goals
+            are known. Nothing is known of the goal of an agent that is in neither.
         talk: Agents that may speak.
         rounds: Number of rounds.
         round_ticks: Ticks after which programs are cut.
@@ -39,7 +45,9 @@ class Brief:
     """
 
     task: str
+    agents: tuple[str, ...]
     goals: Mapping[str, Goal]
+    possible_goals: Mapping[str, Mapping[str, Goal]]
     talk: tuple[str, ...]
     rounds: int
     round_ticks: int
@@ -49,11 +57,25 @@ class Brief:
     seed: int
 
     @classmethod
-    def of(cls, task: "Task", seed: int) -> "Brief":
-        """Return the common knowledge about a task that is played with a seed."""
+    def of(cls, task: "Task", seed: int, agent: str | None = None) -> "Brief":
+        """Return the knowledge of an agent about a task that is played with a seed.
+
+        Args:
+            task: The task.
+            seed: Seed of the random numbers of policies.
+            agent: Name of the agent; None: one that knows all goals.
+        """
+        if agent is None or task.form.goals_known:
+            goals = {name: task.goal_of(name) for name in task.agents}
+            possible: Mapping[str, Mapping[str, Goal]] = {}
+        else:
+            goals = {agent: task.told_goal(agent)}
+            possible = {name: goals for name, goals in task.possible_goals.items() if name != agent}
         return cls(
             task=task.name,
-            goals={agent: task.goal_of(agent) for agent in task.agents},
+            agents=task.agents,
+            goals=goals,
+            possible_goals=possible,
             talk=tuple(task.form.talk),
             rounds=task.form.rounds,
             round_ticks=task.form.round_ticks,
@@ -66,7 +88,39 @@ class Brief:
     @property
     def whole_round(self) -> int:
         """Return the number of ticks from one round to the next."""
-        return self.round_ticks * (len(self.goals) if self.turns else 1)
+        return self.round_ticks * (len(self.agents) if self.turns else 1)
+
+    @property
+    def hides_goals(self) -> bool:
+        """True if the agent does not know all goals."""
+        return len(self.goals) < len(self.agents)
+
+    @property
+    def considered(self) -> Sequence[Goal]:
+        """Return all goals that agents have or may have, as far as the agent knows."""
+        possible = [goal for goals in self.possible_goals.values() for goal in goals.values()]
+        return [*self.goals.values(), *possible]
+
+    def words(self, agent: str) -> str:
+        """Return the goal of an agent in words, or those that it may have."""
+        if agent in self.goals:
+            return str(self.goals[agent])
+        possible = self.possible_goals.get(agent, {})
+        told = " or ".join(f"({goal})" for goal in possible.values())
+        return f"one of these, it is not known which: {told}" if told else "it is not known what"
+
+    def supposing(self, goals: Mapping[str, Goal]) -> "Brief":
+        """Return the brief for supposed goals of others that everybody knows.
+
+        Args:
+            goals: Supposed goals by agent. An agent whose goal is neither known nor supposed is
+                assumed to have none.
+        """
+        known = {name: goals.get(name, Goal()) for name in self.agents} | dict(self.goals)
+        helped = {
+            name: goal if goal.helps is None else known[goal.helps] for name, goal in known.items()
+        }
+        return replace(self, goals=helped, possible_goals={})
 
 
 class AgentView:
@@ -118,8 +172,12 @@ class AgentView:
     @property
     def ticks_left(self) -> int:
         """Return the ticks until the end of the last round or the deadline of the goal."""
+        return self.ticks_left_for(self.goal)
+
+    def ticks_left_for(self, goal: Goal) -> int:
+        """Return the ticks until the end of the last round or the deadline of a goal."""
         rounds, length = self.brief.rounds, self.brief.whole_round
-        last = min(rounds * length, self.goal.ticks or rounds * length)
+        last = min(rounds * length, goal.ticks or rounds * length)
         return max(0, last - self.round * length)
 
     @property
@@ -147,18 +205,40 @@ class AgentView:
             if tick > since and speaker != self.agent
         ]
 
+    @property
+    def claims(self) -> Sequence[tuple[int, str, Claim]]:
+        """Claims that others made in its hearing, oldest first: tick, speaker, claim."""
+        return [each for each in self._own.heard_claims if each[1] != self.agent]
+
+    def infer(self, model: "MindModel", *agents: str) -> "Inference":
+        """Infer what an agent wants from what the agent of the view perceived of its course.
+
+        Args:
+            model: The hypotheses.
+            agents: Whose belief is read in place of its own: `infer(model, "bob")` plans as one
+                does who believes what Bob is believed to believe.
+
+        Raises:
+            InputError: The model does not fit what it perceived.
+            PathError: There is no such agent.
+        """
+        return self._below(agents).infer(model)
+
     def about(self, *agents: str) -> State:
         """Return a belief below the agent's own, such as `about("bob", "anne")`.
 
         Raises:
             PathError: An agent does not exist.
         """
+        return self._below(agents).state
+
+    def _below(self, agents: Sequence[str]) -> ShownSimulator:
         simulator = self._own
         for agent in agents:
             if agent not in self._own.state.agents:
                 raise PathError(f"there is no agent {agent!r} in {sorted(self._own.state.agents)}")
             simulator = simulator.child(agent)
-        return simulator.state
+        return simulator
 
     def imagine(self, depth: int = 1) -> Imagination:
         """Return the agent's belief as a separate world for trying plans; it is not recorded.
@@ -187,7 +267,7 @@ class AgentView:
             level = [
                 ((*path, name), simulator.child(name))
                 for path, simulator in level
-                for name in self.brief.goals
+                for name in self.brief.agents
                 if name != (path[-1] if path else self._own.owner)
             ]
             about |= {"/".join(path): simulator for path, simulator in level}
@@ -205,7 +285,7 @@ class RoundFacts:
     Attributes:
         agent: Name of the agent.
         goal: Goal of the agent, in words.
-        goals: Goals of all agents, in words.
+        goals: Goals of all agents, known or possible, in words.
         may_speak: True if others can hear what the agent says.
         round: Number of the round, from 1.
         rounds: Number of rounds.
@@ -229,7 +309,7 @@ class RoundFacts:
         return cls(
             view.agent,
             str(view.goal),
-            {name: str(goal) for name, goal in brief.goals.items()},
+            {name: brief.words(name) for name in brief.agents},
             view.may_speak,
             view.round + 1,
             brief.rounds,

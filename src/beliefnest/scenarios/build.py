@@ -49,7 +49,7 @@ from beliefnest.scenarios.functions import judge_of
 from beliefnest.scenarios.inferring import build_inferring, build_infers
 from beliefnest.scenarios.people import build_agents
 from beliefnest.scenarios.reading import template_text
-from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules
+from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, rule_faults
 from beliefnest.scenarios.space import (
     UNKNOWN,
     build_box,
@@ -322,6 +322,11 @@ class _Builder:
             return None
         goals: dict[KeyPath, GoalEntry] = {("goal",): rules.goal}
         goals |= {("goals", name): goal for name, goal in rules.goals.items()}
+        goals |= {
+            ("possible_goals", agent, name): goal
+            for agent, possible in rules.possible_goals.items()
+            for name, goal in possible.items()
+        }
         for path, goal in goals.items():
             for key, entries in (("reach", goal.reach), ("never", goal.never)):
                 for number, entry in enumerate(entries):
@@ -330,6 +335,8 @@ class _Builder:
                         check_condition(entry, agents, self._snapshot.box)
                     if entry.container is not None:
                         self._check_container((*where, "container"), entry.container)
+        for path, message in rule_faults(rules, agents):
+            raise self._document.fault(("episode", *path), message)
         with self._document.naming(("episode",)):
             check_rules(rules, agents, self._snapshot.box)
         return rules

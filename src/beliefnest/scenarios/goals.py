@@ -20,12 +20,14 @@ class Goal:
         messages: Greatest number of utterances of all players until then; None: no limit.
         ticks: Greatest number of ticks until then, from the start of the first round; None: no
             limit.
+        helps: Agent whose goal it is too; None: none. Such a goal sets nothing else.
     """
 
     reach: tuple[GoalCondition, ...] = ()
     never: tuple[GoalCondition, ...] = ()
     messages: int | None = None
     ticks: int | None = None
+    helps: str | None = None
 
     @property
     def conditions(self) -> tuple[GoalCondition, ...]:
@@ -54,6 +56,8 @@ class Goal:
             parts.append(f"at most {self.messages} messages")
         if self.ticks is not None:
             parts.append(f"within {self.ticks} ticks")
+        if self.helps is not None:
+            parts.append(f"what {self.helps} is after")
         return "; ".join(parts) or "nothing"
 
 

@@ -1,6 +1,6 @@
 """Goals and rules of play: their form in scenario and task files, and their meaning."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from typing import Annotated, Literal
 
 import msgspec
@@ -15,6 +15,7 @@ __all__ = [
     "GoalEntry",
     "check_rules",
     "goal_of",
+    "rule_faults",
 ]
 
 
@@ -38,6 +39,9 @@ class GoalEntry(_Entry, frozen=True):
         Annotated[int, msgspec.Meta(ge=1)] | None,
         _note("Most ticks from the first round until all of `reach` holds."),
     ] = None
+    helps: Annotated[
+        str | None, _note("Agent whose goal it is too, whatever that is; given alone.")
+    ] = None
 
 
 class EpisodeEntry(_Entry, frozen=True, kw_only=True):
@@ -47,6 +51,11 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
         GoalEntry()
     )
     goals: Annotated[dict[str, GoalEntry], _note("Goals of agents that have other goals.")] = {}
+    goals_known: Annotated[bool, _note("Whether every agent knows the goals of the others.")] = True
+    possible_goals: Annotated[
+        dict[str, dict[str, GoalEntry]],
+        _note("By agent and name the goals that it may have, as far as the others know."),
+    ] = {}
     order: Annotated[int, msgspec.Meta(ge=0, description="Order of Theory of Mind it needs.")] = 0
     players: Annotated[
         list[str],
@@ -76,7 +85,57 @@ def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
         tuple(each for one in entry.never for each in conditions_of(one, agents)),
         entry.messages,
         entry.ticks,
+        entry.helps,
     )
+
+
+def rule_faults(
+    entry: EpisodeEntry, agents: Collection[str]
+) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Yield what is wrong with who helps whom and with possible goals: the keys, and a message."""
+    yield from _faults_of_help(entry, agents)
+    yield from _faults_of_possible_goals(entry, agents)
+
+
+def _faults_of_help(
+    entry: EpisodeEntry, agents: Collection[str]
+) -> Iterator[tuple[tuple[str, ...], str]]:
+    if entry.goal.helps is not None:
+        yield ("goal", "helps"), "helps an agent; say here what agents are to `reach`"
+    for name, goal in entry.goals.items():
+        if goal.helps is None:
+            continue
+        where = ("goals", name, "helps")
+        helped = entry.goals.get(goal.helps, entry.goal)
+        if goal.reach or goal.never or goal.ticks is not None or goal.messages is not None:
+            yield where, "stands beside other keys; a goal that helps an agent has no more to say"
+        elif goal.helps not in agents:
+            yield where, f"{goal.helps!r} is none of the agents {_listed(agents)}"
+        elif goal.helps == name or helped.helps is not None:
+            yield where, f"{goal.helps!r} has no goal of its own; name another agent"
+        elif not entry.goals_known and goal.helps not in entry.possible_goals:
+            yield where, f"the goal of {goal.helps!r} is unknown; give its `possible_goals`"
+
+
+def _faults_of_possible_goals(
+    entry: EpisodeEntry, agents: Collection[str]
+) -> Iterator[tuple[tuple[str, ...], str]]:
+    if entry.possible_goals and entry.goals_known:
+        yield ("possible_goals",), "is of no use; set `goals_known: false`, or leave it out"
+    for name, possible in entry.possible_goals.items():
+        given = ("possible_goals", name)
+        if name not in agents:
+            yield given, f"{name!r} is none of the agents {_listed(agents)}"
+        elif not possible:
+            yield given, "is empty; name at least one goal"
+        elif any(goal.helps is not None for goal in possible.values()):
+            yield given, "has a goal that helps an agent; say what is to be reached instead"
+        elif entry.goals.get(name, entry.goal) not in possible.values():
+            yield given, f"lacks the goal that {name} has; write it among the others, word for word"
+
+
+def _listed(agents: Collection[str]) -> str:
+    return ", ".join(sorted(agents))
 
 
 def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
@@ -89,8 +148,11 @@ def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
     """
     for name in sorted({*entry.players, *entry.goals, *entry.policies, *entry.talk}):
         if name not in agents:
-            raise InputError(f"{name!r} is none of the agents {', '.join(sorted(agents))}")
-    for goal in (entry.goal, *entry.goals.values()):
+            raise InputError(f"{name!r} is none of the agents {_listed(agents)}")
+    for path, message in rule_faults(entry, agents):
+        raise InputError(f"{'.'.join(path)}: {message}")
+    possible = [goal for goals in entry.possible_goals.values() for goal in goals.values()]
+    for goal in (entry.goal, *entry.goals.values(), *possible):
         goal_of(goal, agents)
         for condition in (*goal.reach, *goal.never):
             check_condition(condition, agents, box)

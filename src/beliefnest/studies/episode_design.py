@@ -53,14 +53,18 @@ class Player:
         return ",".join(f"{agent}={policy}" for agent, policy in self.policies.items())
 
 
+_ORDERED = ("search", "infer")
+"""Policies that play at each of the orders of a study."""
+
+
 @dataclass(frozen=True)
 class EpisodeDesign:
     """Design of a study of episodes.
 
     Attributes:
         tasks: Names of built-in tasks or scenarios, or paths of files of either.
-        policies: Policies of all players, or mappings from agent to policy. `search` stands for
-            search at each of the `orders`; other names are as on the command line.
+        policies: Policies of all players, or mappings from agent to policy. `search` and `infer`
+            stand for these at each of the `orders`; other names are as on the command line.
         models: Names of models that play, each at each of the `orders`.
         orders: Orders of Theory of Mind; `omniscient` is an upper bound.
         seeds: Numbers of instances; in the first repeat, they are also the seeds of episodes.
@@ -103,9 +107,10 @@ class EpisodeDesign:
             )
         for policies in self.policies:
             _check_policies(policies)
-        if not self.orders and (self.models or "search" in self.policies):
+        if not self.orders and (self.models or any(each in _ORDERED for each in self.policies)):
             raise StudyKeyError(
-                "orders", "orders is empty; models and search play at the orders named there"
+                "orders",
+                "orders is empty; models, search and infer play at the orders named there",
             )
         for order in self.orders:
             if order != "omniscient" and (isinstance(order, bool) or not isinstance(order, int)):
@@ -123,9 +128,9 @@ class EpisodeDesign:
 
     def _players(self) -> Iterator[Player]:
         for policies in self.policies:
-            if policies == "search":
+            if isinstance(policies, str) and policies in _ORDERED:
                 for order in self.orders:
-                    yield Player("search", order, policy_named("search", str(order)))
+                    yield Player(policies, order, policy_named(policies, str(order)))
             else:
                 player = Player("", None, policies)
                 yield Player(player.text, None, policies)

@@ -7,7 +7,7 @@ from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.bench.figures import Metric
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
-from beliefnest.episodes.policies.search import Bounds, Planner
+from beliefnest.episodes.policies.course_planner import Bounds, Planner
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario

@@ -27,6 +27,7 @@ __all__ = [
 
 POLICIES = (
     "search:ORDER",
+    "infer:ORDER",
     "omniscient:search",
     "model:MODEL:ORDER",
     "model:MODEL:omniscient",
@@ -73,15 +74,23 @@ def resolve_policy(
             return _model(
                 rest, name, os.environ if environment is None else environment, connection
             )
-        case "search" if rest:
-            from beliefnest.episodes.policies.search import Search
-
-            return Search(order_of(rest, name))
+        case "search" | "infer" if rest:
+            return _planning(kind, order_of(rest, name))
         case "omniscient" if rest == "search":
             from beliefnest.episodes.policies.search import Omniscient
 
             return Omniscient()
     raise UnknownNameError(f"there is no policy {name!r}; give one of {', '.join(POLICIES)}")
+
+
+def _planning(kind: str, order: int) -> Policy:
+    if kind == "infer":
+        from beliefnest.episodes.policies.infer import Infer
+
+        return Infer(order)
+    from beliefnest.episodes.policies.search import Search
+
+    return Search(order)
 
 
 def draws_by_seed(name: str) -> bool:
@@ -95,7 +104,7 @@ def draws_by_seed(name: str) -> bool:
         from beliefnest.llm.resolve import is_of_provider
 
         return is_of_provider(rest)
-    return kind not in ("search", "omniscient", *_READ)
+    return kind not in ("search", "infer", "omniscient", *_READ)
 
 
 def text_of_policy(name: str) -> str:

@@ -58,7 +58,7 @@ class ModelPolicy:
 
     def prompt(self, view: AgentView) -> str:
         """Return the prompt of a round."""
-        others = [name for name in view.brief.goals if name != view.agent]
+        others = [name for name in view.brief.agents if name != view.agent]
         return view.render(
             _template(),
             depth=self.order,
@@ -66,7 +66,12 @@ class ModelPolicy:
             others=others,
             instructed=True,
             task=_sentence(view.goal, view.agent),
-            tasks={name: _sentence(view.brief.goals[name], name) for name in others},
+            tasks={
+                name: _sentence(view.brief.goals[name], name)
+                if name in view.brief.goals
+                else f"See to it: {view.brief.words(name)}."
+                for name in others
+            },
             places=view.brief.places,
             last_code=view.last.program or None,
             last_error=view.last.message or None,
@@ -114,7 +119,7 @@ class OmniscientModelPolicy(ModelPolicy):
         return view.render(
             (files(__package__) / "texts" / "omniscient.txt").read_text(encoding="utf-8"),
             depth=1,
-            agents=list(view.brief.goals),
+            agents=list(view.brief.agents),
             task=_sentence(view.goal, view.agent),
         )
 

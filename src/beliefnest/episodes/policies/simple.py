@@ -67,7 +67,7 @@ class Random:
     def act(self, view: AgentView) -> str:
         """Return a call drawn by the episode's seed, the agent and the round."""
         mind = view.imagine(0)
-        goals = list(view.brief.goals.values())
+        goals = list(view.brief.considered)
         calls = calls_of(mind, view.agent, goals)
         if view.may_speak:
             calls += [said(claim) for claim in claims_of_mind(mind, goals, lies=False)]

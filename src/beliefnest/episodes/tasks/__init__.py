@@ -18,6 +18,7 @@ _TASKS: Mapping[str, str] = {
     "kitchen": "kitchen",
     "recipe": "recipe",
     "tell-what-is-needed": "tell_what_is_needed",
+    "watch-and-help": "watch_and_help",
     "watchman": "watchman",
 }
 

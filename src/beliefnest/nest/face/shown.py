@@ -21,6 +21,7 @@ from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.words import place_words, state_words
 from beliefnest.prompts import Template
+from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Placements, Position
 
@@ -104,6 +105,18 @@ class ShownSimulator(ABC):
         """
         element = element_of(self._recording, container, agent, block)
         return explain(self._recording, self._path, self._tick, element)
+
+    @property
+    @in_turn
+    def heard_claims(self) -> list[tuple[int, str, Claim]]:
+        """Claims that the simulator perceived, oldest first: tick, speaker, claim."""
+        events = self._recording.reading(self._path, self._tick).events()
+        return [
+            (event.tick, event.actor, claim)
+            for event in events
+            if event.actor is not None
+            for claim in claims_from_plain(event.detail.get("claims", []))
+        ]
 
     @in_turn
     def infer(

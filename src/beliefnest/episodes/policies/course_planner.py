@@ -1,0 +1,443 @@
+"""Planner without a language model, of any order of Theory of Mind.
+
+The planner is a beam search over sequences of skill calls, tried on forks of the agent's own
+belief.
+
+At order 0 it assumes that no other agent acts, and believes what it is told. At order k it assumes
+that the others act as planners of order k - 1 in the beliefs that the agent attributes to them. It
+takes statements about containers by agents with a different goal for lies. It evaluates conditions
+on beliefs down to k levels below its own belief.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from beliefnest.episodes.policies.candidates import (
+    calls_of,
+    claims_of_mind,
+    is_news,
+    items_of,
+    said,
+)
+from beliefnest.episodes.policies.distance import distance, held, is_visible
+from beliefnest.episodes.view import Brief
+from beliefnest.nest.acting.imagination import Imagination, Performer
+from beliefnest.programs.calls import Call
+from beliefnest.scenarios.goals import Goal
+from beliefnest.world.values import Position
+
+__all__ = ["OPEN", "REACHED", "USUAL", "VIOLATED", "Bounds", "FoundPlan", "Planner", "Score"]
+
+Score = tuple[float, ...]
+"""Score of a plan, compared from left to right; less is better."""
+
+REACHED, OPEN, VIOLATED = 0.0, 1.0, 2.0
+"""First part of a score; the second is a tick, a distance, and minus a tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """Bounds of the search.
+
+    Attributes:
+        beam: Number of plans that are extended at each depth.
+        depth: Greatest number of calls in a plan.
+        horizon: Greatest number of imagined ticks.
+        changes: Greatest number of times that another agent replans within a plan.
+    """
+
+    beam: int = 3
+    depth: int = 3
+    horizon: int = 160
+    changes: int = 3
+
+    def lower(self) -> "Bounds":
+        """Return the smaller bounds for the imagined planners of other agents."""
+        return Bounds(max(1, self.beam - 1), self.depth, self.horizon, max(1, self.changes - 1))
+
+
+USUAL = Bounds()
+"""Bounds of policies that are named on the command line."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoundPlan:
+    """Result of planning.
+
+    Attributes:
+        calls: Calls in order.
+        score: Score of the plan.
+    """
+
+    calls: tuple[Call, ...]
+    score: Score
+
+
+@dataclass
+class _Course:
+    """Assumed plan of another agent.
+
+    Attributes:
+        performer: Performer of its calls.
+        read: Number of events that the agent had perceived when it decided on the calls.
+        changes: Number of times that it may still replan.
+    """
+
+    performer: Performer
+    read: int
+    changes: int
+
+    def again(self) -> "_Course":
+        return _Course(self.performer.again(), self.read, self.changes)
+
+
+@dataclass
+class _Node:
+    """Node of the search: a sequence of calls and the state after it.
+
+    Attributes:
+        mind: Imagined state after the calls.
+        others: Assumed plans of the other agents at that time.
+        elapsed: Ticks since the beginning.
+        calls: The calls.
+        reached: Tick at which the goal was reached; None: it was not.
+        violated: Tick at which the goal was violated; None: it was not.
+    """
+
+    mind: Imagination
+    others: dict[str, _Course]
+    elapsed: int = 0
+    calls: tuple[Call, ...] = ()
+    reached: int | None = None
+    violated: int | None = None
+    score: Score = field(default=())
+
+    def fork(self) -> "_Node":
+        return _Node(
+            self.mind.fork(),
+            {name: each.again() for name, each in self.others.items()},
+            self.elapsed,
+            self.calls,
+            self.reached,
+            self.violated,
+        )
+
+
+class Planner:
+    """Planner for agents of one task.
+
+    Args:
+        brief: Common knowledge about the task.
+
+    Attributes:
+        tried: Number of branches tried so far.
+        guesses: Cache of the assumed plans of other agents, by their assumed beliefs.
+    """
+
+    def __init__(self, brief: Brief) -> None:
+        self._brief = brief
+        self.tried = 0
+        self.guesses: dict[tuple[object, ...], tuple[Call, ...]] = {}
+
+    def plan(
+        self, mind: Imagination, agent: str, order: int, ticks: int, bounds: Bounds
+    ) -> FoundPlan:
+        """Return the best plan found; of equal plans, the first and shortest.
+
+        Args:
+            mind: Belief of the agent; it is not changed.
+            agent: Name of the planning agent.
+            order: Order of Theory of Mind of the agent.
+            ticks: Number of ticks left.
+            bounds: Bounds of the search.
+        """
+        return self._planning(agent, order, ticks, bounds).best(mind)
+
+    def plan_after(
+        self,
+        mind: Imagination,
+        agent: str,
+        order: int,
+        ticks: int,
+        bounds: Bounds,
+        calls: Sequence[Call],
+    ) -> FoundPlan:
+        """Return the best course after a round in which the agent has begun another one.
+
+        Args:
+            mind: As for `plan`, as all others.
+            agent: Who plans.
+            order: Its order of Theory of Mind.
+            ticks: How many are left before the round.
+            bounds: How much is looked at.
+            calls: What it does in the round, as far as the round is long enough.
+        """
+        return self._planning(agent, order, ticks, bounds).best(mind, before=calls)
+
+    def outcome(
+        self,
+        mind: Imagination,
+        agent: str,
+        order: int,
+        ticks: int,
+        bounds: Bounds,
+        calls: Sequence[Call],
+    ) -> Score:
+        """Return how good a course of an agent is; other arguments as for `plan`."""
+        return self._planning(agent, order, ticks, bounds).outcome(mind, calls)
+
+    def _planning(self, agent: str, order: int, ticks: int, bounds: Bounds) -> "_Planning":
+        horizon = min(ticks, bounds.horizon)
+        return _Planning(self, self._brief, agent, order, horizon, bounds)
+
+
+class _Planning:
+    """One run of the search."""
+
+    def __init__(
+        self,
+        planner: Planner,
+        brief: Brief,
+        agent: str,
+        order: int,
+        horizon: int,
+        bounds: Bounds,
+    ) -> None:
+        self._planner, self._brief = planner, brief
+        self._agent, self._order = agent, order
+        self._horizon, self._bounds = horizon, bounds
+        self._round = max(1, brief.round_ticks // brief.pace)
+        self._goal: Goal = brief.goals[agent]
+        self._opponents = [n for n, goal in brief.goals.items() if goal.differs(self._goal)]
+        self._speaks = agent in brief.talk and order > 0
+        self._doubted: frozenset[Position] = frozenset()
+
+    def best(self, mind: Imagination, before: Sequence[Call] | None = None) -> FoundPlan:
+        mind, first = self._begun(mind)
+        if before is not None:
+            self._spend_round(first, before)
+        self._value(first)
+        best, beam = first, [first]
+        for _ in range(self._bounds.depth):
+            if best.score[0] == REACHED and not best.calls:
+                break
+            found = [each for node in beam for each in self._expanded(node)]
+            found.sort(key=lambda node: node.score)
+            beam = found[: self._bounds.beam]
+            if not beam:
+                break
+            if beam[0].score < best.score:
+                best = beam[0]
+        if not best.calls and best.score[0] == OPEN:
+            return FoundPlan(self._exploring(mind), best.score)
+        return FoundPlan(best.calls, best.score)
+
+    def outcome(self, mind: Imagination, calls: Sequence[Call]) -> Score:
+        """Return the score of a course, which ends with the first call that cannot be done."""
+        _, node = self._begun(mind)
+        for call in calls:
+            if node.reached is not None or node.violated is not None:
+                break
+            mine = Performer([call])
+            self._act(node, mine)
+            if mine.failed:
+                break
+            node.calls = (*node.calls, call)
+        self._value(node)
+        return node.score
+
+    def _begun(self, mind: Imagination) -> tuple[Imagination, _Node]:
+        """Return what the agent takes for real, and the course in which it has done nothing."""
+        if self._order and self._opponents:
+            # Who reckons with what others are after does not take their word.
+            mind, self._doubted = mind.doubting(self._opponents)
+        first = _Node(mind.fork() if self._order else mind.bare(), {})
+        first.others = {
+            name: _Course(Performer(self._guess(mind, name, 0)), 0, self._bounds.changes)
+            for name in self._imagined(mind)
+        }
+        return mind, first
+
+    def _spend_round(self, node: _Node, calls: Sequence[Call]) -> None:
+        """Let a round pass in which the agent begins a course; a call that fails ends it."""
+        end = min(self._horizon, node.elapsed + self._round)
+        left = list(calls)
+        while node.elapsed < end and node.reached is None and node.violated is None:
+            mine = Performer([left.pop(0)]) if left else None
+            while node.elapsed < end and not (mine is not None and mine.is_done):
+                if not self._pass(node, mine):
+                    break
+            if mine is None:
+                node.mind.world.step(end - node.elapsed)
+                node.elapsed = end
+            elif mine.failed:
+                left.clear()
+
+    def _imagined(self, mind: Imagination) -> list[str]:
+        """Return the other agents whose acts the search simulates."""
+        if self._order == 0:
+            return []
+        return [name for name in sorted(mind.world.agents) if name != self._agent]
+
+    def _guess(self, mind: Imagination, other: str, elapsed: int) -> tuple[Call, ...]:
+        """Return the assumed plan of another agent, planned in its assumed belief."""
+        order, left = self._order - 1, self._horizon - elapsed
+        known, seen = self._planner.guesses, mind.print_of(other, order)
+        key = (other, order, left, self._bounds, seen)
+        if seen is None or key not in known:
+            below = mind.below(other, order)
+            plan = self._planner.plan(below, other, order, left, self._bounds.lower())
+            known[key] = plan.calls
+        return known[key]
+
+    def _expanded(self, node: _Node) -> list[_Node]:
+        """Return the successors of a node: one for each call that can be done next."""
+        if node.reached is not None or node.violated is not None or node.elapsed >= self._horizon:
+            return []
+        found = []
+        for call in self._calls(node.mind):
+            following = node.fork()
+            mine = Performer([call])
+            self._act(following, mine)
+            if mine.failed:
+                continue
+            following.calls = (*node.calls, call)
+            self._value(following)
+            found.append(following)
+        return found
+
+    def _calls(self, mind: Imagination) -> list[Call]:
+        goals = list(self._brief.goals.values())
+        calls = calls_of(mind, self._agent, [self._goal])
+        if self._speaks:
+            told = claims_of_mind(mind, goals, lies=bool(self._opponents))
+            calls += [said(claim) for claim in told if is_news(mind, claim, self._agent)]
+        return calls
+
+    def _act(self, node: _Node, mine: Performer) -> None:
+        """Let all agents act until the planning agent has done its calls."""
+        while not mine.is_done and node.elapsed < self._horizon:
+            if not self._pass(node, mine):
+                break
+
+    def _value(self, node: _Node) -> None:
+        """Score a node by its state after the others act on and the agent does nothing more."""
+        self._planner.tried += 1
+        end = node
+        if node.others and node.reached is None and node.violated is None:
+            end = node.fork()
+            while end.elapsed < self._horizon and end.reached is None and end.violated is None:
+                if not self._pass(end, None):
+                    break
+        node.score = self._score(end)
+
+    def _score(self, end: _Node) -> Score:
+        messages = sum(call.skill in ("say", "whisper") for call in end.calls)
+        cost = 2.0 * messages + 0.5 * len(end.calls)
+        if end.violated is not None:
+            return (VIOLATED, -end.violated, cost)
+        if end.reached is not None:
+            return (REACHED, end.reached + cost)
+        if not self._goal.reach:
+            return (REACHED, cost)
+        return (OPEN, round(distance(self._goal, end.mind), 6), cost)
+
+    def _pass(self, node: _Node, mine: Performer | None) -> bool:
+        """Let time pass, at most to the end of a round; return True if there was a reason to."""
+        passed = node.elapsed % self._round
+        if not passed:
+            self._change_minds(node)
+        performers = {name: each.performer for name, each in node.others.items()}
+        if mine is not None:
+            performers[self._agent] = mine
+        performers = dict(sorted(performers.items()))
+        ticks = min(self._round - passed, self._horizon - node.elapsed)
+        if all(each.is_done for each in performers.values()):
+            if not passed or not any(self._may_change(node, name) for name in node.others):
+                return False
+            # The others decide again when the next round begins.
+            node.mind.world.step(ticks)
+            node.elapsed += ticks
+            return True
+
+        def ends() -> bool:
+            over = all(each.is_done for each in performers.values())
+            return over or (mine is not None and mine.is_done)
+
+        node.elapsed += node.mind.play(performers, ticks, ends)
+        self._judge(node)
+        return True
+
+    def _judge(self, node: _Node) -> None:
+        mind, goal = node.mind, self._goal
+        if node.violated is None and any(
+            is_visible(each, mind) and held(each, mind) for each in goal.never
+        ):
+            node.violated = node.elapsed
+        if (
+            node.reached is None
+            and node.violated is None
+            and goal.reach
+            and all(is_visible(each, mind) and held(each, mind) for each in goal.reach)
+        ):
+            node.reached = node.elapsed
+
+    def _change_minds(self, node: _Node) -> None:
+        """Let those other agents replan that are done or may have perceived something new."""
+        for name, course in node.others.items():
+            if not self._may_change(node, name):
+                continue
+            course.read = len(node.mind.happened)
+            calls = self._guess(node.mind, name, node.elapsed)
+            if calls != tuple(course.performer.calls):
+                course.performer = Performer(calls)
+                course.changes -= 1
+
+    def _may_change(self, node: _Node, name: str) -> bool:
+        course = node.others[name]
+        since = node.mind.happened[course.read :]
+        news = any(event.actor != name and _is_notable(event.kind) for _, event in since)
+        done = course.performer.is_done and bool(since)
+        return course.changes > 0 and (news or done or course.performer.failed)
+
+    def _exploring(self, mind: Imagination) -> tuple[Call, ...]:
+        """Return a look into the nearest container that may hold a wanted item of unknown place."""
+        world = mind.world
+        me = world.agents.get(self._agent)
+        known = mind.view().containers
+        wanted = [
+            item
+            for item in items_of([self._goal])
+            if not any(
+                content.items.get(item, 0)
+                for place, content in known.items()
+                if place not in self._doubted
+            )
+            and not any(each.inventory.get(item, 0) for each in world.agents.values())
+        ]
+        if me is None or not wanted:
+            return ()
+        unknown = [
+            place
+            for place, content in known.items()
+            if not content.complete and place not in self._doubted
+        ]
+        for place in sorted(unknown, key=lambda at: (_apart(me.position, at), at)):
+            call = Call("openContainer", (place,))
+            if self._succeeds(mind, call):
+                return (call,)
+        return ()
+
+    def _succeeds(self, mind: Imagination, call: Call) -> bool:
+        """Return True if the agent, left alone in a mind, can do a call."""
+        trial, mine = mind.bare(), Performer([call])
+        trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)
+        return not mine.failed
+
+
+def _is_notable(kind: object) -> bool:
+    return kind not in ("move_to", "think", "block_update")
+
+
+def _apart(feet: Sequence[float], place: Sequence[int]) -> float:
+    return float(sum((a - b) ** 2 for a, b in zip(feet, place, strict=True)))

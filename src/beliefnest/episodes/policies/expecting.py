@@ -1,0 +1,208 @@
+"""Courses with the best expected outcome, where the goals of others are not known.
+
+A supposition is one way things may be: a goal for each other agent, and a place for each item that
+the agent seeks and knows nowhere. `search` finds a course for each; each course is tried in all of
+them, and the one with the best expected outcome is chosen.
+"""
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from beliefnest.belief.conditions import ItemsIn
+from beliefnest.episodes.policies.candidates import items_of
+from beliefnest.episodes.policies.course_planner import (
+    OPEN,
+    REACHED,
+    VIOLATED,
+    Bounds,
+    Planner,
+    Score,
+)
+from beliefnest.episodes.view import AgentView, Brief
+from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.programs.calls import Call, program_of
+from beliefnest.world.values import Position
+
+__all__ = ["Expecting", "GoalShares", "uniform"]
+
+GoalShares = Mapping[str, Mapping[str, float]]
+"""Probability of each possible goal, by agent and name of the goal."""
+
+_LEAST = 0.02
+"""Probability below which combinations of goals are not looked at."""
+
+_PER_DEED = 10.0
+"""Ticks by which a goal that stays open is worse for each deed that is missing."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Supposition:
+    """One way things may be.
+
+    Attributes:
+        weight: Its probability.
+        planner: Plans where all know the supposed goals.
+        brief: The task with these goals.
+        mind: What is the case.
+    """
+
+    weight: float
+    planner: Planner
+    brief: Brief
+    mind: Imagination
+
+
+class Expecting:
+    """Choice of a course for one round.
+
+    Args:
+        view: What the agent knows.
+        order: Its order of Theory of Mind.
+        bounds: How much it looks at.
+    """
+
+    def __init__(self, view: AgentView, order: int, bounds: Bounds) -> None:
+        self._view, self._order, self._bounds = view, order, bounds
+
+    def program(self, shares: GoalShares, *, learns: bool = False) -> str:
+        """Return the course with the best expected outcome, as a program.
+
+        Args:
+            shares: How likely the goals of the others are.
+            learns: Whether the agent reckons with learning. A course is then worth what the best
+                courses reach after its first round, if that tells which supposition holds.
+        """
+        supposed = sorted(self._suppositions(shares), key=lambda each: -each.weight)
+        if len(supposed) == 1:
+            return program_of(self._course(supposed[0]))
+        courses: dict[str, tuple[Call, ...]] = {}
+        for calls in [*map(self._course, supposed), ()]:
+            courses.setdefault(program_of(calls), calls)
+        worth = self._learning if learns else self._expected
+        values = {text: worth(supposed, calls) for text, calls in courses.items()}
+        return min(values, key=lambda text: values[text])
+
+    def _suppositions(self, shares: GoalShares) -> Iterator[_Supposition]:
+        brief, mind = self._view.brief, self._view.imagine(self._order)
+        found = list(_combinations(shares))
+        found = [(share, names) for share, names in found if share >= _LEAST] or found
+        total = math.fsum(share for share, _ in found)
+        for share, names in found:
+            goals = {agent: brief.possible_goals[agent][name] for agent, name in names.items()}
+            supposed = brief.supposing(goals)
+            planner = Planner(supposed)
+            minds = _completed(mind, supposed, self._view.agent, self._order)
+            for each in minds:
+                yield _Supposition(share / total / len(minds), planner, supposed, each)
+
+    def _ticks(self, each: _Supposition) -> int:
+        # Imagined is a scripted world, in which a block on foot takes one tick.
+        left = self._view.ticks_left_for(each.brief.goals[self._view.agent])
+        return left // each.brief.pace
+
+    def _course(self, each: _Supposition) -> tuple[Call, ...]:
+        agent, ticks = self._view.agent, self._ticks(each)
+        return each.planner.plan(each.mind, agent, self._order, ticks, self._bounds).calls
+
+    def _expected(self, supposed: Sequence[_Supposition], calls: tuple[Call, ...]) -> Score:
+        agent = self._view.agent
+        return _mean(
+            (each.weight, self._judged(each, calls, score))
+            for each in supposed
+            for score in [
+                each.planner.outcome(
+                    each.mind, agent, self._order, self._ticks(each), self._bounds, calls
+                )
+            ]
+        )
+
+    def _learning(self, supposed: Sequence[_Supposition], calls: tuple[Call, ...]) -> Score:
+        agent = self._view.agent
+        return _mean(
+            (each.weight, self._judged(each, (*calls, *plan.calls), plan.score))
+            for each in supposed
+            for plan in [
+                each.planner.plan_after(
+                    each.mind, agent, self._order, self._ticks(each), self._bounds, calls
+                )
+            ]
+        )
+
+    def _judged(self, each: _Supposition, calls: Sequence[Call], score: Score) -> Score:
+        """Return a score with the utterances counted that the goal allows."""
+        most = each.brief.goals[self._view.agent].messages
+        if most is not None and self._spoken + sum(c.skill == "say" for c in calls) > most:
+            return (VIOLATED, 0.0)
+        return score
+
+    @property
+    def _spoken(self) -> int:
+        """How many utterances there were since the first round began."""
+        view = self._view
+        start = view.tick - view.round * view.brief.whole_round
+        return sum(tick > start for tick, _, _ in view.state.chat)
+
+
+def uniform(brief: Brief) -> GoalShares:
+    """Return the shares of somebody who learns nothing from what others do."""
+    return {
+        agent: dict.fromkeys(goals, 1 / len(goals)) for agent, goals in brief.possible_goals.items()
+    }
+
+
+def _combinations(shares: GoalShares) -> Iterator[tuple[float, Mapping[str, str]]]:
+    """Yield all combinations of goals with their probabilities; agents are independent."""
+    for names in itertools.product(*(goals for goals in shares.values())):
+        chosen = dict(zip(shares, names, strict=True))
+        yield math.prod(shares[agent][name] for agent, name in chosen.items()), chosen
+
+
+def _completed(mind: Imagination, brief: Brief, agent: str, order: int) -> list[Imagination]:
+    """Return a mind with the items that its agent seeks put where they may be, each as likely.
+
+    An item that is known nowhere is where another agent wants it, else in a container into which
+    the agent has not looked, and of whose contents no opponent has spoken.
+    """
+    goal, doubted = brief.goals[agent], frozenset[Position]()
+    if order:
+        opponents = [name for name, other in brief.goals.items() if other.differs(goal)]
+        mind, doubted = mind.doubting(opponents)
+    minds = [mind]
+    for item in items_of([goal]):
+        world = mind.world
+        holders = [*world.containers.values(), *(each.inventory for each in world.agents.values())]
+        if any(held.get(item, 0) for held in holders):
+            continue
+        known = mind.view().containers
+        unseen = [at for at, held in known.items() if not held.complete and at not in doubted]
+        wanted = [
+            condition.fact.place
+            for name, other in brief.goals.items()
+            if name != agent
+            for condition in other.reach
+            if isinstance(condition.fact, ItemsIn) and condition.fact.item == item
+        ]
+        places = sorted(set(wanted) & set(unseen)) or sorted(unseen)
+        minds = [_with_item(each, at, item) for each in minds for at in places] or minds
+    return minds
+
+
+def _with_item(mind: Imagination, place: Position, item: str) -> Imagination:
+    made = mind.fork()
+    held = {at: dict(items) for at, items in made.world.containers.items()}
+    held[place] = {**held.get(place, {}), item: 1}
+    made.world.set_state(replace(made.world.snapshot(), containers=held))
+    return made
+
+
+def _mean(scores: "Iterator[tuple[float, Score]]") -> Score:
+    """Return the expected outcome: how far from success, then in how many ticks."""
+    kinds, ticks = [], []
+    for weight, score in scores:
+        kind, value, *cost = score if len(score) > 1 else (*score, 0.0)
+        kinds.append(weight * kind)
+        per = _PER_DEED if kind == OPEN else 1.0
+        ticks.append(weight * (per * value + (sum(cost) if kind != REACHED else 0.0)))
+    return (round(math.fsum(kinds), 9), round(math.fsum(ticks), 6))

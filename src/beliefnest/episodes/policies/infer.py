@@ -1,0 +1,194 @@
+"""Policy `infer:ORDER`: infers what others are after from what they are seen to do and to claim.
+
+Deeds are explained by inverse planning (`Simulator.infer`) in what the agent takes the other to
+believe; of order 0 in its own belief. A goal that the planner cannot express, such as one about
+beliefs or about what somebody else has, keeps its prior probability whatever the other does.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from beliefnest.belief.conditions import (
+    AgentAt,
+    BlockIs,
+    BlocksAlike,
+    GoalCondition,
+    ItemsIn,
+    ItemsWith,
+    LeversHeld,
+)
+from beliefnest.belief.entries import Source
+from beliefnest.belief.view import State
+from beliefnest.bodies.footpaths import InReach
+from beliefnest.bodies.scripted_hand import REACH
+from beliefnest.episodes.policies.course_planner import USUAL, Bounds
+from beliefnest.episodes.policies.expecting import Expecting, GoalShares, uniform
+from beliefnest.episodes.policies.search import Search
+from beliefnest.episodes.view import AgentView
+from beliefnest.errors import InputError
+from beliefnest.minds.model import MindModel
+from beliefnest.scenarios.goals import Goal
+from beliefnest.world.claims import ClaimKind
+from beliefnest.world.values import EventKind, Position
+
+__all__ = ["Infer", "goals_of_planner", "posterior"]
+
+_WORTH = 100.0
+"""Utility of a goal, in steps."""
+
+_HONEST = 0.9
+"""Probability that a claim is true if the speaker's goal fits the hearer's, false if it does not.
+"""
+
+_RATIONALITY = 1.0
+
+
+@dataclass(frozen=True)
+class Infer:
+    """Plans by trying, and infers from deeds and claims what others are after.
+
+    Attributes:
+        order: Order of Theory of Mind.
+        bounds: How much it looks at.
+    """
+
+    order: int
+    bounds: Bounds = USUAL
+
+    def act(self, view: AgentView) -> str:
+        """Return the calls of the course with the best expected outcome, as a program."""
+        if not view.brief.hides_goals:
+            return Search(self.order, self.bounds).act(view)
+        shares = posterior(view, self.order)
+        return Expecting(view, self.order, self.bounds).program(shares, learns=True)
+
+
+def posterior(view: AgentView, order: int) -> GoalShares:
+    """Return how likely the possible goals of the others are, by all that the agent perceived.
+
+    Args:
+        view: What the agent knows.
+        order: 0: others are taken to believe what the agent believes.
+    """
+    found = {}
+    for other, prior in uniform(view.brief).items():
+        goals = view.brief.possible_goals[other]
+        weights = dict(_by_deeds(view, order, other, goals, prior))
+        for is_true in _judged_claims(view, other):
+            for name, goal in goals.items():
+                supposed = view.brief.supposing({other: goal}).goals
+                is_opposed = supposed[other].differs(supposed[view.agent])
+                weights[name] *= _HONEST if is_true != is_opposed else 1 - _HONEST
+        total = sum(weights.values())
+        found[other] = {name: weight / total for name, weight in weights.items()}
+    return found
+
+
+def goals_of_planner(goal: Goal, agent: str, state: State) -> list[Mapping[str, object]]:
+    """Return what the planner of `MindModel` can pursue of a goal; empty: nothing.
+
+    Args:
+        goal: What the agent may be after.
+        agent: The agent.
+        state: What it is taken to believe.
+    """
+    return [each for one in goal.reach if not one.path for each in _pursued(one, agent, state)]
+
+
+def _pursued(condition: GoalCondition, agent: str, state: State) -> Iterator[Mapping[str, object]]:
+    match condition.fact:
+        case AgentAt(agent=who, place=place) if who == agent:
+            yield {"at": place}
+        case ItemsWith(agent=who, item=item) if who == agent and _is_somewhere(item, state):
+            yield {"item": item}
+        case ItemsIn(place=place, item=item):
+            if state.agents[agent].inventory.get(item, 0):
+                yield from ({"at": at} for at in _in_reach(place, state))
+            elif _is_somewhere(item, state):
+                yield {"item": item}
+        case LeversHeld(agents=agents, sites=sites) if agent in agents:
+            for at in sorted(
+                {at for site in sites for lever in site for at in _in_reach(lever, state)}
+            ):
+                yield {"at": at}
+        case BlockIs(place=place) | BlocksAlike(place=place):
+            yield from ({"at": at} for at in _in_reach(place, state))
+
+
+def _is_somewhere(item: str, state: State) -> bool:
+    dropped = any(each.name == item for each in state.items.values())
+    return dropped or any(held.items.get(item, 0) for held in state.containers.values())
+
+
+def _in_reach(place: Position, state: State) -> list[Position]:
+    """Return cells on the level of a block from which a hand reaches it."""
+    x, y, z = place
+    span = range(-math.ceil(REACH), math.ceil(REACH) + 1)
+    met = InReach(place, REACH, beside=True)
+    around = [(x + dx, y, z + dz) for dx in span for dz in span]
+    return [at for at in around if at in state.box and met.is_met(at) and state.blocks[at] == "air"]
+
+
+def _by_deeds(
+    view: AgentView,
+    order: int,
+    other: str,
+    goals: Mapping[str, Goal],
+    prior: Mapping[str, float],
+) -> Mapping[str, float]:
+    """Return the posterior by the course of another agent; the prior where it says nothing."""
+    below = (other,) if order else ()
+    state = view.about(*below)
+    pursued = {name: goals_of_planner(goal, other, state) for name, goal in goals.items()}
+    expressed = [name for name in goals if pursued[name]]
+    if len(expressed) < 2 or state.agents[other].position is None:
+        return prior
+    wanted: dict[str, Mapping[str, object]] = {}
+    for name in expressed:
+        wanted |= {repr(each): each for each in pursued[name]}
+    rows = [
+        {key: _WORTH if each in pursued[name] else 0.0 for key, each in wanted.items()}
+        for name in expressed
+    ]
+    weights = [[prior[name]] for name in expressed]
+    model = MindModel(
+        other,
+        wanted,
+        rows,
+        prior=weights,
+        rationality=_RATIONALITY,
+        diagonal=True,
+        stays=False,
+    )
+    try:
+        found = view.infer(model, *below).posterior()
+    except InputError:
+        # None of the goals can be reached from where it is: its course tells nothing.
+        return prior
+    shares = found.sum(axis=(0, 1, 3))
+    known = sum(prior[name] for name in expressed)
+    inferred = dict(zip(expressed, (shares / shares.sum() * known).tolist(), strict=True))
+    return {name: inferred.get(name, share) for name, share in prior.items()}
+
+
+def _judged_claims(view: AgentView, speaker: str) -> Iterator[bool]:
+    """Yield of each claim of a speaker that can be judged whether it turned out to be true."""
+    for tick, who, claim in view.claims:
+        if who == speaker and claim.kind in (ClaimKind.LOCATED, ClaimKind.ABSENT):
+            held = _was_in(view.state, str(claim.item), claim.cell, tick)
+            if held is not None:
+                yield held == (claim.kind is ClaimKind.LOCATED)
+
+
+def _was_in(state: State, item: str, place: Position, tick: int) -> bool | None:
+    """Return whether an item was in a container at a tick; None: nobody has looked since."""
+    for event in state.events:
+        if event.tick <= tick or event.detail.get("position") != place:
+            continue
+        if item in event.detail.get("items", {}):
+            return event.kind is EventKind.GET_ITEM_FROM_CHEST
+    held = state.containers.get(place)
+    if held is None or not held.complete or held.basis.source is Source.HEARD:
+        return None
+    return bool(held.items.get(item, 0))
