@@ -199,5 +199,5 @@ def test_cuboids_are_all_cells_once():
 
 def test_a_place_without_a_floor_is_refused():
     nowhere = Snapshot(0, Box((0, 0, 0), (2, 3, 2)), np.zeros((3, 4, 3), np.int32), {}, {})
-    with pytest.raises(Exception, match="nobody stands in the box, and nobody could"):
+    with pytest.raises(Exception, match="there is no agent in the box, and no place for one"):
         scenario_text("nowhere", "", nowhere)
