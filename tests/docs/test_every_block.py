@@ -112,4 +112,6 @@ def test_tasks_for_inspect_are_those_there_are() -> None:
     assert asked
     for verb, task, *_ in asked:
         assert verb == "eval"
-        assert task.removeprefix("beliefnest/") in named | {"scenario", "episode", "hi_tom"}
+        assert task.removeprefix("beliefnest/") in named | {
+            *("scenario", "episode", "hi_tom", "minds", "films"),
+        }

@@ -109,6 +109,47 @@ for name, file in FILES.items():
 """
 
 
+MINDS = """
+def answer(messages):
+    (asked,) = [each.text for each in messages]
+    assert "Where you saw student, as (x, z):" in asked
+    names = [line for line in asked.splitlines() if line[:7] in ("desire ", "belief ")]
+    # Condition 2 is left without an answer.
+    if "tick 13: (8, 1)" in asked:
+        return "I cannot tell."
+    high = ("desire mexican:", "belief mexican:")
+    return "\\n".join(f"{name} {7 if name in high else 2}" for name in names)
+
+(log,) = read(eval("beliefnest/minds", model=mock(answer), display="none"))
+for sample in log.samples:
+    score = sample.scores["like_inference"]
+    print(sample.metadata["condition"], score.metadata["outcome"], score.value > 0.6)
+metrics = {name: each.value for name, each in log.results.scores[0].metrics.items()}
+print(sorted(metrics), metrics["desires_r"] > 0.5)
+print(log.samples[1].scores["like_inference"].explanation.partition(",")[0])
+
+arguments = {"file": FILE, "films": 1}
+(log,) = read(eval("beliefnest/films", task_args=arguments, model=mock(
+    lambda messages: "desire K: 4\\ndesire L: 4\\nbelief L: 3\\nbelief none: 3"
+), display="none"))
+(sample,) = log.samples
+score = sample.scores["like_inference"]
+print(sample.id, score.metadata["outcome"], score.metadata["beliefs"][0][1])
+(log,) = read(
+    eval("beliefnest/films", task_args=arguments, model="beliefnest/offline", display="none")
+)
+print(log.samples[0].scores["like_inference"].metadata["outcome"])
+"""
+
+FILM = {
+    "worlds": [{"size": [3, 1], "spot1": [1, 1], "spot2": [3, 1], "possible_spot2": ["L", None]}],
+    "parameters": {"reward_levels": [0, 40]},
+    "scenarios": [
+        {"id": 1, "true_spot1": "K", "true_spot2": "L", "path_xy": [[2, 1], [3, 1]]},
+        {"id": 2, "true_spot1": "K", "true_spot2": None, "path_xy": [[2, 1], [1, 1]]},
+    ],
+}
+
 EPISODES = """
 import beliefnest as bn
 
@@ -208,6 +249,20 @@ def test_suites_are_tasks_whose_answers_are_scored_and_explained(run, tmp_path):
         line
         for name in files
         for line in (f"{name} 1 box box C", f"{name} 0 jar in none of them I")
+    ]
+
+
+def test_ratings_of_desires_and_beliefs_are_scored_against_exact_inference(run, tmp_path):
+    file = tmp_path / "films.json"
+    file.write_text(json.dumps(FILM), encoding="utf-8")
+    assert run(f"FILE = {str(file)!r}\n{MODEL}{MINDS}", tmp_path) == [
+        "1 rated True",
+        "2 no_answer False",
+        "3 rated True",
+        "['beliefs_r', 'desires_r', 'mean', 'stderr'] True",
+        "no rating from 1 to 7 for desire korean",
+        "1 rated 0.5",
+        "no_answer",
     ]
 
 

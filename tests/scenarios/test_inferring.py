@@ -12,6 +12,8 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import ScenarioError
 from beliefnest.llm.offline import OfflineModel
+from beliefnest.scenarios.inferring import Inferred
+from beliefnest.scenarios.rating import compared, rating_prompt, ratings_in
 from beliefnest.scenarios.running import run_scenario
 
 FILE = """\
@@ -217,3 +219,63 @@ def test_the_probe_of_the_guide_comes_out_as_it_expects():
     written = dict(bn.Scenario.load("food-trucks", 3).written)
     outcome = outcome_of({**written, **YAML(typ="safe").load(text)})
     assert outcome.ok, outcome.why_not
+
+
+def prompt_of(condition):
+    scenario = bn.Scenario.load("food-trucks", condition)
+    probe = scenario.probes[0]
+    with bn.Nest.open(scenario, "scripted") as nest:
+        nest.play()
+        return probe.infer.model, rating_prompt(nest, probe.path, probe.infer)
+
+
+def test_a_course_is_told_in_words_of_what_the_observer_holds():
+    _, prompt = prompt_of(1)
+    assert "#.########" in prompt
+    assert "- korean: to stand on gold_block, which is at (5, 6)" in prompt
+    # Where the thing in doubt stands is no goal's own place.
+    assert "- lebanese: to stand on emerald_block\n" in prompt
+    assert "As far as you know, it is lebanese." in prompt
+    assert "tick 0: (4, 4)\ntick 1: (3, 4)" in prompt
+    assert "out of your sight" not in prompt
+    assert prompt.splitlines()[-6:] == [
+        *("desire korean:", "desire lebanese:", "desire mexican:"),
+        *("belief lebanese:", "belief mexican:", "belief nothing:"),
+    ]
+    assert "As far as you know, it is nothing." in prompt_of(3)[1]
+
+
+def test_a_course_out_of_sight_is_told_as_such():
+    found = content()
+    found["agents"]["bob"]["position"] = [6.5, 1, 0.5]
+    found["blocks"].append({"block": "bricks", "walls": [[4, 1, 0], [4, 2, 2]]})
+    found["script"][0]["program"] = "await goToPosition(bot, new Vec3(2, 1, 1), 0);"
+    found["box"][1] = [6, 3, 3]
+    scenario = bn.Scenario.from_mapping(found)
+    probe = scenario.probes[0]
+    with bn.Nest.open(scenario, "scripted") as nest:
+        nest.play()
+        told = rating_prompt(nest, probe.path, probe.infer)
+    assert "ticks 0 to 1: out of your sight" in told
+    assert "?" in told
+
+
+def test_ratings_are_read_and_compared_on_one_scale():
+    model, _ = prompt_of(1)
+    text = "Desire Korean: 4\n- **desire lebanese**: 1\ndesire mexican = 7\ndesire mexican: 6.5\n"
+    text += "belief lebanese: 3\nbelief mexican: 5\nbelief nothing: 1\nbelief pizza: 3"
+    ratings = ratings_in(text, model)
+    assert ratings[("desires", "mexican")] == 6.5
+    means = {
+        **{"utility.korean": 40, "utility.lebanese": -20, "utility.mexican": 100},
+        **{"credence.lebanese": 1 / 3, "credence.mexican": 2 / 3, "credence.nothing": 0},
+    }
+    found = compared(ratings, model, Inferred(means, -1.0))
+    assert found.pairs["desires"] == [(4, 4), (1, 1), (7, 6.5)]
+    assert found.pairs["beliefs"] == [(1 / 3, 1 / 3), (2 / 3, 2 / 3), (0, 0)]
+    assert found.error == pytest.approx(0.5 / 6 / 6)
+    some = compared(
+        ratings_in("desire korean: 9\nbelief lebanese: 2", model), model, Inferred({}, 0)
+    )
+    assert "desire korean" in some.missing
+    assert some.error == 1

@@ -15,6 +15,7 @@ from inspect_ai.tool import ToolChoice, ToolInfo
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.errors import UnknownNameError
 from beliefnest.inspect.episodes import episode_task
+from beliefnest.inspect.minds import course_in_words, films_task, like_inference, minds_task
 from beliefnest.inspect.stories import suite_task
 from beliefnest.inspect.tasks import belief_prompt, in_the_belief, scenario_task
 from beliefnest.llm.messages import Message, Sampling
@@ -22,7 +23,18 @@ from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["belief_prompt", "episode", "hi_tom", "in_the_belief", "scenario", "stories"]
+__all__ = [
+    "belief_prompt",
+    "course_in_words",
+    "episode",
+    "films",
+    "hi_tom",
+    "in_the_belief",
+    "like_inference",
+    "minds",
+    "scenario",
+    "stories",
+]
 
 
 @task
@@ -47,6 +59,23 @@ def hi_tom(file: str, stories: int | None = None) -> Task:
 def stories(file: str, stories: int | None = None) -> Task:
     """Return the task of your own stories, JSON lines; `stories` limits their number."""
     return suite_task("stories", file, stories)
+
+
+@task
+def minds(
+    file: str = "food-trucks",
+    conditions: int | list[int] | None = None,
+    world: str = "scripted",
+    seed: int = 0,
+) -> Task:
+    """Return a task of the probes of a scenario that infer; the model rates instead."""
+    return minds_task(file, conditions=conditions, world=world, seed=seed)
+
+
+@task
+def films(file: str, films: int | None = None) -> Task:
+    """Return a task of the films in `file`; `films` limits their number."""
+    return films_task(file, films)
 
 
 @task
