@@ -176,7 +176,7 @@ class Channel(Owned):
                         refused = error
             elif "perceive" in message:
                 if percepts is None:
-                    raise _BrokenError("asked what nobody is to perceive")
+                    raise _BrokenError("asked for percepts in a request without any")
                 told = None
                 if refused is None:
                     try:

@@ -81,7 +81,7 @@ class JavaScriptEngine:
 
     @property
     def draws(self) -> int:
-        """How many random numbers were drawn in it."""
+        """Number of random numbers drawn in it."""
         return int(self.call("draws"))
 
     def reseed(self, seed: str) -> None:

@@ -78,7 +78,7 @@ class JavaScriptProgram:
 
     @property
     def draws(self) -> int:
-        """How many random numbers it has drawn."""
+        """Number of random numbers that it has drawn."""
         return 0 if self._leaves_nothing else self._engine.draws
 
     def reseed(self, seed: str) -> None:

@@ -20,7 +20,7 @@ function join (serv, region, end, state) {
   })
 }
 
-/** Send a player who has joined the world, and show it and the other players to each other. */
+/** Send the world to a player who has joined, and show that player and the others to each other. */
 function showWorld (player, columns) {
   player.sendWorld(columns)
   player.meet()
