@@ -40,6 +40,7 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
     from beliefnest.nest.explain.explanation import Explanation
     from beliefnest.nest.explain.parts import Contents
     from beliefnest.nest.face.exploration import Attempt
+    from beliefnest.nest.face.imagining import History, ImaginationWarning, Imagined
     from beliefnest.nest.face.nest import Nest
     from beliefnest.nest.face.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
@@ -66,6 +67,9 @@ __all__ = [
     "Episode",
     "Explanation",
     "ForkedError",
+    "History",
+    "ImaginationWarning",
+    "Imagined",
     "Inference",
     "InitialBelief",
     "InputError",
@@ -107,6 +111,9 @@ _HOMES = {
     "Difference": "beliefnest.nest.explain.comparison",
     "Episode": "beliefnest.episodes.episode",
     "Explanation": "beliefnest.nest.explain.explanation",
+    "History": "beliefnest.nest.face.imagining",
+    "ImaginationWarning": "beliefnest.nest.face.imagining",
+    "Imagined": "beliefnest.nest.face.imagining",
     "Inference": "beliefnest.minds.inference",
     "InitialBelief": "beliefnest.belief.entries",
     "MindModel": "beliefnest.minds.model",

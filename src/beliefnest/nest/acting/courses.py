@@ -158,6 +158,7 @@ class Course:
         self._moved: dict[tuple[Position, str], int] = {}
         self._changes = Changes()
         self._latest: Frame | None = None
+        self._is_fixed = all(each.is_fixed for each in candidates.values())
         self._has_drawn = False
         self._programs: dict[str, RunningPrograms] = {}
         self.world.listen(self._take)
@@ -177,7 +178,7 @@ class Course:
     @property
     def is_shared(self) -> bool:
         """True if histories with other seeds would have gone the same way so far."""
-        return not self._has_drawn and all(each.is_fixed for each in self.candidates.values())
+        return self._is_fixed and not self._has_drawn
 
     def again(self, seeds: Seeds) -> "Course":
         """Return the same course, which goes on with other seeds that begin as its own do."""
@@ -271,7 +272,7 @@ class Course:
     def _settle(self) -> None:
         for name, programs in list(self._programs.items()):
             programs.settle()
-            self._has_drawn |= programs.draws > 0
+            self._has_drawn = self._has_drawn or programs.draws > 0
             if not programs.are_over:
                 continue
             del self._programs[name]
