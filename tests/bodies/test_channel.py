@@ -76,7 +76,7 @@ def test_a_closed_channel(tmp_path):
     ("acts", "told"),
     [
         (message({"id": 5, "ok": True}), "answered request 5, not 1"),
-        (message({"perceive": 3}), "asked what nobody is to perceive"),
+        (message({"perceive": 3}), "asked for percepts in a request without any"),
         ("send(b'\\xc1')\n", "sent 1 bytes that are no message"),
         ("os.write(channel, b'\\xff' * 4)\n", "announced a message of 4294967295 bytes"),
     ],
