@@ -188,4 +188,4 @@ def test_a_trace_becomes_a_run(tmp_path, capsys):
         assert nest["/anne/sally"].state.containers[(3, 1, 3)].complete is False
         assert nest["/sally"].state.containers[(3, 1, 3)].items == {"diamond": 1}
     assert run_command_line(["replay", str(store)]) == 2
-    assert "is told by its user" in capsys.readouterr().err
+    assert "come from the user" in capsys.readouterr().err

@@ -110,8 +110,8 @@ def test_the_one_who_is_asked_last_knows_what_has_happened_before() -> None:
         ([bn.Claim.located("diamond", (99, 0, 0))], "outside the box"),
         ([bn.Claim.position("otto", (1, 0, 1))], "names an unknown agent"),
         (["the diamond is right"], "is no claim"),
-        (None, "claims_from .*gave None for 'right'; it has to give a list of claims"),
-        ("left", "claims_from .*gave 'left'"),
+        (None, "claims_from .*returned None for 'right'; it must return a list of claims"),
+        ("left", "claims_from .*returned 'left'"),
     ],
 )
 def test_what_does_not_fit_the_world_is_not_said(found: Iterable[bn.Claim], message: str) -> None:

@@ -1,4 +1,4 @@
-"""A journal beside another one: it reads what that one holds, and keeps what is added itself."""
+"""Journal in memory on top of another journal, which it only reads."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -19,13 +19,13 @@ __all__ = ["SideJournal"]
 
 
 class SideJournal:
-    """Timelines in memory whose bases may lie in another journal, which is only read.
+    """Timelines in memory whose bases may be in another journal.
 
     Args:
-        other: The other journal; it has to stay open.
+        other: The other journal, which is only read and must stay open.
 
     Attributes:
-        records: What ran on the timelines in memory.
+        records: Records of the timelines in memory.
     """
 
     def __init__(self, other: Journal) -> None:
@@ -34,7 +34,7 @@ class SideJournal:
 
     @property
     def writable(self) -> bool:
-        """It is; the other journal is not written to."""
+        """Always True: changes go to the timelines in memory."""
         return True
 
     def timelines(self) -> Sequence[TimelineInfo]:
@@ -42,11 +42,11 @@ class SideJournal:
         return (*self._other.timelines(), *self._own.timelines())
 
     def info(self, key: TimelineKey) -> TimelineInfo:
-        """Return one timeline of either; BranchError if there is none of that key."""
+        """Return the metadata of a timeline of either journal; BranchError if there is none."""
         return self._of(key).info(key)
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
-        """Begin an empty timeline; BranchError if there is one, or the base is not there."""
+        """Begin an empty timeline; BranchError if it exists or its base does not."""
         if any(info.key == key for info in self._other.timelines()):
             raise branch_taken(key)
         length = 0 if base is None else self.info(base.timeline).entries
@@ -57,21 +57,21 @@ class SideJournal:
         self._own.append(key, entries, head)
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Yield entries number start to stop - 1, oldest first."""
+        """Yield the entries with indexes start to stop - 1, oldest first."""
         return self._of(key).entries(key, start, stop)
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
-        """How many entries lie at `tick` or before."""
+        """Return the number of entries at `tick` or earlier."""
         return self._of(key).entries_until(key, tick)
 
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Yield those of entries start to stop - 1 that are looked for, with their numbers."""
+        """Yield the entries from start to stop - 1 that match a filter, with their indexes."""
         return self._of(key).filtered(key, start, stop, what)
 
     def events_until(self, key: TimelineKey, entries: int) -> int:
-        """How many events the first `entries` entries have."""
+        """Return the number of events in the first `entries` entries."""
         return self._of(key).events_until(key, entries)
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
@@ -79,7 +79,7 @@ class SideJournal:
         return self._of(key).agents_after(key, entries)
 
     def rename(self, key: TimelineKey, name: str) -> None:
-        """Give a timeline in memory another name."""
+        """Rename the branch of a timeline in memory."""
         self._own.rename(key, name)
 
     def delete(self, key: TimelineKey) -> None:
@@ -91,30 +91,30 @@ class SideJournal:
         self._own.describe(key, description)
 
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
-        """Keep bytes that stand for the first entries of a timeline in memory; else nothing."""
+        """Store a checkpoint of a timeline in memory; ignore those of the other journal."""
         if self._own.has(key):
             self._own.put_checkpoint(key, name, entries, body)
 
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """Return the last checkpoint of that name at or before entry `entries`, with its place."""
+        """Return the last checkpoint of that name at or before entry `entries`, and its place."""
         return self._of(key).nearest_checkpoint(key, name, entries)
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
-        """Keep the internal state of the body of a timeline in memory at a moment."""
+        """Store the internal state of the body of a timeline in memory."""
         self._own.put_body_state(key, entries, tick, state)
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """Return the internal state that was kept for a moment; None if none was."""
+        """Return the internal state stored for exactly this moment; None if there is none."""
         return self._of(key).body_state(key, entries, tick)
 
     def together(self) -> AbstractContextManager[None]:
-        """Do all that is done inside or, if it raises, none of it."""
+        """Make the calls inside the block atomic; only timelines in memory can change."""
         return self._own.together()
 
     def close(self) -> None:
-        """Leave the other journal to whoever opened it."""
+        """Do nothing: the other journal belongs to the caller."""
 
     def _of(self, key: TimelineKey) -> Journal:
         return self._own if self._own.has(key) else self._other
