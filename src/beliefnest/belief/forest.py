@@ -385,6 +385,15 @@ class Forest:
         )
 
     def _fold(self, start: int, stop: int) -> int:
+        """Fold entries from number `start` up to `stop` (excluded), or fewer.
+
+        Without claims and unique items, poses and blocks do not depend on contents. So the kernel
+        folds all entries at all depths first. The holdings then follow, entry by entry, from the
+        rows that the kernel left and the acts that nodes perceived.
+
+        Returns:
+            Number of the first entry that was not folded.
+        """
         claims = self._weighs and self.columns.has_claims(start)
         if claims or self._reads or self.context.unique:
             return self._fold_by_level(start)

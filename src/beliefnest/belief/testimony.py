@@ -2,9 +2,9 @@
 
 `Forest` folds an entry with claims level by level: the kernel, the holdings and then the claims,
 for all nodes of one depth. A node of the next depth perceives inside its parent's state (section
-5.3), so it must see what its parent has just come to believe. Rule 8.6 follows: "does j think that
-i took the claim up?" is answered by the same code one level deeper, which reads the verdict of the
-parent node. The ticks of conditions 1a and 1b are counted by the kernel, in `Nodes`.
+5.3), so it must see what its parent has just come to believe. This also gives rule 8.6: "does j
+think that i took the claim up?" is the same question one level deeper. The kernel counts the ticks
+of condition 1b, in `Nodes`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -161,8 +161,13 @@ def _run_again(
     seed: int,
     rules: RunRules,
 ) -> list[Entry]:
+    """Return the entries of one timeline, made again in a fresh body.
+
+    Edits and, in a scripted world, frames outside of calls are the user's acts: they are applied to
+    the body as recorded. Programs run again, in the same order and at the same ticks.
+    """
     info = recorded.info
-    # The frame that moves agents at a fork is not made by the body, so it is not compared.
+    # No body makes the frame that moves agents at a fork: take it from the record.
     moved = placing_frame(recorded.journal, info)
     found: list[Entry] = [] if moved is None else [moved]
 

@@ -101,6 +101,10 @@ def explain(
 def _explained(
     recording: Recording, path: BeliefPath, moment: ForkPoint, element: Element
 ) -> Explanation:
+    """Explain a belief at a moment: the fact in the timeline's world, then each level of belief.
+
+    If the element has not changed since the fork of the timeline, also explain the belief there.
+    """
     root = moment.timeline.path
     paths = [path[:depth] for depth in range(len(root), len(path) + 1)]
     now = _held_now(recording, path, moment, element)
