@@ -77,7 +77,7 @@ def test_work_without_end_harms_nobody(nest: bn.Nest, code: str) -> None:
 
 def test_half_a_character_in_a_programs_text_is_wrong_input(nest: bn.Nest) -> None:
     before = nest["/"].tick
-    with pytest.raises(bn.InputError, match="the program of sally has half of a character"):
+    with pytest.raises(bn.InputError, match="the program of sally has half a character"):
         nest["/"].run("sally", "console.log('\ud83d')")
     assert nest["/"].tick == before
 

@@ -175,7 +175,7 @@ def test_what_others_do_between_calls_is_recorded_with_the_next(console, tmp_pat
         assert nest.wait(lambda: nest["/"].state.blocks[(4, -51, 4)] == "stone")
         told = [e for e in nest["/"].state.events if e.kind is EventKind.BLOCK_UPDATE]
         assert [(e.actor, e.detail["position"]) for e in told] == [(None, (4, -51, 4))]
-        with pytest.raises(InputError, match="real time, so that nothing can be tried out"):
+        with pytest.raises(InputError, match="real time, so programs cannot be tried out"):
             nest.explore("/", "sally", [PUT], lambda *_: 0)
         before = nest.tick
         assert not nest.wait(lambda: False, timeout_s=0.5)

@@ -216,7 +216,7 @@ def test_only_who_is_awaited_comes_in_and_acts(scenario):
 def test_nothing_is_done_while_time_stands_still(scenario):
     with Nest.open(scenario(1), realtime=True, listen=0) as nest:
         with (
-            pytest.raises(WorldError, match="not in real time"),
+            pytest.raises(WorldError, match="not run in real time"),
             Nest.open(Scenario.load("sally-anne"), "scripted") as other,
         ):
             other.pause()

@@ -103,7 +103,7 @@ def test_wrong_input_is_named_and_nothing_happens(
 def test_run_all_takes_one_program_for_each_of_some_agents(nest: bn.Nest) -> None:
     with pytest.raises(bn.InputError, match="no program is in"):
         nest["/"].run_all({})
-    with pytest.raises(bn.InputError, match="code by agent"):
+    with pytest.raises(bn.InputError, match="from agent to code"):
         nest["/"].run_all([("sally", ""), ("sally", "")])  # type: ignore[arg-type]
     with pytest.raises(bn.PathError, match="'bob'"):
         nest["/"].run_all({"sally": "bot.chat('never said')", "bob": ""})

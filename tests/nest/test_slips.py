@@ -69,5 +69,5 @@ def test_who_waits_or_says_hears_of_no_slip(ann, code):
 def test_what_is_no_scenario_is_told_how_to_load_one():
     with pytest.raises(bn.BeliefNestError, match=r"bn\.Scenario\.load\('sally-anne'\)"):
         bn.Nest.open("sally-anne")
-    with pytest.raises(bn.BeliefNestError, match=r"opened by bn\.Nest\.open\(scenario\)"):
+    with pytest.raises(bn.BeliefNestError, match=r"with bn\.Nest\.open\(scenario\)"):
         bn.Nest(bn.Scenario.load("sally-anne"))

@@ -107,9 +107,9 @@ def test_a_tick_in_the_future_or_before_the_start_is_an_error(tick):
 def test_what_is_no_tick_is_an_error_live_and_recorded(tick, tmp_path):
     world = bn.ScriptedWorld(((0, 0, 0), (3, 3, 3)), agents={"sally": (1.5, 0, 1.5)})
     store = tmp_path / "run.bn"
-    with bn.Nest(world, store=store) as nest, pytest.raises(TickError, match="is no tick"):
+    with bn.Nest(world, store=store) as nest, pytest.raises(TickError, match="is not a tick"):
         nest.at(tick)
-    with bn.Nest.read(store) as nest, pytest.raises(TickError, match="is no tick"):
+    with bn.Nest.read(store) as nest, pytest.raises(TickError, match="is not a tick"):
         nest.at(tick)
 
 

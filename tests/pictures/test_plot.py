@@ -86,7 +86,7 @@ def test_wrong_questions_are_errors(nest: bn.Nest) -> None:
         {"container": CHEST, "agent": "anne"},
         {"block": CHEST, "item": "diamond"},
     ):
-        with pytest.raises(bn.InputError, match="a container, an item, an agent or a block"):
+        with pytest.raises(bn.InputError, match="a plot follows one thing"):
             nest.plot_beliefs(**one_too_many)  # type: ignore[arg-type]
     with pytest.raises(bn.PathError):
         nest.plot_beliefs(agent="bob")

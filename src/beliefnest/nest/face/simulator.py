@@ -193,7 +193,7 @@ class Simulator(ShownSimulator):
                 )
             if not is_well_formed(code):
                 raise InputError(
-                    f"the program of {agent} has half of a character in it (a lone surrogate); "
+                    f"the program of {agent} has half a character in it (a lone surrogate); "
                     "write the whole character, or an escape such as \\u{1f600}"
                 )
         check_senses(senses)

@@ -201,5 +201,5 @@ def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
         if branch != FOLLOW
     }
     if () not in recording.selected:
-        raise StoreError("the run was stopped before it had begun: start it again")
+        raise StoreError("the run was stopped while it began: start it again")
     return recording, world

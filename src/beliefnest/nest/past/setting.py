@@ -155,9 +155,7 @@ class Setting:
             texts += [step.label, step.where, *step.programs.values()]
         bad = next((text for text in texts if not is_well_formed(text)), None)
         return (
-            None
-            if bad is None
-            else f"{escaped(bad[:100])!r} has half of a character in it; remove it"
+            None if bad is None else f"{escaped(bad[:100])!r} has half a character in it; remove it"
         )
 
 
