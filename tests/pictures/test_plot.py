@@ -90,7 +90,9 @@ def test_wrong_questions_are_errors(nest: bn.Nest) -> None:
             nest.plot_beliefs(**one_too_many)  # type: ignore[arg-type]
     with pytest.raises(bn.PathError):
         nest.plot_beliefs(agent="bob")
-    with pytest.raises(bn.InputError, match=r"no container at \(0, 1, 0\); containers are at"):
+    with pytest.raises(
+        bn.InputError, match=r"never was a container at \(0, 1, 0\); containers are at"
+    ):
         nest.plot_beliefs((0, 1, 0))
     with pytest.raises(bn.BeliefNestError, match="did you mean diamond"):
         nest.plot_beliefs(CHEST, "daimond")
