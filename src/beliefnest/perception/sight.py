@@ -75,7 +75,6 @@ class Sight:
         """
         _check_grid(blocks, self.registry.states)
         codes = code_grid(blocks, self.state_codes, self.reaches)
-        codes.flags.writeable = False
         return Geometry(self, origin, codes)
 
     @property
@@ -155,7 +154,6 @@ class Geometry:
             code = int(self.sight.state_codes[state])
             place = (i + 1, j + 1, k + 1)
             set_code(codes.reshape(-1), self._scene.sizes, self.sight.reaches, place, code)
-        codes.flags.writeable = False
         return Geometry(self.sight, self.origin, codes)
 
     def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
