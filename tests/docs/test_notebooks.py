@@ -6,7 +6,7 @@ import nbclient
 import nbformat
 import pytest
 
-DRAWINGS = {"tutorial": 3, "study": 1}
+DRAWINGS = {"tutorial": 3, "study": 1, "food_trucks": 4}
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs" / "notebooks").glob("*.ipynb"))
 
 

@@ -46,7 +46,7 @@ def examine(server: str | None = None, *, as_json: bool, warm: bool = False) -> 
     if server is not None and not is_server(server):
         raise InputError(f"{server!r} is no address of a server; give minecraft://HOST:PORT")
     if warm:
-        _one_belief()
+        _one_inference()
     found = []
     for name, check in (*_CHECKS, *(() if server is None else _server_checks(server))):
         finding = _find(name, check)
@@ -118,21 +118,35 @@ def _sight() -> str:
 
 def _kernels() -> str:
     from beliefnest.belief import kernel
+    from beliefnest.minds import relaxing
+    from beliefnest.perception import views
     from beliefnest.perception.rays import is_compiled
 
-    if is_compiled(kernel.fold):
+    if all(is_compiled(each) for each in (kernel.fold, views.seen_blocks, relaxing.sweep)):
         return "compiled"
-    return "not compiled yet; the first belief waits for it, or run `beliefnest doctor --warm` now"
+    return (
+        "not compiled yet; the first belief or inference will wait for it, "
+        "or `beliefnest doctor --warm` now"
+    )
 
 
-def _one_belief() -> None:
+def _one_inference() -> None:
+    """Compute a belief and infer from it, so that all kernels of both are compiled."""
+    from beliefnest.minds.model import MindModel
     from beliefnest.nest.face.nest import Nest
     from beliefnest.world.scripted import ScriptedWorld
 
-    sys.stderr.write("compiling the kernels of beliefs (once, some 15 to 30 seconds)\n")
-    agents = {"ann": (0.5, 0.0, 0.5), "bob": (2.5, 0.0, 2.5)}
-    with Nest(ScriptedWorld(box=((0, 0, 0), (2, 2, 2)), agents=agents)) as nest:
+    sys.stderr.write(
+        "compiling the kernels of beliefs and of inference (once, some 15 to 30 seconds)\n"
+    )
+    floor = {(x, 0, z): "stone" for x in range(3) for z in range(3)}
+    agents = {"ann": (0.5, 1.0, 0.5), "bob": (2.5, 1.0, 2.5)}
+    box = ((0, 0, 0), (2, 3, 2))
+    with Nest(ScriptedWorld(box, floor, agents), static_blocks=["stone"]) as nest:
         nest["/ann/bob"].state.blocks.named(frozenset({"stone"}))
+        doubt = {block: {"blocks": {(0, 0, 2): block}} for block in ("stone", "gold_block")}
+        model = MindModel("bob", {"gold": {"block": "gold_block"}}, {"gold": [0, 5]}, doubt)
+        nest["/"].infer(model)
 
 
 def _world() -> str:

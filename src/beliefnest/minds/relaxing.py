@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from beliefnest.perception.rays import compiled
 
-__all__ = ["relax"]
+__all__ = ["relax", "sweep"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -40,11 +40,11 @@ def relax(
     shares = np.array([share for _, share in pairs], dtype=np.float64).reshape(len(pairs), count)
     tolerance = 1e-12 * (1 - discount)
     room = np.empty(count)
-    _relax(values, inner, at, fixed, starts, to, shares, discount, step_cost, tolerance, room)
+    sweep(values, inner, at, fixed, starts, to, shares, discount, step_cost, tolerance, room)
 
 
 @compiled
-def _relax(
+def sweep(
     values: Floats,
     inner: npt.NDArray[np.int32],
     at: npt.NDArray[np.int32],

@@ -1,7 +1,7 @@
 """Judgments of a model beside those of people: correlations and their intervals."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -40,11 +40,11 @@ class Agreement:
     """
 
     about: About
-    names: tuple[str, ...]
-    model: Floats
-    people: Floats
-    errors: Floats
-    films: npt.NDArray[np.int64]
+    names: tuple[str, ...] = field(repr=False)
+    model: Floats = field(repr=False)
+    people: Floats = field(repr=False)
+    errors: Floats = field(repr=False)
+    films: npt.NDArray[np.int64] = field(repr=False)
 
     @property
     def r(self) -> float:
