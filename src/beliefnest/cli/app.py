@@ -127,7 +127,7 @@ def run(
     ] = False,
     listen: Annotated[
         str | None,
-        typer.Option(help="Where people join: PORT of this machine, or HOST:PORT; default 25565."),
+        typer.Option(help="Address for people to join: PORT or HOST:PORT; default: 25565."),
     ] = None,
     embody: Annotated[
         list[str] | None,
@@ -474,7 +474,8 @@ def play(
         bool, typer.Option("--measure-help", help="Print the help needed, given and superfluous.")
     ] = False,
     listen: Annotated[
-        str | None, typer.Option(help="Where people join: PORT of this machine, or HOST:PORT.")
+        str | None,
+        typer.Option(help="Address for people to join: PORT of this machine, or HOST:PORT."),
     ] = None,
     baselines: Annotated[
         bool, typer.Option("--baselines", help="Play the task, or all tasks, with all baselines.")
@@ -486,7 +487,7 @@ def play(
     ] = None,
     json: Json = False,
 ) -> int:
-    """Let agents act round after round on their own beliefs; print if they reach the goal."""
+    """Let agents act on their own beliefs, round after round; say if they reach the goal."""
     if baselines:
         from beliefnest.cli.baselines import BaselineOptions, run_baselines
 

@@ -84,12 +84,12 @@ class Film:
 
     @property
     def observer_doubts(self) -> bool:
-        """Whether the observer does not know which alternative is the case."""
+        """True if the observer does not know which alternative is the case."""
         return len(self.actual) > 1
 
     @property
     def events(self) -> Mapping[str, frozenset[str]]:
-        """What beliefs and locations may be about: names, with the alternatives that they mean.
+        """Return the events of beliefs and locations: the alternatives that each name means.
 
         These are the alternatives and, where several places are in doubt, `PLACE=GOAL`.
         """

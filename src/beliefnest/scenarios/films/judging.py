@@ -37,7 +37,7 @@ _FLOOR, _WALL, _EMPTY = "stone", "stone", "gravel"
 
 @dataclass(frozen=True)
 class Judgment:
-    """What the model says of a film.
+    """Judgments of the model about a film.
 
     Attributes:
         film: The film.

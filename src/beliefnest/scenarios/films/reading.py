@@ -335,7 +335,7 @@ class _Reader:
 
     @property
     def asks_for_locations(self) -> bool:
-        """Whether people judged what stands where."""
+        """Return True if people judged locations."""
         matches = filter(None, map(_JUDGED.fullmatch, self.human))
         return any(_KINDS[found["about"]] == "locations" for found in matches)
 
