@@ -240,7 +240,7 @@ def _no_store(run: Path) -> InputError:
             f"{run} holds a study whose runs were not recorded; run it again with --record in a "
             f"new folder, to which you copy {run / _ANSWERS} so that no model is asked again"
         )
-    return InputError(f"there is no run at {run}: it is no run folder and no {STORE} file")
+    return InputError(f"there is no run at {run}; give a run folder or a {STORE} file")
 
 
 def kept_scenario_file(out: Path | None, wanted: str) -> Path | None:

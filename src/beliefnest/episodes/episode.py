@@ -317,7 +317,7 @@ class Episode:
         With models this takes time and tokens, which the episode does not count. Afterwards
         `measures` contains the results.
         """
-        check_repeats(self._world, "played again without somebody's help")
+        check_repeats(self._world, "played again to measure help")
         if self._help is None:
             told = replayed(self._parts, self.task.agents)
             with Episode(self.task, told, world=self._world, seed=self.seed) as copy:

@@ -81,7 +81,7 @@ def _declared(document: Document, name: object, entry: YamlNode) -> ParameterEnt
     if found.range is not None and found.range[0] > found.range[1]:
         raise document.fault((*path, "range"), "ends below its beginning")
     if found.step is not None and (found.range is None or found.step < 0):
-        raise document.fault((*path, "step"), "needs a range, and is no less than 0")
+        raise document.fault((*path, "step"), "needs a range, and must not be below 0")
     if found.range is not None and not all(map(math.isfinite, found.range)):
         raise document.fault((*path, "range"), "has an end that is no finite number")
     if found.range is not None and _count_of(found) > _MOST_VALUES:
