@@ -183,6 +183,8 @@ def test_a_history_is_kept_by_name_alone(tmp_path):
         assert imagined.by_candidate("bob")["fetch"] == pytest.approx(1)
         with pytest.raises(StoreError, match="only read"):
             imagined.keep(0, "other")
+        with pytest.raises(InputError, match="only read"):
+            imagined[0].fork()
 
 
 def test_same_seed_same_histories():

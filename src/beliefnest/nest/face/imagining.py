@@ -13,18 +13,15 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.belief.condition_form import condition_entry, conditions_of
 from beliefnest.belief.conditions import GoalCondition, GoalFacts, StateFacts
 from beliefnest.belief.view import State
-from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.errors import BranchError, InputError, PathError, StoreError, TickError
 from beliefnest.minds.model import MindModel
 from beliefnest.minds.walking import Strategy
 from beliefnest.nest.acting.agreement import Agreement, Tolerance, Witness
 from beliefnest.nest.acting.courses import Candidate, Course, CoursePlan, PolicyProgram
-from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.particles import Drawing, Drawn, Lost, Particle, spread
 from beliefnest.nest.acting.script import Progress
 from beliefnest.nest.acting.starting import start_of
-from beliefnest.nest.face.shown import PastSimulator
-from beliefnest.nest.face.simulator import Simulator, check_branch_name
+from beliefnest.nest.face.branch_names import check_branch_name
 from beliefnest.nest.face.ticks import tick_of, whole
 from beliefnest.nest.inferring.asking import ModelStart, start_of_model
 from beliefnest.nest.past.percepts import Percept, percepts_of
@@ -41,7 +38,7 @@ from beliefnest.world.values import AgentState, Block, Items, Point, Position
 if TYPE_CHECKING:  # Pictures take long to import, and few histories are drawn.
     from beliefnest.pictures.figure import Figure
 
-__all__ = ["History", "ImaginationWarning", "Imagined", "imagine_in"]
+__all__ = ["Faces", "History", "ImaginationWarning", "Imagined", "imagine_in"]
 
 _FEW = 0.1
 """Share of the histories below which the effective number is warned of."""
@@ -51,6 +48,19 @@ _SUM_SLACK = 1e-9
 
 class ImaginationWarning(UserWarning):
     """Few histories explain what was perceived."""
+
+
+@dataclass(frozen=True, slots=True)
+class Faces:
+    """How histories are shown to their users.
+
+    Attributes:
+        past: Makes the read-only simulator of a path at a tick.
+        live: Makes the simulator that histories are of, able to act, on other timelines.
+    """
+
+    past: Callable[[Recording, BeliefPath, int | None], Any]
+    live: Callable[[Recording], Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,9 +126,10 @@ class History:
     @property
     def state(self) -> State:
         """What is the case in it in the end."""
-        return self["/"].state
+        state: State = self["/"].state
+        return state
 
-    def at(self, tick: int) -> PastSimulator:
+    def at(self, tick: int) -> Any:
         """Return it as it was at a tick.
 
         Raises:
@@ -127,29 +138,34 @@ class History:
         recording = self._imagined._recorded(self._course)
         then = tick_of(tick)
         recording.moment(self._imagined._path, then)
-        return PastSimulator(recording, self._imagined._path, then)
+        return self._imagined._faces.past(recording, self._imagined._path, then)
 
-    def __getitem__(self, path: str) -> PastSimulator:
+    def __getitem__(self, path: str) -> Any:
         """Return a simulator of it in the end; `/` is what is the case in it."""
         recording = self._imagined._recorded(self._course)
         whole_path = self._imagined._within(path)
-        return PastSimulator(recording, whole_path, self._course.tick)
+        return self._imagined._faces.past(recording, whole_path, self._course.tick)
 
     def figure(self, against: str | None = None) -> "Figure":
         """Draw it as it is in the end; compared with a belief path of the nest, if one is given."""
-        return self["/"].figure(against)
+        figure: Figure = self["/"].figure(against)
+        return figure
 
-    def fork(self, name: str = "fork") -> Simulator:
+    def fork(self, name: str = "fork") -> Any:
         """Return a simulator in which it goes on, on a branch of its own, in a scripted world.
 
         Programs run in it as in any other; nothing of it is recorded in the nest.
 
         Args:
             name: Name of the branch, which stays with the histories.
+
+        Raises:
+            InputError: The nest is only read.
+            BranchError: The name is not allowed.
         """
         recording = self._imagined._recorded(self._course)
         own = recording.on(recording.selected[self._imagined._path])
-        simulator = Simulator(Engine(own, ScriptedBodies()), self._imagined._path)
+        simulator = self._imagined._faces.live(own)
         simulator.switch(name)
         return simulator
 
@@ -185,9 +201,10 @@ class Imagined:
         starts: "_Starts",
         until: int,
         side: Recording,
+        faces: Faces,
     ) -> None:
         self._recording, self._path, self._base = recording, path, base
-        self._starts, self._side = starts, side
+        self._starts, self._side, self._faces = starts, side, faces
         self._drawing = drawing
         self.since, self.until, self.n = base.tick, until, len(drawing.drawn)
         self.impossible: Lost | None = drawing.lost
@@ -405,6 +422,7 @@ def imagine_in(
     evidence: Sequence[Mapping[str, Any]] | None,
     tolerance: tuple[int, int],
     on_progress: Progress | None,
+    faces: Faces,
 ) -> Imagined:
     """Draw histories; see `ShownSimulator.imagine`."""
     checked = _Checked.of(recording, path, since, until, actors, n, seed, weights, tolerance)
@@ -422,7 +440,7 @@ def imagine_in(
     )
     side.selected = dict(recording.selected)
     side.records.set_run(recording.records.run())
-    policies = _Policies(side, starts, path)
+    policies = _Policies(side, starts, path, faces)
     starts.candidates = {
         agent: {
             name: _candidate(recording, path, base, end, agent, name, given, starts, policies)
@@ -450,7 +468,7 @@ def imagine_in(
     drawing = Drawing(plan, _drawn(starts, checked, seed), agreement, seed)
     tell = on_progress or _say_nothing
     drawing.run(end.tick, lambda done, total: tell("imagining histories", done, total))
-    imagined = Imagined(recording, path, base, drawing, starts, end.tick, side)
+    imagined = Imagined(recording, path, base, drawing, starts, end.tick, side, faces)
     if conditions is not None:
         _weigh(imagined, conditions)
     _warn(imagined)
@@ -620,6 +638,7 @@ class _Policies:
     side: Recording
     starts: _Starts
     path: BeliefPath
+    faces: Faces
     _keys: dict[Course, tuple[TimelineKey, int]] = field(default_factory=dict)
 
     def of(self, policy: Callable[..., object], agent: str, name: str) -> PolicyProgram:
@@ -637,7 +656,7 @@ class _Policies:
 
         return program
 
-    def _shown(self, course: Course, agent: str) -> PastSimulator:
+    def _shown(self, course: Course, agent: str) -> Any:
         journal = self.side.journal
         known = self._keys.get(course)
         entries = self.starts.entries(course)
@@ -649,7 +668,7 @@ class _Policies:
         journal.append(key, entries[written:], course.tick)
         self._keys[course] = (key, len(entries))
         recording = self.side.on(key)
-        return PastSimulator(recording, normalised((*self.path, agent)), course.tick)
+        return self.faces.past(recording, normalised((*self.path, agent)), course.tick)
 
 
 def _filled(

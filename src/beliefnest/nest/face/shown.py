@@ -191,7 +191,7 @@ class ShownSimulator(ABC):
             PathError: There is no such agent.
             TickError: A tick lies in the future or before the start, or `since` after `until`.
         """
-        from beliefnest.nest.face.imagining import imagine_in
+        from beliefnest.nest.face.imagining import Faces, imagine_in
 
         last = self._tick if until is None else until
         return imagine_in(
@@ -206,6 +206,14 @@ class ShownSimulator(ABC):
             evidence,
             tolerance,
             on_progress,
+            Faces(PastSimulator, self._live_on),
+        )
+
+    def _live_on(self, recording: Recording) -> Any:
+        """Return the simulator, able to act, on other timelines."""
+        raise InputError(
+            f"{self.path} is only read, so that nothing can go on in its histories; imagine in an "
+            "open nest, which Nest.resume gives for a recorded run, and fork there"
         )
 
     @in_turn

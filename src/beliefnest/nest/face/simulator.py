@@ -4,14 +4,16 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
 from beliefnest.bodies.protocol import ProgramPast, ProgramResult
-from beliefnest.bodies.scripted import ScriptedBody
+from beliefnest.bodies.scripted import ScriptedBodies, ScriptedBody
 from beliefnest.errors import BranchError, InputError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.nest.face.branch_names import check_branch_name
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.nest.face.ticks import tick_of, whole
 from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.paths import BeliefPath, paths_below
@@ -23,7 +25,7 @@ from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Model
 
-__all__ = ["Simulator", "check_branch_name", "check_senses"]
+__all__ = ["Simulator", "check_senses"]
 
 Mode = Literal["control", "follow"]
 
@@ -295,6 +297,9 @@ class Simulator(ShownSimulator):
         else:
             embodying.end(self._path)
 
+    def _live_on(self, recording: Recording) -> "Simulator":
+        return Simulator(Engine(recording, ScriptedBodies()), self._path)
+
     @in_turn
     def imagination(self, depth: int = 1, pace: int = 1) -> Imagination:
         """Return the present state as a world of its own, to try out courses without recording.
@@ -337,11 +342,3 @@ def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineK
         if info.base is not None and info.base.timeline in resting:
             resting.add(info.key)
     return [info.key for info in reversed(infos) if info.key in resting and info.key != key]
-
-
-def check_branch_name(name: object) -> None:
-    """Refuse what can name no branch; BranchError says so."""
-    if not isinstance(name, str) or not name or not name.isprintable() or set(name) & set("/[]"):
-        raise BranchError(
-            f"{name!r} is not a branch name; use printable text without '/', '[' and ']'"
-        )
