@@ -16,7 +16,7 @@ from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
 from beliefnest.scenarios.films.agreement import PUBLISHED, Agreement, agreement, interval
-from beliefnest.scenarios.films.film import ABOUT, About, Film
+from beliefnest.scenarios.films.film import ABOUT, About, Film, FilmParameters, grid_for
 from beliefnest.scenarios.films.judging import LESIONS, Judgment, Lesion, judge
 from beliefnest.scenarios.films.reading import read_films
 from beliefnest.studies.plainframe import Typed, write_typed
@@ -90,7 +90,7 @@ def run_films(options: FilmOptions) -> int:
                     on_progress(f"{_WORDS[lesion]}, film {film.name}", number, len(films))
                 judged[lesion].append(judge(film, parameters, lesion))
         on_progress("all films judged", len(films), len(films))
-    report = _report(options, judged)
+    report = _report(options, judged, parameters)
     report["files"] = _write(folder, options, judged)
     if options.as_json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")
@@ -109,7 +109,9 @@ def _folder(out: Path | None) -> Path:
 
 
 def _report(
-    options: FilmOptions, judged: Mapping[Lesion | None, Sequence[Judgment]]
+    options: FilmOptions,
+    judged: Mapping[Lesion | None, Sequence[Judgment]],
+    parameters: FilmParameters,
 ) -> dict[str, Any]:
     films = [judgment.film for judgment in judged[None]]
     groups = list(dict.fromkeys(film.group for film in films if film.group))
@@ -130,6 +132,11 @@ def _report(
                 ),
             }
             for group in groups
+        },
+        "coarser_grids": {
+            film.name: grid
+            for film in films
+            if (grid := grid_for(film, parameters)) != parameters.grid
         },
         "impossible": {
             judgment.film.name: judgment.impossible
@@ -285,6 +292,12 @@ def _print(
         print_table(console, _alone(alone))
     for name, step in report["impossible"].items():
         console.print(f"film {name} is left out: {step}", markup=False, soft_wrap=True)
+    for name, grid in report["coarser_grids"].items():
+        console.print(
+            f"film {name}: credences are multiples of 1/{grid}; finer ones do not fit into memory",
+            markup=False,
+            soft_wrap=True,
+        )
     console.print(f"files: {', '.join(report['files'])}", markup=False, soft_wrap=True)
 
 

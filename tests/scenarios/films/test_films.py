@@ -14,7 +14,7 @@ from tests.profiles import NIGHTLY
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import InputError
 from beliefnest.scenarios.films.agreement import Agreement, agreement, interval
-from beliefnest.scenarios.films.film import FilmParameters
+from beliefnest.scenarios.films.film import FilmParameters, grid_for
 from beliefnest.scenarios.films.judging import LESIONS, judge
 from beliefnest.scenarios.films.reading import films_from, parameters_from, read_films
 
@@ -192,7 +192,7 @@ def test_what_is_not_understood_is_refused_with_the_film(entry, world, told, tmp
         {"reward_levels": {"K": "high"}},
         {"discount": "x"},
         {"agent_prior_grid": "fine"},
-        {"agent_prior_grid": "simplex of step 1/100", "reward_levels": list(range(200))},
+        {"reward_levels": list(range(200))},
         [],
     ],
 )
@@ -373,3 +373,22 @@ def test_the_form_in_the_docs_is_read(tmp_path):
     assert film.known == {"spot1": "K"}
     assert film.group == "short"
     assert set(film.people) == {"desires", "beliefs"}
+
+
+def test_a_grid_that_does_not_fit_into_memory_is_made_coarser_and_told(tmp_path, capsys):
+    content = two_places(path_xy=[[3, 1], [4, 1]], ends_with_eat=False)
+    world = content["worlds"][0]
+    del world["alternatives"]
+    world["possible_spot1"] = world["possible_spot2"] = ["K", "L", None]
+    content["parameters"]["agent_prior_grid"] = "simplex of step 1/20"
+    (film,) = films_from(content)
+    assert len(film.alternatives) == 9
+    parameters = parameters_from(content)
+    assert grid_for(film, parameters) == 11
+    assert grid_for(film, replace(parameters, grid=6)) == 6
+    content["parameters"]["reward_levels"] = list(range(60))
+    (film,) = films_from(content)
+    assert grid_for(film, parameters_from(content)) == 2
+    content["parameters"]["reward_levels"] = list(range(140))
+    assert suite(tmp_path, content) == 0
+    assert "film a: credences are multiples of 1/1; finer ones" in capsys.readouterr().out

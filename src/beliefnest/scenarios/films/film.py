@@ -2,9 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import comb, prod
 from typing import Literal
 
-__all__ = ["ABOUT", "NOTHING", "About", "Cell", "Film", "FilmParameters"]
+from beliefnest.scenarios.inferring import MOST_HYPOTHESES
+
+__all__ = ["ABOUT", "NOTHING", "About", "Cell", "Film", "FilmParameters", "event_name", "grid_for"]
 
 Cell = tuple[int, int]
 """Coordinates x, y from 1, y upwards."""
@@ -95,14 +98,32 @@ class Film:
         """
         found = {name: frozenset([name]) for name in self.alternatives}
         doubted = next(iter(self.alternatives.values()), {})
-        if len(doubted) > 1:
+        for place in doubted if len(doubted) > 1 else ():
             for name, held in self.alternatives.items():
-                for place, goal in held.items():
-                    event = event_name(place, goal)
-                    found[event] = found.get(event, frozenset()) | {name}
+                event = event_name(place, held[place])
+                found[event] = found.get(event, frozenset()) | {name}
         return found
 
 
 def event_name(place: str, goal: str | None) -> str:
     """Return the name of the event that a place holds a goal; None: nothing."""
     return f"{place}={goal or NOTHING}"
+
+
+_MOST_WEIGHTS = 60_000_000
+"""Weights of hypotheses at all steps that are kept in memory; about 500 MB."""
+
+
+def grid_for(film: Film, parameters: FilmParameters) -> int | None:
+    """Return the steps of the grid of credences, fewer where more do not fit into memory.
+
+    Returns:
+        At most `parameters.grid`; None: not even the grid of certain beliefs fits.
+    """
+    alternatives = len(film.alternatives)
+    others = prod(len(parameters.rewards_of(goal)) for goal in film.goals) * alternatives
+    for grid in range(parameters.grid, 0, -1):
+        hypotheses = others * comb(grid + alternatives - 1, alternatives - 1)
+        if hypotheses <= MOST_HYPOTHESES and hypotheses * len(film.path) <= _MOST_WEIGHTS:
+            return grid
+    return None

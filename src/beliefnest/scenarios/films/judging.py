@@ -11,7 +11,7 @@ from beliefnest.errors import InputError
 from beliefnest.minds.model import MindModel, simplex_grid
 from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
-from beliefnest.scenarios.films.film import About, Cell, Film, FilmParameters
+from beliefnest.scenarios.films.film import About, Cell, Film, FilmParameters, grid_for
 from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import Position
 
@@ -94,7 +94,8 @@ def model_of(
             needed for that lesion alone.
     """
     names = list(film.alternatives)
-    credences = simplex_grid(len(names), parameters.grid, parameters.smoothing)
+    grid = grid_for(film, parameters) or 1
+    credences = simplex_grid(len(names), grid, parameters.smoothing)
     actual: str | Mapping[str, float] | None = None
     if film.observer_doubts:
         actual = dict.fromkeys(film.actual, 1 / len(film.actual))

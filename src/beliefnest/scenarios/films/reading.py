@@ -4,7 +4,7 @@ import itertools
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from math import comb, isfinite, prod
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from beliefnest.scenarios.films.film import (
     Film,
     FilmParameters,
     event_name,
+    grid_for,
 )
 from beliefnest.scenarios.inferring import MOST_HYPOTHESES
 
@@ -498,16 +499,10 @@ class _Reader:
 
 def _check_size(film: Film, parameters: FilmParameters) -> None:
     """Refuse more hypotheses than fit into memory."""
-    count = len(film.alternatives)
-    hypotheses = (
-        prod(len(parameters.rewards_of(goal)) for goal in film.goals)
-        * comb(parameters.grid + count - 1, count - 1)
-        * count
-    )
-    if hypotheses > MOST_HYPOTHESES:
+    if grid_for(film, parameters) is None:
         raise InputError(
-            f"film {film.name} has {hypotheses:,} hypotheses, at most {MOST_HYPOTHESES:,} are "
-            "counted; name fewer reward_levels, or fewer alternatives"
+            f"film {film.name} has more hypotheses than fit into memory, at most "
+            f"{MOST_HYPOTHESES:,}; name fewer reward_levels, or fewer alternatives"
         )
 
 
