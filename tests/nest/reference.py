@@ -160,13 +160,7 @@ class Reference:
         }
         return {
             "blocks": blocks,
-            "containers": {
-                place: seen_at(c, now)
-                if node.is_world or place in node.into
-                # An act shows a content in its tick alone.
-                else replace(c, current=c.current and c.basis.observed_at == now)
-                for place, c in node.containers.items()
-            },
+            "containers": {place: content_at(node, place, now) for place in node.containers},
             "agents": {name: seen_at(a, now) for name, a in node.agents.items()},
             "items": {},
             "events": tuple(e for e in node.log if e.kind not in said),
@@ -333,6 +327,14 @@ class Reference:
 def seen_at(part: Any, now: int) -> Any:
     """A part of a state as it is at a tick: what is current is observed then (2)."""
     return replace(part, basis=replace(part.basis, observed_at=now)) if part.current else part
+
+
+def content_at(node: Node, place: Position, now: int) -> ContainerBelief:
+    """A content as it is at a tick: an act shows it in its tick alone, sight while it lasts."""
+    content = node.containers[place]
+    if node.is_world or place in node.into:
+        return seen_at(content, now)
+    return replace(content, current=content.current and content.basis.observed_at == now)
 
 
 def paths_to(agents: tuple[str, ...], depth: int) -> Iterator[Path]:

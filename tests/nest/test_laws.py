@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.nest.comparing import everything, values
 from tests.nest.places import wall
-from tests.nest.reference import paths_to
+from tests.nest.reference import content_at, paths_to, seen_at
 from tests.nest.reference_rules import Block, Node, Rules
 from tests.nest.reference_testimony import Ear
 from tests.nest.stories import NAMES, REGISTRY, Act, Stage, Stories, Story
@@ -74,9 +74,11 @@ def test_locality_a_node_follows_from_its_parent_s_states_alone(story):
             node = rules.perceive(around, node, path.rsplit("/", 1)[1], happening=True)
         state = stage.nest[path].state
         found = node_of(state, stage.nest.tick)
-        assert node.blocks == found.blocks, path
-        assert node.containers == found.containers, path
-        assert node.agents == found.agents, path
+        now = stage.nest.tick
+        contents = {place: content_at(node, place, now) for place in node.containers}
+        assert {p: seen_at(b, now) for p, b in node.blocks.items()} == found.blocks, path
+        assert contents == found.containers, path
+        assert {n: seen_at(a, now) for n, a in node.agents.items()} == found.agents, path
 
 
 # No leak
