@@ -325,3 +325,126 @@ def test_spreads_by_weight():
     for seed in range(20):
         numbers = spread(weights, 8, random.Random(seed))
         assert [numbers.count(number) for number in range(4)] == [4, 2, 2, 0]
+
+
+LOTTERY = """
+await waitTicks(bot, 2)
+if (Math.random() < 0.8) await goToPosition(bot, new Vec3(3, 1, 2), 0)
+await waitTicks(bot, 12)
+if (Math.random() < 0.3) await getItemFromChest(bot, new Vec3(9, 1, 2), { diamond: 1 })
+"""
+
+
+def test_resampling_keeps_expectations():
+    with kitchen() as nest:
+        nest.scripted_world.step(20)
+        imagined = nest["/anne"].imagine(0, actors={"bob": {"lottery": LOTTERY}}, n=300)
+        # Anne would have seen him come; a fifth of the histories is left, and copied.
+        assert len(imagined) == 300
+        assert 40 < imagined.effective_size < 80
+        assert imagined.log_evidence == pytest.approx(math.log(0.2), abs=0.4)
+        # What the copies drew after that, they drew with seeds of their own.
+        took = imagined.share({"agent": "bob", "items": {"diamond": 1}})
+        assert took == pytest.approx(0.3, abs=0.1)
+        again = nest["/anne"].imagine(0, actors={"bob": {"lottery": LOTTERY}}, n=300)
+        assert again.share({"agent": "bob", "items": {"diamond": 1}}) == took
+
+
+def test_tolerance_in_cells_and_ticks():
+    come = "await goToPosition(bot, new Vec3(3, 1, 2), 0)"
+    later = "await waitTicks(bot, 2); " + come
+    with kitchen() as nest:
+        world = nest.scripted_world
+        for x in (6, 5, 4, 3):
+            world.place_agent("bob", (x + 0.5, 1, 2.5))
+        world.step(6)
+        anne, actors = nest["/anne"], {"bob": {"come": come, "later": later, "idle": ""}}
+        exact = anne.imagine(0, actors=actors, n=30)
+        assert exact.by_candidate("bob")["come"] == pytest.approx(1)
+        lax = anne.imagine(0, actors=actors, n=30, tolerance=(0, 2))
+        assert lax.by_candidate("bob") == pytest.approx({"come": 0.5, "later": 0.5, "idle": 0})
+        near = {"bob": {"come": come, "beside": come.replace("3, 1, 2", "3, 1, 3"), "idle": ""}}
+        cells = anne.imagine(0, actors=near, n=30, tolerance=(1, 0))
+        assert cells.by_candidate("bob") == pytest.approx({"come": 0.5, "beside": 0.5, "idle": 0})
+
+
+def test_a_belief_within_a_belief_is_imagined():
+    with kitchen() as nest:
+        world = nest.scripted_world
+        world.place_agent("bob", (3.5, 1, 2.5))
+        since = nest.tick
+        world.place_agent("bob", (4.5, 1, 2.5))
+        world.place_agent("bob", (5.5, 1, 2.5))
+        come = {"go": "await goToPosition(bot, new Vec3(5, 1, 2), 0)", "stay": ""}
+        for path in ("/anne", "/bob/anne", "/anne/bob"):
+            imagined = nest[path].imagine(since, actors={"bob": come}, n=20)
+            assert imagined.by_candidate("bob") == pytest.approx({"go": 1.0, "stay": 0.0})
+
+
+def test_an_open_door_is_evidence():
+    door = (5, 1, 2)
+    blocks = {(x, 0, z): "stone" for x in range(12) for z in range(5)}
+    for z in (0, 1, 3, 4):
+        blocks |= {(5, 1, z): "stone", (5, 2, z): "stone"}
+    blocks |= {
+        door: "oak_door[half=lower,facing=east,open=false]",
+        (5, 2, 2): "oak_door[half=upper,facing=east,open=false]",
+    }
+    world = bn.ScriptedWorld(
+        box=((0, 0, 0), (11, 3, 4)),
+        blocks=blocks,
+        agents={"anne": (1.5, 1, 2.5), "bob": (7.5, 1, 2.5)},
+    )
+    prior = bn.InitialBelief(("anne",), agents={"bob": (7.5, 1, 2.5)})
+    names = ["stone", "air", "oak_door"]
+    with bn.Nest(world, static_blocks=names, initial_beliefs=[prior]) as nest:
+        world.step(1)
+        world.use_door("bob", door, open=True)
+        world.step(3)
+        opened = {"opened": f"await openDoor(bot, new Vec3{door})", "idle": ""}
+        state = "oak_door[open=true]"
+        by_percept = nest["/anne"].imagine(0, actors={"bob": opened}, n=20, tolerance=(0, 1))
+        assert by_percept.by_candidate("bob") == pytest.approx({"opened": 1.0, "idle": 0.0})
+        assert by_percept.share({"block": door, "state": state}) == pytest.approx(1)
+        by_condition = nest["/anne"].imagine(
+            0, actors={"bob": opened}, n=20, evidence=[{"block": door, "state": state}]
+        )
+        assert by_condition.by_candidate("bob") == pytest.approx({"opened": 1.0, "idle": 0.0})
+
+
+def test_says_how_far_it_is():
+    told = []
+    with kitchen() as nest:
+        nest.scripted_world.step(3)
+        nest["/anne"].imagine(
+            0, actors={"bob": {"idle": ""}}, n=2, on_progress=lambda *each: told.append(each)
+        )
+    assert told == [("imagining histories", done, 3) for done in (1, 2, 3)]
+
+
+def test_models_of_two_agents_share_their_doubt():
+    doubt = {"full": {"containers": {CHEST: {"diamond": 1}}}, "empty": {"containers": {CHEST: {}}}}
+
+    def model(agent, **further):
+        return bn.MindModel(
+            agent,
+            goals={"take": {"item": "diamond"}, "corner": {"at": (7, 1, 0)}},
+            utilities={"take": 9, "corner": 1},
+            doubt=doubt,
+            actual="unknown",
+            **further,
+        )
+
+    with kitchen(further={"carl": (8.5, 1, 0.5)}) as nest:
+        nest.scripted_world.step(15)
+        actors = {"bob": {"model": model("bob")}, "carl": {"model": model("carl")}}
+        anywhere = [{"agent": "bob", "at": (7, 1, 2), "within": 99.0}]
+        imagined = nest["/"].imagine(0, actors=actors, n=20, evidence=anywhere)
+        for history in imagined:
+            assert len({told["actual"] for told in history.hypotheses.values()}) == 1
+        actors["carl"] = {"model": model("carl", credences=[[0.9, 0.1]])}
+        nest["/"].imagine(0, actors=actors, n=2, evidence=anywhere)
+        other = {"full": doubt["full"], "half": {"containers": {CHEST: {"emerald": 1}}}}
+        actors["carl"] = {"model": bn.MindModel("carl", {"c": {"at": (7, 1, 0)}}, {"c": 1}, other)}
+        with pytest.raises(InputError, match="doubt the same elements"):
+            nest["/"].imagine(0, actors=actors, n=2)
