@@ -147,7 +147,7 @@ def test_the_storey_is_that_of_most_things_and_another_can_be_chosen(nest: bn.Ne
     low, high = nest.figure("/"), nest.figure("/", height=6)
     assert not any("down" in text for text in texts(low.drawing()))
     assert any("down" in text for text in texts(high.drawing()))
-    with pytest.raises(bn.InputError, match="give 0 to 8"):
+    with pytest.raises(bn.InputError, match="give a height from 0 to 8"):
         nest.figure("/", height=9)
 
 
