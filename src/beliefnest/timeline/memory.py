@@ -119,8 +119,7 @@ class MemoryJournal:
         self.create_on(key, base, start, length)
 
     def create_on(self, key: TimelineKey, base: ForkPoint | None, start: int, length: int) -> None:
-        """Begin an empty timeline on a base with `length` entries, in this or another journal.
-        """
+        """Begin an empty timeline on a base with `length` entries, in this or another journal."""
         if key in self._timelines:
             raise branch_taken(key)
         if base is not None:
