@@ -448,3 +448,27 @@ def test_models_of_two_agents_share_their_doubt():
         actors["carl"] = {"model": bn.MindModel("carl", {"c": {"at": (7, 1, 0)}}, {"c": 1}, other)}
         with pytest.raises(InputError, match="doubt the same elements"):
             nest["/"].imagine(0, actors=actors, n=2)
+
+
+def test_live_late_and_recorded_histories_are_the_same(tmp_path):
+    store = tmp_path / "run.db"
+
+    def drawn(simulator, until=None):
+        actors = {"bob": {"model": walking(), "fetch": TAKE}}
+        imagined = simulator.imagine(0, until, actors=actors, n=30, seed=3)
+        places = [history.state.agents["bob"].position for history in imagined]
+        return imagined.weights, imagined.log_evidence, places
+
+    with kitchen(store) as nest:
+        nest.scripted_world.step(9)
+        nest.scripted_world.place_agent("anne", (1.5, 1, 1.5))
+        live = drawn(nest["/anne"])
+        head = nest.tick
+        nest.scripted_world.place_agent("anne", (2.5, 1, 1.5))
+        assert drawn(nest["/anne"], head) == live
+        assert drawn(nest.at(head)["/anne"]) == live
+    with bn.Nest.read(store) as recorded:
+        assert drawn(recorded["/anne"], head) == live
+        assert drawn(recorded.at(head)["/anne"]) == live
+    with bn.Nest.resume(store) as resumed:
+        assert drawn(resumed["/anne"], head) == live
