@@ -12,7 +12,7 @@ from beliefnest.pictures.time_axis import NotedAct
 if TYPE_CHECKING:
     from beliefnest.minds.inference import Inference
 
-__all__ = ["bars_of", "heat_of", "plot_of", "titles"]
+__all__ = ["bars_of", "heat_of", "panels_of", "plot_of", "titles"]
 
 _MOST_NOTES = 3
 _LEAST_BITS = 0.3
@@ -49,9 +49,14 @@ def plot_of(inference: "Inference", factors: Sequence[str]) -> Figure:
     Raises:
         InputError: There is no such factor, or it is `cell`.
     """
-    panels = [_panel(inference, name) for name in factors or titles(inference)]
+    panels = panels_of(inference, factors)
     title = f"what {inference.model.agent} wants and believes, inferred from what it did"
     return posterior_plot(panels, inference.until + 1, _notes(inference), title)
+
+
+def panels_of(inference: "Inference", factors: Sequence[str] = ()) -> list[PosteriorPanel]:
+    """Return the panels of `plot_of`; arguments and errors are the same."""
+    return [_panel(inference, name) for name in factors or titles(inference)]
 
 
 def bars_of(inference: "Inference", tick: int | None) -> BarChart:

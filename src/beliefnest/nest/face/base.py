@@ -13,6 +13,7 @@ from beliefnest.timeline.records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import parse_path
 
 if TYPE_CHECKING:  # The page lies above; see `view`.
+    from beliefnest.minds.inference import Inference
     from beliefnest.viewer.page.notebook import PageView
 
 __all__ = ["NestBase"]
@@ -90,7 +91,14 @@ class NestBase(ShownNest, ABC):
         """Return the bytes that `Nest.keep` stored last under a name; None if there are none."""
         return self._recording.records.state(f"kept {name}")
 
-    def view(self, depth: int = 2, height: int = 720) -> "PageView":
+    def view(
+        self,
+        depth: int = 2,
+        height: int = 720,
+        *,
+        inference: "Inference | None" = None,
+        steps: int = 5,
+    ) -> "PageView":
         """Return the page of the nest for a notebook's cell, with the rounds of an episode.
 
         The page is made when it is first shown.
@@ -98,9 +106,12 @@ class NestBase(ShownNest, ABC):
         Args:
             depth: Number of levels of beliefs that the page shows, 0 to 4.
             height: Height of the page, pixels.
+            inference: A posterior; the page shows it over time, with the movements that changed
+                it, and tints the plan by the places that it predicts.
+            steps: Number of actions after which places are predicted.
         """
         # The only import of a higher room: a page reads nests, and rounds of episodes.
         from beliefnest.episodes.telling import told_episode
         from beliefnest.viewer.page.notebook import PageView
 
-        return PageView(self.reader, depth, height, lambda: told_episode(self))
+        return PageView(self.reader, depth, height, lambda: told_episode(self), inference, steps)

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from beliefnest.minds.inference import Inference
 from beliefnest.nest.face.reader import Reader
+from beliefnest.viewer.page.posteriors import told_inference
 from beliefnest.viewer.page.run import About
 from beliefnest.viewer.page.static import still_page
 
@@ -25,12 +27,16 @@ class PageView:
         depth: Depth of the beliefs that are included.
         height: Height of the frame in pixels.
         episode: Function that returns the rounds of the nest's episode, as for `About`.
+        inference: Posterior that is shown with the nest; None: there is none.
+        steps: Number of actions after which the posterior predicts places.
     """
 
     reader: Reader
     depth: int
     height: int
     episode: Callable[[], Mapping[str, Any] | None] = lambda: None
+    inference: Inference | None = None
+    steps: int = 5
 
     @cached_property
     def page(self) -> str:
@@ -40,8 +46,11 @@ class PageView:
             InputError: The depth is not from 0 to 4, or the page was not built with the package.
         """
         setting = self.reader.setting
-        about = About(self._title, labels=setting.labels, episode=self.episode)
-        return still_page([(self.reader, about)], self.depth)
+        told = None if self.inference is None else told_inference(self.inference, self.steps)
+        about = About(self._title, labels=setting.labels, episode=self.episode, inference=told)
+        # Predictions are drawn on the plan.
+        first = None if told is None else {"view": "plan"}
+        return still_page([(self.reader, about)], self.depth, first)
 
     @property
     def _title(self) -> str:

@@ -48,6 +48,7 @@ class About:
     labels: Mapping[Position, str] = field(default_factory=dict)
     paths: tuple[BeliefPath, ...] = ()
     episode: Callable[[], Mapping[str, Any] | None] = field(default=lambda: None)
+    inference: Mapping[str, Any] | None = None
 
 
 @dataclass
@@ -140,6 +141,7 @@ class RunData:
             "box": {"low": box.low, "shape": box.shape},
             "labels": [[*place, label] for place, label in sorted(about.labels.items())],
             "asked": [path_text(path) for path in about.paths],
+            "inference": about.inference,
         }
 
     def _begin(self, info: TimelineInfo) -> _Line:

@@ -4,6 +4,7 @@ import { Clock } from './clock.js'
 import { Detail } from './detail.js'
 import { badge, button, element, refill } from './elements.js'
 import { noteNamed } from './notes.js'
+import { Posterior } from './posterior.js'
 import { rayOf } from './ray.js'
 import { Rounds } from './rounds.js'
 import { Stages } from './stages.js'
@@ -19,12 +20,13 @@ export class App {
     this.tree = new Tree(choose, (line, path) => this.deepen(line, path))
     this.tree.again = () => this.draw()
     this.rounds = new Rounds(choose)
+    this.posterior = new Posterior(choose)
     this.stages = new Stages(choose)
     this.detail = new Detail(choose, source)
     this.clock = new Clock(choose, () => this.play())
     this.message = element('p', { class: 'message', role: 'status', hidden: true })
     this.header = element('header', {})
-    refill(root, this.header, this.message, element('main', { class: 'middle' }, element('div', { class: 'side' }, this.tree.element, this.rounds.element), this.stages.element, this.detail.element, this.clock.element))
+    refill(root, this.header, this.message, element('main', { class: 'middle' }, element('div', { class: 'side' }, this.tree.element, this.rounds.element, this.posterior.element), this.stages.element, this.detail.element, this.clock.element))
     chooser.listeners.push((_, changes) => { if ('tick' in changes) this.atEnd = false; this.later() })
     new ResizeObserver(() => this.later()).observe(this.stages.element)
     addEventListener('keydown', event => this.key(event))
@@ -50,6 +52,7 @@ export class App {
     this.drawHeader()
     this.tree.draw(scene.run, { ...scene.choice, on: scene.timeline.number, at: scene.track.path }, scene.tick)
     this.rounds.draw(scene)
+    this.posterior.draw(scene)
     this.stages.draw(scene)
     this.detail.draw(scene)
     this.clock.draw(scene)

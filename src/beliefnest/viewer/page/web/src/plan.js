@@ -2,6 +2,7 @@
 
 import { element, refill, svg } from './elements.js'
 import { apart } from './labels.js'
+import { heatOf } from './posterior.js'
 import { contentsLabel, contentsText, memoryWords, shortened, signsText } from './things.js'
 
 const LIGHT = { wall: '#7d7a78', nowhere: '#d9d5cc', unknown: '#eeeae2', hatch: '#b9b4aa', unseen: 'rgba(43,42,51,.30)', blend: '#fcfbf8' }
@@ -41,7 +42,7 @@ export class Plan {
     }
     this.labelled = this.discs(scene)
     refill(this.over,
-      ...this.wrongBlocks(scene), ...this.ray(scene), ...this.containers(scene), ...this.signs(scene), ...this.items(scene), ...this.agents(scene))
+      ...heatOf(scene, (x, z) => this.at(x, z), this.size), ...this.wrongBlocks(scene), ...this.ray(scene), ...this.containers(scene), ...this.signs(scene), ...this.items(scene), ...this.agents(scene))
   }
 
   drawBlocks (scene, width, depth) {

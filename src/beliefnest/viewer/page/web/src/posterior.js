@@ -1,0 +1,98 @@
+/** Posterior about an agent over time: a click on a moment shows which movement changed which probability. */
+
+import { element, refill, svg } from './elements.js'
+
+const WIDTH = 220
+const HIGH = 44
+const DASHES = ['', '5 3', '2 2', '8 3']
+const HEAT = '#4a1486'
+
+export class Posterior {
+  constructor (choose) {
+    this.choose = choose
+    this.about = element('p', { class: 'about' })
+    this.panels = element('div', {})
+    this.changes = element('ul', { class: 'changes', 'aria-label': 'what changed at this tick', 'aria-live': 'polite' })
+    this.heat = element('p', { class: 'about' })
+    this.element = element('section', { class: 'posterior', 'aria-label': 'inference', role: 'region', tabindex: '0', hidden: true }, element('h2', {}, 'Inferred'), this.about, this.changes, this.panels, this.heat)
+    this.shown = null
+  }
+
+  draw ({ run, timeline, tick }) {
+    const told = run.head.inference
+    this.element.hidden = !told || timeline.number !== 0
+    if (this.element.hidden) return
+    const version = `${run.number} ${tick}`
+    if (version === this.shown) return
+    this.shown = version
+    const number = latest(told.ticks, tick)
+    refill(this.about, `What ${told.agent} wants and believes, by what happened up to tick ${tick}.`)
+    refill(this.changes, ...told.changes.filter(([t]) => t === tick).map(([, text, factors]) => element('li', {},
+      `${told.agent} ${text}: `, element('strong', {}, factors.length ? factors.slice(0, 4).map(([name, bits]) => `${name} ${bits.toFixed(2)} bits`).join(', ') : 'changes nothing'))))
+    refill(this.panels, ...told.panels.map(panel => this.panel(told, panel, number, tick)))
+    refill(this.heat, `The tint on the plan shows where ${told.agent} will be after ${told.steps} ${told.steps === 1 ? 'action' : 'actions'}.`)
+  }
+
+  panel (told, panel, number, tick) {
+    const [first, last] = [told.ticks[0], told.ticks.at(-1) + 1]
+    const x = t => WIDTH * (t - first) / (last - first)
+    const y = value => HIGH * (panel.high - value) / (panel.high - panel.low)
+    const pick = event => {
+      const box = chart.getBoundingClientRect()
+      this.choose({ tick: Math.min(last - 1, first + Math.floor((event.clientX - box.left) / box.width * (last - first))) })
+    }
+    const shapes = panel.stacked ? areas(told, panel, last, x, y) : curves(told, panel, last, x, y)
+    const now = x(Math.max(first, Math.min(last - 1, tick)) + 0.5)
+    const chart = svg('svg', { viewBox: `0 0 ${WIDTH} ${HIGH}`, preserveAspectRatio: 'none', role: 'img', 'aria-label': `${panel.title}, over time`, onclick: pick },
+      ...shapes, svg('line', { class: 'now', x1: now, x2: now, y1: 0, y2: HIGH }))
+    return element('figure', {}, element('h3', {}, panel.title), chart,
+      element('ul', { class: 'legend' }, ...panel.series.map(([name, colour, values], at) => element('li', {}, swatch(panel, colour, at), ` ${name} `, element('strong', {}, worded(panel, values[Math.max(0, number)]))))))
+  }
+}
+
+function swatch (panel, colour, at) {
+  return svg('svg', { viewBox: '0 0 16 8', width: 16, height: 8, 'aria-hidden': 'true' }, panel.stacked
+    ? svg('rect', { width: 16, height: 8, style: { fill: colour } })
+    : svg('line', { x1: 0, x2: 16, y1: 4, y2: 4, 'stroke-width': 3, 'stroke-dasharray': DASHES[at % DASHES.length], style: { stroke: colour } }))
+}
+
+function worded (panel, value) {
+  return panel.stacked ? `${Math.round(100 * value)} %` : String(Math.round(10 * value) / 10)
+}
+
+/** Return the corners of a curve that holds each value until the next tick. */
+function steps (ticks, values, last, x, y) {
+  return values.flatMap((value, at) => [[x(ticks[at]), y(value)], [x(ticks[at + 1] ?? last), y(value)]])
+}
+
+function curves ({ ticks }, panel, last, x, y) {
+  return panel.series.map(([, colour, values], at) => svg('polyline', {
+    class: 'curve', points: steps(ticks, values, last, x, y).join(' '), 'stroke-dasharray': DASHES[at % DASHES.length], style: { stroke: colour }
+  }))
+}
+
+function areas ({ ticks }, panel, last, x, y) {
+  let below = ticks.map(() => 0)
+  return panel.series.map(([, colour, values]) => {
+    const above = values.map((value, at) => below[at] + value)
+    const points = [...steps(ticks, above, last, x, y), ...steps(ticks, below, last, x, y).reverse()]
+    below = above
+    return svg('polygon', { class: 'area', points: points.join(' '), style: { fill: colour } })
+  })
+}
+
+/** Return the number of the last tick that is not after a tick, or -1. @returns {number} */
+function latest (ticks, tick) {
+  return ticks.findLastIndex(each => each <= tick)
+}
+
+/** Return squares on a plan, tinted by the root of the probability that the agent will be there. */
+export function heatOf ({ run, timeline, tick }, at, size) {
+  const told = timeline.number === 0 ? run.head.inference : null
+  const rows = told ? told.heats[latest(told.heats.map(([t]) => t), tick)]?.[1] ?? [] : []
+  return rows.map(([x, z, share]) => {
+    const [left, top] = at(x, z)
+    return svg('rect', { class: 'heat', x: left, y: top, width: size, height: size, style: { fill: HEAT, 'fill-opacity': 0.75 * Math.sqrt(share) } },
+      svg('title', {}, `${told.agent} will be here after ${told.steps}: ${Math.round(100 * share)} %`))
+  })
+}
