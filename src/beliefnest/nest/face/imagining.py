@@ -1,4 +1,4 @@
-"""What happened unseen: weighted histories that explain what a node's owner perceived."""
+"""Imagination of unseen events: weighted histories that explain an owner's percepts."""
 
 import math
 import warnings
@@ -41,13 +41,13 @@ if TYPE_CHECKING:  # Pictures take long to import, and few histories are drawn.
 __all__ = ["Faces", "History", "ImaginationWarning", "Imagined", "imagine_in"]
 
 _FEW = 0.1
-"""Share of the histories below which the effective number is warned of."""
+"""Share of the histories below which a small effective number raises a warning."""
 
 _SUM_SLACK = 1e-9
 
 
 class ImaginationWarning(UserWarning):
-    """Few histories explain what was perceived."""
+    """Warning that few histories explain the percepts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,13 +86,13 @@ class _WorldFacts:
 
 
 class History:
-    """One way in which things may have gone on: a branch that is recorded nowhere.
+    """Possible course of events, as a branch that is not recorded.
 
-    Belief paths are those inside it: `/` is what is the case in it, `/bob` what Bob believes in it.
+    Belief paths are those inside the history: `/` is its world, `/bob` is Bob's belief in it.
 
     Attributes:
-        number: Its number among those that were drawn.
-        weight: Its probability among them.
+        number: Number of the history among those that were drawn.
+        weight: Probability of the history among them.
     """
 
     def __init__(self, imagined: "Imagined", number: int, particle: Particle) -> None:
@@ -106,7 +106,7 @@ class History:
 
     @property
     def hypotheses(self) -> Mapping[str, Mapping[str, float | str]]:
-        """What was drawn of the minds of agents whose candidate is a model, by factor."""
+        """The drawn hypotheses by factor, for each agent whose candidate is a model."""
         return {
             name: each.strategy.told(self._course.draws[name])
             for name, each in self._course.candidates.items()
@@ -115,7 +115,7 @@ class History:
 
     @property
     def failed(self) -> Mapping[str, str]:
-        """Why programs failed, by agent."""
+        """The reasons why programs failed, by agent."""
         return {name: str(fault) for name, fault in self._course.faults.items()}
 
     @property
@@ -125,15 +125,15 @@ class History:
 
     @property
     def state(self) -> State:
-        """What is the case in it in the end."""
+        """The state of the history's world at its end."""
         state: State = self["/"].state
         return state
 
     def at(self, tick: int) -> Any:
-        """Return it as it was at a tick.
+        """Return the history's world at a tick.
 
         Raises:
-            TickError: The tick is in its future, or before the start of everything.
+            TickError: The tick is after the end of the history, or before the start of the run.
         """
         recording = self._imagined._recorded(self._course)
         then = tick_of(tick)
@@ -348,7 +348,7 @@ class _Doubt:
 
 @dataclass(eq=False)
 class _Starts:
-    """What histories begin with."""
+    """Beginnings of histories, by the alternatives drawn."""
 
     recording: Recording
     path: BeliefPath
@@ -633,7 +633,7 @@ def _strategy(recording: Recording, start: ModelStart, starts: _Starts, name: st
 
 @dataclass(eq=False)
 class _Policies:
-    """Shows courses under way to policies."""
+    """Policies as programs: shows each policy the course so far."""
 
     side: Recording
     starts: _Starts

@@ -163,33 +163,33 @@ class ShownSimulator(ABC):
         tolerance: tuple[int, int] = (0, 0),
         on_progress: Callable[[str, int, int], None] | None = None,
     ) -> "Imagined":
-        """Draw what may have happened unseen, as weighted histories; nothing is recorded.
+        """Draw possible courses of unseen events as weighted histories, without recording them.
 
-        Each history is a fork of this simulator at `since`, in a scripted world of its own, in
-        which each actor follows one of its candidates. Other agents do what this simulator holds
-        that they did. A history counts if the owner of this belief would have perceived in it what
-        it perceived; see docs/imagine.md.
+        Each history is a fork of this simulator at `since`, in a scripted world of its own. Each
+        actor follows one of its candidates. Other agents repeat the acts that this simulator
+        knows of them. A history counts if the owner of this belief would have had the same
+        percepts in it; see docs/imagine.md.
 
         Args:
-            since: The tick at which histories begin.
-            until: The tick at which they end; None: the tick that the simulator shows.
+            since: Tick at which histories begin.
+            until: Tick at which they end; None: the tick that the simulator shows.
             actors: Candidates by name, by agent. A candidate is a program (JavaScript; empty:
                 nothing), a `MindModel` of that agent, or a policy: a function that takes the
                 agent's simulator in the history and returns its next program.
-            n: How many histories.
-            seed: Decides about all that is random.
+            n: Number of histories.
+            seed: Seed of every random choice.
             weights: Probabilities of candidates by name, by agent; None: uniform.
-            evidence: Conditions at `until` that count in place of what was perceived, in the
-                language of goals, each with an optional probability of being `mistaken`.
-            tolerance: Cells by which agents may be elsewhere, and ticks by which things may have
-                happened earlier or later.
-            on_progress: Takes what is being done, how many ticks of it, and of how many.
+            evidence: Conditions at `until` that replace the percepts as evidence, in the language
+                of goals, each with an optional probability of being `mistaken`.
+            tolerance: Number of cells by which positions of agents may differ, and number of ticks
+                by which events may come earlier or later.
+            on_progress: Function of a description, the number of ticks done, and of all ticks.
 
         Raises:
-            InputError: An argument is of the wrong form, an actor's place is not known, or a
+            InputError: An argument has the wrong form, an actor's position is unknown, or a
                 candidate's program has a syntax error.
             PathError: There is no such agent.
-            TickError: A tick lies in the future or before the start, or `since` after `until`.
+            TickError: A tick is in the future or before the start, or `since` is after `until`.
         """
         from beliefnest.nest.face.imagining import Faces, imagine_in
 
