@@ -136,6 +136,9 @@ class Course:
         touched: Containers whose contents changed.
         contradiction: What others were seen to do that is not possible in it; None: nothing.
         faults: Why programs failed, by agent.
+        is_fixed: True if all candidates are programs.
+        shared_from: How many random numbers had been drawn when histories began to share it; they
+            can as long as no other is drawn.
     """
 
     def __init__(
@@ -151,6 +154,7 @@ class Course:
         self.frames: list[Frame] = []
         self.touched: frozenset[Position] = frozenset()
         self.contradiction: str | None = None
+        self.shared_from = 0
         self.faults: dict[str, Fault] = {}
         self.world = plan.world(drawn)
         self.start = self.world.now
@@ -158,8 +162,8 @@ class Course:
         self._moved: dict[tuple[Position, str], int] = {}
         self._changes = Changes()
         self._latest: Frame | None = None
-        self._is_fixed = all(each.is_fixed for each in candidates.values())
-        self._has_drawn = False
+        self.is_fixed = all(each.is_fixed for each in candidates.values())
+        self._ended_draws = 0
         self._programs: dict[str, RunningPrograms] = {}
         self.world.listen(self._take)
         self._seed(seeds[0][1])
@@ -176,9 +180,9 @@ class Course:
         return self.world.now
 
     @property
-    def is_shared(self) -> bool:
-        """True if histories with other seeds would have gone the same way so far."""
-        return self._is_fixed and not self._has_drawn
+    def numbers_drawn(self) -> int:
+        """Number of random numbers that its programs have drawn."""
+        return self._ended_draws + sum(each.draws for each in self._programs.values())
 
     def again(self, seeds: Seeds) -> "Course":
         """Return the same course, which goes on with other seeds that begin as its own do."""
@@ -266,16 +270,15 @@ class Course:
             self.plan.grounds,
             self.plan.engines,
         )
-        self._has_drawn |= programs.draws > 0
         self._programs[name] = programs
 
     def _settle(self) -> None:
         for name, programs in list(self._programs.items()):
             programs.settle()
-            self._has_drawn = self._has_drawn or programs.draws > 0
             if not programs.are_over:
                 continue
             del self._programs[name]
+            self._ended_draws += programs.draws
             programs.leave()
             fault = programs.results()[name].error
             if fault is not None:

@@ -115,17 +115,22 @@ class Drawing:
             seeds: Seeds = ((-1, f"{self.seed} {number}"),)
             key = (drawn.alternatives, tuple(each.name for each in drawn.candidates.values()))
             course = shared.get(key)
-            if course is None or not course.is_shared:
+            if course is None or not course.is_fixed or course.numbers_drawn:
                 course = Course(self.plan, drawn.alternatives, drawn.candidates, drawn.draws, seeds)
                 shared[key] = course
             self.particles.append(Particle(number, course, seeds, weight))
 
     def _split(self, glimpses: dict[Course, Glimpse]) -> None:
         """Give each history a course of its own whose program has drawn a number."""
-        sharing: dict[Course, int] = Counter(particle.course for particle in self.particles)
+        sharing = Counter(particle.course for particle in self.particles)
+        split = {
+            course
+            for course, count in sharing.items()
+            if count > 1 and course.numbers_drawn > course.shared_from
+        }
         for particle in self.particles:
             course = particle.course
-            if sharing[course] < 2 or course.is_shared or particle.seeds == course.seeds:
+            if course not in split or sharing[course] < 2 or particle.seeds == course.seeds:
                 continue
             sharing[course] -= 1
             particle.course = Course(
@@ -192,7 +197,6 @@ class Drawing:
         count = len(self.drawn)
         chance = Random(f"{self.seed} resampling at {tick}")
         weights = [particle.weight for particle in self.particles]
-        sharing = Counter(particle.course for particle in self.particles)
         chosen: list[Particle] = []
         copies: Counter[int] = Counter()
         for number in spread(weights, count, chance):
@@ -204,12 +208,13 @@ class Drawing:
                 continue
             seeds = (*particle.seeds, (tick, f"{particle.seeds[-1][1]} {tick}.{copies[number]}"))
             course = particle.course
-            if not course.is_shared:
+            if course.is_fixed:
+                course.shared_from = course.numbers_drawn
+            else:
                 window = self._windows.get(course)
                 course = course.again(seeds)
                 if window is not None:
                     self._windows[course] = window.copy()
-            sharing[course] += 1
             chosen.append(Particle(particle.ancestor, course, seeds, 1 / count))
         self.particles = chosen
 
