@@ -256,6 +256,8 @@ class _Planning:
             name: _Course(Performer(self._guess(mind, name, 0)), 0, self._bounds.changes)
             for name in self._imagined(mind)
         }
+        if self._is_reached(first.mind):
+            first.reached = 0
         return mind, first
 
     def _spend_round(self, node: _Node, calls: Sequence[Call]) -> None:
@@ -374,13 +376,13 @@ class _Planning:
             is_visible(each, mind) and held(each, mind) for each in goal.never
         ):
             node.violated = node.elapsed
-        if (
-            node.reached is None
-            and node.violated is None
-            and goal.reach
-            and all(is_visible(each, mind) and held(each, mind) for each in goal.reach)
-        ):
+        if node.reached is None and node.violated is None and self._is_reached(mind):
             node.reached = node.elapsed
+
+    def _is_reached(self, mind: Imagination) -> bool:
+        """Return True if there is something to reach and all of it holds, as far as visible."""
+        reach = self._goal.reach
+        return bool(reach) and all(is_visible(each, mind) and held(each, mind) for each in reach)
 
     def _change_minds(self, node: _Node) -> None:
         """Let those other agents replan that are done or may have perceived something new."""
