@@ -181,13 +181,13 @@ def hidden_in(content: dict[str, Any], agent: str, unseen: Any) -> bool:
     return bool(chests) or len(unseen) > 0
 
 
-ALL_SEEN = ("watch-and-help",)
-"""Tasks in which everybody sees all there is; what they hide are goals (test_hidden_goals.py)."""
+LEFT_OUT = ("watch-and-help",)
+"""Tasks in which everybody sees all there is; they hide goals (test_hidden_goals.py)."""
 
 AGENTS = [
     (name, agent)
     for name in bn.Task.names()
-    if name not in ALL_SEEN
+    if name not in LEFT_OUT
     for agent in bn.Task.load(name).agents[: at_night(9, 1)]
 ]
 
