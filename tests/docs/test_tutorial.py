@@ -48,10 +48,8 @@ def test_it_leads_from_an_empty_folder_to_a_result(
 
     perception, step, expectation = blocks("yaml")
     changed = re.sub(r"perception: .*\n", perception, written)
-    changed = changed.replace("\n# What simulators hold", f"{step}\n# What simulators hold")
-    changed = changed.replace(
-        "\n# What a model is asked", f"{expectation}\n# What a model is asked"
-    )
+    changed = changed.replace("\n# Expected states", f"{step}\n# Expected states")
+    changed = changed.replace("\n# Requests to a model", f"{expectation}\n# Requests to a model")
     assert len(changed.splitlines()) == len(written.splitlines()) + 5
     Path("boxes.yaml").write_text(changed, encoding="utf-8")
     assert run_command_line(["run", "boxes.yaml", "--out", "changed"]) == 0
