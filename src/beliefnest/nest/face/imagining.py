@@ -52,10 +52,10 @@ class ImaginationWarning(UserWarning):
 
 @dataclass(frozen=True, slots=True)
 class Faces:
-    """How histories are shown to their users.
+    """Functions that make the simulators in which users see histories.
 
     Attributes:
-        past: Makes the read-only simulator of a path at a tick.
+        past: Function that makes the read-only simulator of a path at a tick.
         live: Makes the simulator that histories are of, able to act, on other timelines.
     """
 
