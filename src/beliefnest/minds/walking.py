@@ -41,7 +41,7 @@ class Draw:
 
 @dataclass(frozen=True, slots=True)
 class Changes:
-    """What has changed in a history since it began.
+    """Changes of a history since it began.
 
     Attributes:
         blocks: Indices into the grid with the new block states.
@@ -74,7 +74,7 @@ class Act:
 
 
 class Strategy:
-    """How the agent of a model chooses, for all hypotheses and all that may change.
+    """Choices of the agent of a model, for all hypotheses and all changes.
 
     Args:
         model: The hypotheses.

@@ -19,7 +19,7 @@ _MOST_GRIDS = 4096
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """What may differ.
+    """Differences that are allowed.
 
     Attributes:
         cells: Greatest distance of an agent from where it was seen, in cells along each axis.
@@ -32,7 +32,7 @@ class Tolerance:
 
 @dataclass(frozen=True, eq=False)
 class Witness:
-    """Who perceived what.
+    """Percepts of an observer, and all that they are compared by.
 
     Attributes:
         owner: The observer; None: it is nobody, and everything is perceived.

@@ -38,7 +38,7 @@ Seeds = tuple[tuple[int, str], ...]
 
 @dataclass(frozen=True)
 class Candidate:
-    """What an agent may have done.
+    """A course of action that an agent may have followed.
 
     Attributes:
         name: Its name.
@@ -60,7 +60,7 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class CoursePlan:
-    """What all courses of one call have in common.
+    """Things that all courses of one call have in common.
 
     Attributes:
         agents: Those that are in question, in order.
@@ -76,7 +76,7 @@ class CoursePlan:
 
     @cached_property
     def grounds(self) -> Grounds:
-        """What was made of grids of blocks."""
+        """Cache of the data of grids."""
         return Grounds()
 
     @cached_property
@@ -102,7 +102,7 @@ class CoursePlan:
 
 @dataclass(frozen=True, slots=True)
 class Glimpse:
-    """What can be perceived of a course at one tick.
+    """Perceptible facts of a course at one tick.
 
     Attributes:
         tick: When.
@@ -440,4 +440,4 @@ _AS_SEEN: Mapping[EventKind, Callable[[ScriptedWorld, str, Mapping[str, Any]], N
     EventKind.CHAT: _spoken,
     EventKind.GIVE_ITEM_TO_OTHER: lambda w, name, d: w.give(name, d["other"], d["items"]),
 }
-"""How an agent that is not in question does what it was seen to do."""
+"""Acts by which an agent that is not in question repeats what it was seen to do."""

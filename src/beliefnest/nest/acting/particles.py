@@ -38,7 +38,7 @@ class Particle:
 
 @dataclass(frozen=True)
 class Drawn:
-    """What was drawn for one history at the beginning."""
+    """Things drawn for one history at the beginning."""
 
     alternatives: tuple[int, ...]
     candidates: Mapping[str, Candidate]

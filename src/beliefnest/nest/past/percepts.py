@@ -39,7 +39,7 @@ Deed = tuple[str, str, Position, tuple[tuple[str, int], ...]]
 
 @dataclass(frozen=True, eq=False)
 class Percept:
-    """What the owner of a node perceived at one tick.
+    """Percept of the owner of a node at one tick.
 
     Attributes:
         tick: When; it goes on until the next one.
