@@ -14,6 +14,7 @@ nightly: ## All that CI does, with every Python, Ray, and many more examples, ki
 
 check: ## Linters and type checkers
 	ruff check
+	python tools/openers.py
 	ruff format --check
 	mypy
 	mypy tools

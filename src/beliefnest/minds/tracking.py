@@ -279,7 +279,7 @@ class Tracker:
         return self._seen(stage, self.states, self._cell)
 
     def _moved(self, moment: Moment, before: Position, cell: Position) -> States:
-        """A change of cell: a step, or in one tick a way of several."""
+        """Advance over a change of cell: one step, or several steps in one tick."""
         stage = self._stage(before)
         if cell not in stage.index:
             # The observer did not know until now that one can stand there.
@@ -362,7 +362,7 @@ class Tracker:
         ]
 
     def _did(self, stage: Stage, moment: Moment) -> States:
-        """A perceived opening or act on a goal."""
+        """Advance over a perceived opening or act on a goal."""
         steps = stage.moves.shape[2]
         if moment.act is not None:
             action = 1 + steps + len(stage.boxes) + moment.act
@@ -386,7 +386,7 @@ class Tracker:
         return tuple(found)
 
     def _end(self, tick: int) -> None:
-        """The act after the last tick."""
+        """Advance over the act after the last tick."""
         found = []
         for actual, weights in enumerate(self.states):
             sums = self._sums(actual, tick, weights)
@@ -478,7 +478,7 @@ class Tracker:
     def _hidden(
         self, moment: Moment, actual: int, weights: Mapping[State, Floats]
     ) -> Mapping[State, Floats]:
-        """The states in which the observer, if it is present, does not see the agent."""
+        """Return the states in which the observer, if it is present, does not see the agent."""
         if moment.watch is None or not weights:
             return weights
         feet, yaw, pitch = moment.watch
@@ -533,7 +533,7 @@ class Tracker:
     def _again_through(
         self, gap: _Gap, actual: int, count: int, moment: Moment
     ) -> Mapping[State, Floats]:
-        """A gap with as many actions as are given, spread evenly over its ticks."""
+        """Advance over a gap, with a number of actions spread evenly over its ticks."""
         assert moment.cell is not None
         weights = gap.before[actual]
         del self.trail[actual][gap.marks[actual] :]

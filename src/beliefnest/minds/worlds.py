@@ -78,7 +78,7 @@ class Worlds:
         self._sight, self._agent, self._transparent = sight, agent, transparent
 
     def geometry(self, actual: int) -> Geometry:
-        """The blocks of an alternative, prepared for lines of sight."""
+        """Return the blocks of an alternative, prepared for lines of sight."""
         return self._geometry_of[actual]
 
     @cached_property
@@ -200,7 +200,7 @@ class Worlds:
         return percepts
 
     def _candidates(self, eye: Point) -> npt.NDArray[np.int64]:
-        """Indices of cells whose sight from a place can depend on the alternative."""
+        """Return the indices of cells whose sight from a place can depend on the alternative."""
         far = self._sight.max_visible_distance
         middles, place = self._middles, np.array(eye)
         wanted = np.zeros(len(middles), dtype=np.bool_)

@@ -139,7 +139,7 @@ class Expecting:
 
     @property
     def _spoken(self) -> int:
-        """How many utterances there were since the first round began."""
+        """Number of utterances since the first round began."""
         view = self._view
         start = view.tick - view.round * view.brief.whole_round
         return sum(tick > start for tick, _, _ in view.state.chat)

@@ -59,7 +59,7 @@ def infer_in(
 
 @dataclass(frozen=True, eq=False)
 class ModelStart:
-    """What a model begins with at one tick of a node.
+    """Start of a model at one tick of a node.
 
     Attributes:
         model: The model.

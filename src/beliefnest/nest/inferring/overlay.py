@@ -97,7 +97,7 @@ class Overlay:
         )
 
     def truth(self, claim: Claim) -> int:
-        """The alternatives in which a claim about a doubted element is true; -1: it is of none."""
+        """Return the alternatives in which a claim is true; -1: it is about no doubted element."""
         x, y, z = (math.floor(part) for part in claim.place)
         place = (x, y, z)
         if claim.kind in (ClaimKind.LOCATED, ClaimKind.ABSENT):

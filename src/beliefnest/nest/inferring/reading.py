@@ -273,7 +273,7 @@ class Reading:
         return scene
 
     def _cell(self, scene: Scene, pose: Pose, *, on_ground: bool) -> Position:
-        """The cell an agent is in: while it jumps, or over an edge, the one it comes from."""
+        """Return the cell of an agent: in a jump or over an edge, the cell that it comes from."""
         x, y, z = (math.floor(part) for part in pose[0])
         for cell in ((x, y, z), (x, y - 1, z)):
             if scene.can_stand(cell):
