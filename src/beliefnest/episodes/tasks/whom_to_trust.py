@@ -1,4 +1,4 @@
-"""Whom to trust: a speaker is a helper or a deceiver (Koenig and Harris 2005; Sodian 1991).
+"""Task of trust: a speaker is a helper or a deceiver (Koenig and Harris 2005; Sodian 1991).
 
 Bob wants an apple and a treasure. The apple is in one of two chests beside him, the treasure at one
 end of the hall, and there is only time to go to one end. Eve knows where both are. She wants him to
