@@ -1,0 +1,61 @@
+"""Findings of an inference: effects of evidence, impossible evidence, sampled courses."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.world.values import Position
+
+__all__ = ["Change", "Impossible", "SampledPath"]
+
+
+@dataclass(frozen=True, slots=True)
+class Impossible:
+    """The first piece of evidence that no hypothesis explains.
+
+    Attributes:
+        tick: When.
+        text: What the agent did.
+    """
+
+    tick: int
+    text: str
+
+    def __str__(self) -> str:
+        return f"tick {self.tick}: the agent {self.text}, which no hypothesis explains"
+
+
+@dataclass(frozen=True)
+class SampledPath:
+    """A course that agrees with the evidence.
+
+    Attributes:
+        hypothesis: Values of the factors that explain it, with their probability.
+        cells: By tick where the agent is.
+    """
+
+    hypothesis: Mapping[str, Any]
+    cells: Mapping[int, Position]
+
+
+@dataclass(frozen=True)
+class Change:
+    """Effect of one piece of evidence on the marginals.
+
+    Attributes:
+        tick: When.
+        text: The evidence in words.
+        bits: By factor, the divergence of its marginal after the step from that before
+            (Kullback and Leibler), in bits.
+        is_movement: Whether the agent did something, or stayed.
+    """
+
+    tick: int
+    text: str
+    bits: Mapping[str, float]
+    is_movement: bool = False
+
+    def __str__(self) -> str:
+        told = sorted(self.bits.items(), key=lambda pair: -pair[1])
+        words = ", ".join(f"{name} by {bits:.2f} bits" for name, bits in told if bits >= 0.005)
+        return f"tick {self.tick}: the agent {self.text}; this changes {words or 'nothing'}"
