@@ -41,7 +41,9 @@ LOOK = """
 await goToPosition(bot, new Vec3(X, -51, -2), 1)
 const found = {}
 for (const [side, x] of [['left', X - 2], ['right', X + 2]]) {
-  const chest = await bot.openContainer(bot.blockAt(new Vec3(x, -51, -4)))
+  const block = () => bot.blockAt(new Vec3(x, -51, -4))
+  while (block()?.name !== 'chest') await waitTicks(bot, 1)
+  const chest = await bot.openContainer(block())
   found[side] = Object.fromEntries(chest.containerItems().map(({name, count}) => [name, count]))
   await bot.closeWindow(chest)
 }
