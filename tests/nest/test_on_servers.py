@@ -269,7 +269,7 @@ def test_a_server_that_stands_still_for_a_moment_is_waited_for(console):
         assert nest["/"].state.containers[LEFT].items == {"diamond": 1}
 
 
-@pytest.mark.parametrize(("fault", "said"), [("kill", "was lost"), ("freeze", "not gone on")])
+@pytest.mark.parametrize(("fault", "said"), [("kill", "was lost"), ("freeze", "has not answered")])
 def test_a_server_that_ends_leaves_a_run_that_can_be_resumed(fault, said, tmp_path):
     store = tmp_path / "run.bn"
     with GameServer() as first:
