@@ -383,7 +383,7 @@ def test_predictions_explanations_and_tables():
         ({"actual": "other"}, "one of L, M, none"),
         ({"actual": {"L": 0.5}}, "sum to 0.5"),
         ({"actual": {"X": 1}}, "X"),
-        ({"utilities": {"K": [1]}}, "miss"),
+        ({"utilities": {"K": [1]}}, "lack values"),
         ({"goals": {"K": {"block": "no_such"}}}, "does not exist"),
         ({"doubt": {"a": {"blocks": {(0, 0, 0): "stone"}}, "b": {}}}, "same elements"),
         (

@@ -412,11 +412,10 @@ def _utility_rows(utilities: object, goals: Sequence[str]) -> Floats:
 def _check_goal_names(given: Mapping[object, object], goals: Sequence[str]) -> None:
     unknown = [str(name) for name in given if name not in goals]
     missing = [name for name in goals if name not in given]
-    if unknown or missing:
-        raise InputError(
-            f"utilities name {', '.join(unknown) or 'no unknown goals'} and miss "
-            f"{', '.join(missing) or 'none'}; the goals are {', '.join(goals)}"
-        )
+    faults = [f"name unknown goals ({', '.join(unknown)})"] if unknown else []
+    faults += [f"lack values for {', '.join(missing)}"] if missing else []
+    if faults:
+        raise InputError(f"utilities {' and '.join(faults)}; the goals are {', '.join(goals)}")
 
 
 def _credence_rows(given: object, names: Sequence[str], doubts: bool) -> Floats:
