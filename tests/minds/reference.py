@@ -52,7 +52,7 @@ class Question:
 
 @dataclass(frozen=True)
 class Moment:
-    """What the observer's node holds at one tick, in plain values."""
+    """State of the observer's node at one tick, in plain values."""
 
     tick: int
     box: Any

@@ -296,7 +296,7 @@ class Inference:
         ]
         return f"{head}, ticks {self.since} to {self.until}: {', '.join(means)}>"
 
-    # What stands behind them
+    # Helpers of the questions above
 
     def _number(self, tick: int | None) -> int:
         if tick is None:

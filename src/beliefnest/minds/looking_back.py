@@ -110,7 +110,7 @@ def _chance(hypotheses: Hypotheses, action: Action | None) -> Floats | None:
 
 def _at(chance: Floats, hypothesis: tuple[int, int, int]) -> float:
     b, u, w = hypothesis
-    # What is certain has one value for all credences.
+    # A certain knowledge has one value for all credences.
     return float(chance[b, u, min(w, chance.shape[2] - 1)])
 
 

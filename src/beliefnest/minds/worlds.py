@@ -173,7 +173,7 @@ class Worlds:
             by_percept.setdefault(percept, []).append(number)
         for percept, group in by_percept.items():
             if len({id(self._geometry_of[number]) for number in group}) > 1:
-                # What is in doubt looks the same in these, but may hide different things.
+                # Doubted elements look the same in these, but may hide different things.
                 behind = self._percepts(look, self._candidates(look[0]), group, all_round)
                 for number, further in zip(group, behind, strict=True):
                     percepts[number] = (percept, further)

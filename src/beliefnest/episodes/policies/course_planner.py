@@ -249,7 +249,7 @@ class _Planning:
     def _begun(self, mind: Imagination) -> tuple[Imagination, _Node]:
         """Return what the agent takes for real, and the course in which it has done nothing."""
         if self._order and self._opponents:
-            # Who reckons with what others are after does not take their word.
+            # A planner of order 1 or more does not believe what its opponents claim.
             mind, self._doubted = mind.doubting(self._opponents)
         first = _Node(mind.fork() if self._order else mind.bare(), {})
         first.others = {

@@ -368,7 +368,7 @@ class Course:
         except WorldError as fault:
             self.contradiction = f"{name} was seen to {event.kind}, but {fault}"
 
-    # What has happened
+    # Record of what happened
 
     def _take(self, frame: Frame) -> None:
         self._latest = frame

@@ -430,7 +430,7 @@ def imagine_in(
     base, end = checked.base, checked.end
     journal, history = recording.journal, recording.history
     percepts = percepts_of(recording, path, base, end)
-    # What the owner did not know and sees later was there all the time, for all anybody knows.
+    # Blocks that the owner first sees later are taken to have been there all the time.
     believed = percepts[0][1]
     filled = _filled(recording, believed, percepts)
     snapshot = start_of(journal, history, path, base, has_physics=False).snapshot

@@ -84,7 +84,7 @@ def films_from(content: Mapping[str, Any]) -> list[Film]:
         world = worlds[index - 1]
         if not isinstance(world, Mapping):
             raise InputError(f"world {index} is {world!r}; give a mapping with size, wall, spot1")
-        # What a film does not say its world says, and what that does not say the file.
+        # A key that the film lacks is read from its world, and then from the file.
         said = {**content, **world, **entry}
         films.append(_Reader(owner, world, entry, said).film(groups))
     names = [film.name for film in films]

@@ -11,7 +11,7 @@ class Earshot {
    */
   constructor (serv, personOf) {
     this.personOf = personOf
-    // Whether everybody hears everything; lines are then sent at once.
+    // True if everybody hears everything; lines are then sent at once.
     this.isGlobal = false
     // Lines that no frame contains yet, oldest first.
     this.said = []
