@@ -4,7 +4,9 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 
+from beliefnest import Nest
 from beliefnest.cli.app import run_command_line
 from beliefnest.scenarios import Scenario
 
@@ -36,11 +38,17 @@ def test_the_scenario_of_the_guide_does_as_it_expects(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     guide = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
-    text, _ = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    text, beliefs, _ = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     Path("boxes.yaml").write_text(text, encoding="utf-8")
     assert run_command_line(["run", "boxes.yaml", "--out", "run"]) == 0
     assert {scenario.condition for scenario in Scenario.load_all("boxes.yaml")} == {1, 2}
+    with Nest.open(
+        Scenario.from_mapping(yaml.safe_load(text + beliefs), condition=1), world="scripted"
+    ) as nest:
+        known = {path: nest[path].state.containers for path in ("/ann/bob", "/bob/ann")}
+    assert known["/ann/bob"][4, 1, 2].items == {"apple": 3}
+    assert known["/bob/ann"][2, 1, 2].complete
 
 
 def test_the_readme_begins_with_the_two_commands() -> None:

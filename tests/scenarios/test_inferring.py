@@ -215,7 +215,7 @@ def test_the_food_trucks_come_out_as_expected_in_the_scripted_world(condition):
 
 def test_the_probe_of_the_guide_comes_out_as_it_expects():
     guide = (Path(__file__).parents[2] / "docs/scenarios.md").read_text()
-    _, text = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    *_, text = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
     written = dict(bn.Scenario.load("food-trucks", 3).written)
     outcome = outcome_of({**written, **YAML(typ="safe").load(text)})
     assert outcome.ok, outcome.why_not
