@@ -74,7 +74,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     here = PurePosixPath(source).parent
 
     if "\n## " not in markdown:
-        # Nothing to list: the room of the contents goes to the page, whose tables may be wide.
+        # Without headings to list, the page takes the room of the contents, since its tables may be wide.
         page.meta["hide"] = ["toc"]
 
     def lead(match: re.Match[str]) -> str:
@@ -106,7 +106,7 @@ def on_post_page(output: str, page: Page, config: MkDocsConfig) -> str:
     )
     if foreign := re.search(loads, output):
         raise PluginError(f"{page.file.src_uri} loads from elsewhere: {foreign[0]}")
-    # Whether somebody answers there is asked by `make links`.
+    # `make links` checks these addresses.
     for link in re.findall(r"<a\b[^>]*\bhref=\"?(\w+:[^\s\">]*)", output):
         address = urlsplit(link)
         if address.scheme not in {"https", "http"} or "." not in (address.hostname or ""):

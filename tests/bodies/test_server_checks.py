@@ -162,7 +162,7 @@ def test_what_stands_in_the_box_is_not_touched_unless_asked_and_put_back(server)
     body = world.open_body("/sally", "seed", start(), lambda frame: None)
     assert body.snapshot().containers == start().containers
     world.close()
-    # What is there now is what was there before.
+    # The scene is the same as before.
     registry = Registry.load()
     blocks = np.zeros(BOX.shape, dtype=np.int32)
     blocks[BOX.index(FOREIGN)] = registry.state_id("barrel[facing=up]")

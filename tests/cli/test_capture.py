@@ -138,7 +138,7 @@ def test_a_structure_file_becomes_a_scenario_that_runs(tmp_path, capsys):
     with Nest.open(house, "scripted") as nest:
         state = nest["/"].state
         assert state.containers[(8, -3, 8)].items == {"bread": 2}
-        # Nobody stood there, so somebody was put where one can stand.
+        # The place was empty, so an agent was put where it can stand.
         assert state.agents["visitor"].position == (9.5, -3.0, 8.5)
 
 

@@ -100,7 +100,7 @@ def test_a_study_without_recorded_runs_says_what_to_do(
     assert "holds a study whose runs were not recorded" in told
     assert "--record" in told
     assert str(Path("done", "answers")) in told
-    # What it says works.
+    # The advice of the message works.
     shutil.copytree(kept / "answers", "again/answers")
     assert study("again", "--record") == 0
     assert run_command_line(["replay", "again"]) == 0

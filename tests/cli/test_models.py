@@ -224,7 +224,7 @@ def test_a_run_is_repeated_from_its_answers_with_the_server_gone(
     server.will(server.says(BROKEN), server.says(GOOD))
     assert run(scenario="two.yaml") == 0
     asked = len(server.requests)
-    # Nobody listens on the discard port.
+    # The discard port has no listener.
     monkeypatch.setenv("OPENAI_BASE_URL", "http://127.0.0.1:9/v1")
     assert run("--answers", "r/answers", scenario="two.yaml", out="again") == 0
     assert len(server.requests) == asked

@@ -81,7 +81,7 @@ def test_what_happened_is_told_in_words(page: str) -> None:
     assert "bob opens the </svg><script>alert(1)</script>" in told
     assert "bob takes 1 apple out of the </svg>" in told
     assert "open container" not in told
-    # Nobody needs to be told that a barrel's lid goes up and down.
+    # The report leaves out the lid of a barrel.
     assert "is now at" not in told
 
 

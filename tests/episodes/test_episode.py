@@ -194,7 +194,7 @@ def test_programs_of_files_are_cut_and_gone_on_with(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("round", [1, 3])
 def test_a_program_begins_where_a_branch_does(tmp_path: Path, round: int) -> None:
-    # Whether what its agent did until then was cut (round 1) or is over (round 3).
+    # Its agent's program was cut in round 1 and is over in round 3.
     walk, back, store = tmp_path / "walk.js", tmp_path / "back.js", tmp_path / "walk.bn"
     walk.write_text("await goToPosition(bot, new Vec3(2, 1, 5), 0)")
     back.write_text("await goToPosition(bot, new Vec3(14, 1, 5), 0)")

@@ -44,7 +44,7 @@ def test_an_instance_depends_on_its_seed_alone(name: str) -> None:
 )
 def test_a_task_of_any_size_makes_sense(name: str, key: str, value: int) -> None:
     task = bn.Task.load(name, seed=1, **{key: value})
-    # Nothing is reached before anybody has done anything.
+    # No goal is reached before the first deed.
     with bn.Episode(task, dict.fromkeys(task.agents, "random")) as episode:
         episode.play(0)
         assert not episode.success

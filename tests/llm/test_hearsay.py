@@ -62,7 +62,7 @@ def test_a_claim_is_found_and_the_request_noted_with_what_it_took(fake, clock):
     question = fake.requests[0].body["messages"][1]["content"]
     assert "[3, 0, 3]: chest" in question
     assert "max, nora" in question
-    # What is said stays one JSON text, whatever is in it.
+    # An utterance stays one JSON text, whatever it contains.
     assert question.endswith(f"\n\nnora said:\n{json.dumps(TEXT)}")
 
 

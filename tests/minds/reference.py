@@ -112,7 +112,7 @@ class Reference:
             at for at, now in enumerate(self.moments) if now.agents.get(agent, (None, False))[1]
         ]
 
-    # What is where.
+    # Contents of places.
 
     def blocks(self, name: str) -> dict[Cell, str | None]:
         return dict(self.moments[0].blocks) | dict(self.question.doubt[name].get("blocks", {}))

@@ -343,7 +343,7 @@ def test_resampling_keeps_expectations():
         assert len(imagined) == 300
         assert 40 < imagined.effective_size < 80
         assert imagined.log_evidence == pytest.approx(math.log(0.2), abs=0.4)
-        # What the copies drew after that, they drew with seeds of their own.
+        # After that the copies drew with seeds of their own.
         took = imagined.share({"agent": "bob", "items": {"diamond": 1}})
         assert took == pytest.approx(0.3, abs=0.1)
         again = nest["/anne"].imagine(0, actors={"bob": {"lottery": LOTTERY}}, n=300)

@@ -278,7 +278,7 @@ def test_opening_and_taking_are_actions():
         inference.marginal("credence.left", tick=2)
     )
     assert inference.marginal("credence_now.left", tick=3) == {1.0: pytest.approx(1)}
-    # Nothing counts after the act.
+    # Behaviour after the act does not count.
     assert inference.posterior().tobytes() == inference.posterior(tick=4).tobytes()
 
 

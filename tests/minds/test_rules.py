@@ -70,7 +70,7 @@ def test_a_gap_is_the_sum_over_all_courses():
             if current[tick]:
                 weights = {s: w for s, w in spread.items() if s[0] == seen[tick]}
             else:
-                # What Ann does not see: whatever lies behind the wall, or the gap in it.
+                # Ann does not see behind the wall, nor the gap in it.
                 hidden = {cell for cell in cells if not sees(nest, cell)}
                 weights = {s: w for s, w in spread.items() if s[0] in hidden}
         likelihoods.append(sum(weights.values()))

@@ -220,7 +220,7 @@ def test_a_bot_that_is_sent_away_comes_back(console):
             assert looked.said[-1][1] == "0"
             after = nest["/"].state.agents["sally"]
             assert same_place(list(before.position), list(after.position))
-        # What changes while the operator is away is found when it is back.
+        # The operator finds changes of its absence when it is back.
         console.type("drop BeliefNest")
         console.type("setblock 4 -51 4 minecraft:stone")
         assert nest.wait(lambda: nest["/"].state.blocks[(4, -51, 4)] == "stone", LONG_S)

@@ -115,7 +115,7 @@ def test_a_person_moves_the_diamond_and_all_believe_as_if_a_bot_had(condition, s
         nest.play()
         as_with_bots = contents(nest), {e.kind for e in nest["/"].state.events if e.actor == "anne"}
     if condition == 1:
-        # Nobody hears what her client sends there: what comes of it tells.
+        # No agent hears the messages of her client there; the result shows it.
         assert acted_by_a_person(scenario(1), server.address()) == as_with_bots
     else:
         hosted = acted_by_a_person(scenario(3), "embedded", realtime=True, listen=0)
@@ -281,7 +281,7 @@ def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
     with ThreadPoolExecutor(1) as experimenter:
         played = experimenter.submit(exec, code, {"__name__": "example"})
         told = ""
-        # Who comes before anything is played is sent away.
+        # A player who joins before the script has begun is sent away.
         while "join as anne" not in told:
             assert not played.done(), played.result()
             told += capsys.readouterr().err

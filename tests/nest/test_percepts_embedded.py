@@ -118,7 +118,7 @@ BOBS = (
     "bot.setControlState('jump', true); await bot.waitForTicks(30)",
     "await think(bot, 'psst'); await goToPosition(bot, new Vec3(7, 1, 6), 0)",
 )
-# What can be done without coming to see what lies beyond the wall, or far away.
+# Deeds that show nothing beyond the wall or far away.
 NEAR = (
     "await goToPosition(bot, new Vec3(2, 1, 1), 0)",
     "await bot.toss(mcData.itemsByName.bread.id, null, 1); await bot.waitForTicks(4)",
@@ -170,7 +170,7 @@ def test_what_is_too_far_or_behind_one_s_back_changes_no_value_that_is_read(
 ) -> None:
     hidden = [{"block": name, "at": list(place)} for place, name in sorted(blocks.items())]
     room = {"perception": {**ROOM["perception"], **eyes}}
-    # Who looks west all the time sees nothing in the east.
+    # An agent that looks west all the time sees nothing in the east.
     act = then if "max_visible_distance" in eyes else "await bot.waitForTicks(9)"
     begin = "await bot.look(Math.PI / 2, 0, true); await bot.waitForTicks(1)"
     ann = f"{begin}\n{reader(act)}"

@@ -63,7 +63,7 @@ def test_a_sign_is_read_by_who_comes_to_see_it(testimony: str) -> None:
     believed = [] if testimony == "none" else [RIGHT]
     assert hall.where("/max") == hall.where("/nora/max") == hall.where("/max/nora/max") == believed
     if believed:
-        # Nobody is known to have written it.
+        # Its writer is unknown.
         basis = hall.nest["/max"].state.containers[RIGHT].basis
         assert basis == Basis(hall.world.now, Source.HEARD)
 

@@ -108,7 +108,7 @@ def test_who_sees_it_in_somebodys_hand_believes_it_nowhere_else(path: str) -> No
     world.give("nora", "max", {"diamond": 1})
     assert where(nest, path) == ["max"]
     left = nest["/max"].state.containers[LEFT]
-    # What is left rests on what it rested on.
+    # The rest keeps its evidence.
     assert (dict(left.items), left.complete, left.basis.source) == ({"bread": 2}, True, "prior")
 
 
@@ -247,7 +247,7 @@ def test_initial_beliefs_with_two_of_them_are_refused(
 ) -> None:
     with pytest.raises(InputError, match=r"'diamond' is unique, but initial_beliefs give '/.*max"):
         hall(initial=initial)
-    # Who believes it elsewhere has to believe the first place empty.
+    # An agent that believes it elsewhere must believe the first place empty.
     prior = bn.InitialBelief(("**",), {LEFT: ({"diamond": 1}, True)})
     other = bn.InitialBelief(("max",), {LEFT: ({}, True), RIGHT: ({"diamond": 1}, True)})
     hall(initial=(prior, other))

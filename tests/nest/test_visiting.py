@@ -30,7 +30,7 @@ SCRIPT = [
     },
     {"agent": "observer", "program": AWAY.format(1)},
 ]
-# How somebody goes where a line of the layout says, and what they find there.
+# A walk to the place that a line of the layout names, and the scene there.
 TRAVEL = """
 const there = at => Math.abs(bot.entity.position.x - at) < 30
 bot.chat(LINE)
@@ -121,7 +121,7 @@ def test_who_moved_the_diamond_finds_it_where_sally_believes_it(play_of_a_person
         assert nest.people == frozenset()
         assert nest["/"].state.agents["anne"].current
 
-        # What the observer sees again while a program runs is seen there while it does.
+        # The visitor sees, while the program runs, what the observer sees again.
         anne.does(script(TRAVEL + WATCH, where(nest, "/observer")))
         watches = "Nobody hears you here: visitors of a belief are not in it."
         assert nest.wait(lambda: anne.is_done or watches in anne.read, LONG_S)
@@ -170,7 +170,7 @@ def test_a_visitor_sees_what_is_tried_out_and_can_come_again_after_a_crash():
 
 
 SAID = "await say(bot, 'There.', [located('diamond', new Vec3(-2, -51, -4))])"
-# Where nothing is known but that a diamond is there.
+# A place of which only the diamond is known.
 IN_THE_CHEST = """
 const chest = () => bot.blockAt(new Vec3(X - 2, -51, -4))
 while (chest()?.name !== 'chest') await waitTicks(bot, 1)
@@ -205,7 +205,7 @@ def test_a_chest_stands_where_contents_are_believed_in_an_unknown_block():
         assert belief.placed == {LEFT: (None, "chest")}
 
 
-# How somebody on a server waits to find this and no more, where a line of the layout leads.
+# A visitor on a server waits for exactly this scene at the place that the layout names.
 FIND = """
 const seen = async () => {
   const chest = bot.blockAt(new Vec3(X - 2, -51, -4))

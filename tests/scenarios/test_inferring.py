@@ -233,7 +233,7 @@ def test_a_course_is_told_in_words_of_what_the_observer_holds():
     _, prompt = prompt_of(1)
     assert "#.########" in prompt
     assert "- korean: to stand on gold_block, which is at (5, 6)" in prompt
-    # Where the thing in doubt stands is no goal's own place.
+    # The place in doubt is no goal's own place.
     assert "- lebanese: to stand on emerald_block\n" in prompt
     assert "As far as you know, it is lebanese." in prompt
     assert "tick 0: (4, 4)\ntick 1: (3, 4)" in prompt

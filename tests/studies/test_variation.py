@@ -284,7 +284,7 @@ def test_every_key_of_a_scenario_is_known_in_another_scene():
         AgentEntry: _SHAPE["agents"].shape,
         StepEntry: _SHAPE["script"].shape,
         ProbeEntry: _SHAPE["probes"].shape,
-        # What a function judges nobody can tell.
+        # The values that a function judges are unknown.
         ExpectEntry: {*_SHAPE["probes"].shape["expect"], "function"},
         InferEntry: _SHAPE["probes"].shape["infer"],
         DoubtEntry: _SHAPE["probes"].shape["infer"]["doubt"].shape,

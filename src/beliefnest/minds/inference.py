@@ -359,7 +359,7 @@ class Inference:
         return self._grouped(factor, self._posterior_of(step))
 
     def _smooth_step(self, number: int) -> Step:
-        # Nothing later explains a course that nothing explains.
+        # A course that no hypothesis explains stays unexplained.
         if not self.smooth or self._failed is not None:
             return self._known[number]
         return self._smoothed[number]

@@ -110,7 +110,7 @@ class Session {
     }
   }
 
-  // Nobody could catch an error of a message that the host sends by itself, so that it ends the run here.
+  // No caller can catch an error of a message that the host sends by itself, so it ends the run here.
   wake (message) {
     if (this.outcome !== null) return
     try {
