@@ -17,7 +17,7 @@ def execute(file: Path) -> None:
         client = nbclient.NotebookClient(notebook, resources=resources, record_timing=False)
         client.execute()
     for cell in notebook.cells:
-        # The Python version that wrote it is of no use to a reader.
+        # The number and the order of executions are of no use to a reader.
         cell.pop("execution_count", None)
         if cell.cell_type == "code":
             cell.execution_count = None

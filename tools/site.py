@@ -74,7 +74,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     here = PurePosixPath(source).parent
 
     if "\n## " not in markdown:
-        # Without headings to list, the page takes the room of the contents, since its tables may be wide.
+        # Without headings, the page takes the room of the contents: its tables may be wide.
         page.meta["hide"] = ["toc"]
 
     def lead(match: re.Match[str]) -> str:

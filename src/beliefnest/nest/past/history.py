@@ -269,7 +269,7 @@ class History:
         base = self._journal.info(key).base
         edited = None if base is None else self._edited_at_first(key, path, position)
         if base is not None and edited is not None:
-            # The timeline is unchanged since the fork, so beliefs are as they were there (section 6).
+            # The timeline is unchanged since the fork, so beliefs are as there (section 6).
             left = [cell for cell in cells if cell not in edited]
             return self.current_blocks(base.timeline, path, base.entries, left)
         return self.shared(key, path, position).current_blocks(path, cells)
