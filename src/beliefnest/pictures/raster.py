@@ -1,33 +1,155 @@
-"""Raster writer: a drawing as an image of pixels, by resvg from the drawing's SVG."""
+"""Raster writer: a drawing as an image of pixels."""
 
-import io
-from importlib.resources import as_file, files
+import itertools
+import math
+from collections.abc import Sequence
 
-from PIL import Image
+from PIL import Image, ImageDraw
 
-from beliefnest.pictures.lettering import lettered
-from beliefnest.pictures.marks import Drawing
+from beliefnest.pictures.lettering import font, lettered
+from beliefnest.pictures.marks import XY, Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
 from beliefnest.pictures.palette import PAPER
-from beliefnest.pictures.svg import svg_text
 
 __all__ = ["raster"]
 
-_FAMILY = "Liberation Sans"
+_FINER = 2
+"""Factor of supersampling. Pillow draws hard edges, so the image is drawn larger and scaled
+down."""
 
 
 def raster(drawing: Drawing, dpi: float) -> Image.Image:
     """Return the image of a drawing with a resolution of `dpi` pixels per inch."""
-    import resvg_py
+    scale = dpi / 72 * _FINER
+    size = (round(drawing.width * dpi / 72), round(drawing.height * dpi / 72))
+    image = Image.new("RGB", (size[0] * _FINER, size[1] * _FINER), PAPER)
+    pen = _Pen(ImageDraw.Draw(image), scale)
+    for mark in drawing.marks:
+        pen.draw(mark)
+    return image.reduce(_FINER)
 
-    with as_file(files("beliefnest.pictures") / "fonts") as fonts:
-        png = resvg_py.svg_to_bytes(
-            svg_string=lettered(svg_text(drawing)),
-            dpi=dpi,
-            background=PAPER,
-            # The drawing's own font alone, so that a picture is the same on every machine.
-            skip_system_fonts=True,
-            font_dirs=[str(fonts)],
-            font_family=_FAMILY,
-            sans_serif_family=_FAMILY,
+
+class _Pen:
+    """Pen that draws marks with `scale` pixels per point."""
+
+    def __init__(self, draw: ImageDraw.ImageDraw, scale: float) -> None:
+        self._draw = draw
+        self._scale = scale
+
+    def draw(self, mark: Mark) -> None:
+        """Draw one mark."""
+        match mark:
+            case Text():
+                self._text(mark)
+            case Lines():
+                for ends in mark.segments:
+                    self._line(ends, mark.stroke, mark.thick)
+            case Rectangle():
+                self._rectangle(mark)
+            case Circle():
+                self._circle(mark)
+            case Polygon():
+                self._polygon(mark)
+
+    def _rectangle(self, mark: Rectangle) -> None:
+        low, high = mark.bounds[:2], mark.bounds[2:]
+        if mark.dash and mark.stroke is not None:
+            self._box(low, high, mark.fill, None, 0, mark.radius)
+            (x0, y0), (x1, y1) = low, high
+            ring = ((x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0))
+            self._dashes(ring, mark.stroke, mark.thick, mark.dash)
+        else:
+            self._box(low, high, mark.fill, mark.stroke, mark.thick, mark.radius)
+
+    def _box(
+        self,
+        low: XY,
+        high: XY,
+        fill: str | None,
+        stroke: str | None,
+        thick: float,
+        radius: float,
+    ) -> None:
+        # Centre the outline on the edge, as SVG and PDF do.
+        out = thick / 2 if stroke is not None else 0.0
+        x0, y0 = self._at((low[0] - out, low[1] - out))
+        x1, y1 = self._at((high[0] + out, high[1] + out))
+        corners = (
+            round(x0),
+            round(y0),
+            max(round(x0), round(x1) - 1),
+            max(round(y0), round(y1) - 1),
         )
-    return Image.open(io.BytesIO(png)).convert("RGB")
+        width = self._thick(thick) if stroke is not None else 0
+        if radius:
+            self._draw.rounded_rectangle(corners, (radius + out) * self._scale, fill, stroke, width)
+        else:
+            self._draw.rectangle(corners, fill, stroke, width)
+
+    def _circle(self, mark: Circle) -> None:
+        dashed = mark.dash and mark.stroke is not None
+        out = mark.thick / 2 if mark.stroke is not None and not dashed else 0.0
+        r = mark.radius + out
+        x0, y0 = self._at((mark.x - r, mark.y - r))
+        x1, y1 = self._at((mark.x + r, mark.y + r))
+        if not dashed:
+            width = self._thick(mark.thick) if mark.stroke is not None else 0
+            self._draw.ellipse((x0, y0, x1, y1), mark.fill, mark.stroke, width)
+            return
+        self._draw.ellipse((x0, y0, x1, y1), mark.fill, None, 0)
+        ring = [
+            (mark.x + r * math.cos(angle), mark.y + r * math.sin(angle))
+            for angle in (step * math.pi / 32 for step in range(65))
+        ]
+        self._dashes(ring, mark.stroke or "", mark.thick, mark.dash)
+
+    def _polygon(self, mark: Polygon) -> None:
+        if mark.fill is not None:
+            self._draw.polygon([self._at(point) for point in mark.points], mark.fill)
+        if mark.stroke is None:
+            return
+        points = [*mark.points, mark.points[0]] if mark.closed else list(mark.points)
+        if mark.dash:
+            self._dashes(points, mark.stroke, mark.thick, mark.dash)
+        else:
+            self._line(points, mark.stroke, mark.thick)
+
+    def _text(self, mark: Text) -> None:
+        place = self._at((mark.left, mark.y))
+        letters, words = font(mark.size * self._scale, bold=mark.bold), lettered(mark.text)
+        if mark.halo is not None:
+            edge = round(mark.size * 0.14 * self._scale)
+            self._draw.text(
+                place, words, mark.halo, letters, "ls", stroke_width=edge, stroke_fill=mark.halo
+            )
+        self._draw.text(place, words, mark.colour, letters, "ls")
+
+    def _line(self, points: Sequence[XY], colour: str, thick: float) -> None:
+        places = [self._at(point) for point in points]
+        self._draw.line(places, colour, self._thick(thick), joint="curve")
+
+    def _dashes(self, points: Sequence[XY], colour: str, thick: float, length: float) -> None:
+        """Draw a dashed line; dashes and gaps have the same length."""
+        drawn = 0.0
+        for start, end in itertools.pairwise(points):
+            distance = ((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2) ** 0.5
+            at = 0.0
+            while at < distance:
+                to = min(distance, at + length - drawn % length)
+                if int(drawn // length) % 2 == 0:
+                    ends = (
+                        _between(start, end, at / distance),
+                        _between(start, end, to / distance),
+                    )
+                    self._line(ends, colour, thick)
+                # Add a little to the remaining length, so that rounding cannot stall the loop.
+                drawn, at = drawn + (to - at) + 1e-9, to + 1e-9
+
+    def _at(self, point: XY) -> XY:
+        return point[0] * self._scale, point[1] * self._scale
+
+    def _thick(self, points: float) -> int:
+        return max(1, round(points * self._scale))
+
+
+def _between(start: XY, end: XY, share: float) -> XY:
+    return start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
