@@ -14,6 +14,8 @@ from beliefnest.belief.conditions import (
     ItemsIn,
     ItemsWith,
     LeversHeld,
+    NothingIn,
+    NothingWith,
 )
 from beliefnest.errors import InputError
 from beliefnest.world.paths import parse_path
@@ -36,8 +38,9 @@ class ConditionEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, om
     container: Annotated[Position | None, _note("A container that holds `items`.")] = None
     agent: Annotated[str | None, _note("An agent that has `items` or stands `at` a place.")] = None
     items: Annotated[
-        dict[str, Annotated[int, msgspec.Meta(ge=1)]], _note("Item name to least count.")
-    ] = {}
+        dict[str, Annotated[int, msgspec.Meta(ge=1)]] | None,
+        _note("Item name to least count; {}: nothing at all."),
+    ] = None
     at: Annotated[Position | None, _note("A block position.")] = None
     within: Annotated[float, _note("Greatest distance from `at`, in blocks.")] = 1.0
     block: Annotated[Position | None, _note("A block that has a state.")] = None
@@ -72,7 +75,7 @@ def check_condition(entry: ConditionEntry, agents: Collection[str], box: Box) ->
     """
     conditions_of(entry, agents)
     registry = Registry.load()
-    for name in entry.items:
+    for name in entry.items or {}:
         registry.item_stack(name)
     if entry.state is not None:
         registry.state_id(entry.state)
@@ -110,15 +113,19 @@ def conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[GoalCo
 
 def _facts(entry: ConditionEntry) -> list[Fact]:
     match entry:
-        case ConditionEntry(container=place) if place is not None:
-            return [ItemsIn(place, item, count) for item, count in entry.items.items()]
+        case ConditionEntry(container=place, items=items) if place is not None:
+            if items == {}:
+                return [NothingIn(place)]
+            return [ItemsIn(place, item, count) for item, count in (items or {}).items()]
         case ConditionEntry(agent=agent, at=place) if agent is not None and place is not None:
             return [AgentAt(agent, place, entry.within)]
         case ConditionEntry(agents=[_, *_], sites=[_, *_]):
             sites = tuple(tuple(site) for site in entry.sites)
             return [LeversHeld(tuple(entry.agents), sites)]
-        case ConditionEntry(agent=agent) if agent is not None:
-            return [ItemsWith(agent, item, count) for item, count in entry.items.items()]
+        case ConditionEntry(agent=agent, items=items) if agent is not None:
+            if items == {}:
+                return [NothingWith(agent)]
+            return [ItemsWith(agent, item, count) for item, count in (items or {}).items()]
     return _block_facts(entry)
 
 

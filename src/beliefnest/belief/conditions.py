@@ -26,6 +26,8 @@ __all__ = [
     "ItemsWith",
     "LeversHeld",
     "Look",
+    "NothingIn",
+    "NothingWith",
     "StateFacts",
     "agrees",
     "looking_at",
@@ -41,6 +43,9 @@ class GoalFacts(Protocol):
 
     def items_in(self, place: Position) -> Items:
         """Return the items known to be in a container; empty if nothing is known."""
+
+    def is_empty(self, place: Position) -> bool:
+        """Return True if a container is known to hold nothing."""
 
     def items_of(self, agent: str) -> Items:
         """Return the items that an agent is known to have."""
@@ -66,6 +71,11 @@ class StateFacts:
         """Return items known to be in a container."""
         known = self.state.containers.get(place)
         return {} if known is None else known.items
+
+    def is_empty(self, place: Position) -> bool:
+        """Return True if a container is known to hold nothing."""
+        known = self.state.containers.get(place)
+        return known is not None and known.complete and not known.items
 
     def items_of(self, agent: str) -> Items:
         """Return items that an agent is known to have."""
@@ -110,6 +120,34 @@ class ItemsWith:
 
     def __str__(self) -> str:
         return f"{self.agent} has {self.count} {self.item}"
+
+
+@dataclass(frozen=True, slots=True)
+class NothingIn:
+    """Fact: a container holds nothing; contents that are not known completely do not count."""
+
+    place: Position
+
+    def holds(self, facts: GoalFacts) -> bool:
+        """Return True if the container is known to hold nothing."""
+        return facts.is_empty(self.place)
+
+    def __str__(self) -> str:
+        return f"nothing in the container at {self.place}"
+
+
+@dataclass(frozen=True, slots=True)
+class NothingWith:
+    """Fact: an agent has no items."""
+
+    agent: str
+
+    def holds(self, facts: GoalFacts) -> bool:
+        """Return True if the agent is not known to have any item."""
+        return not facts.items_of(self.agent)
+
+    def __str__(self) -> str:
+        return f"{self.agent} has nothing"
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +264,7 @@ class LeversHeld:
         return f"{' and '.join(self.agents)} at once at levers that are on, at {sites}"
 
 
-Fact = ItemsIn | ItemsWith | AgentAt | LeversHeld | BlockIs | BlocksAlike
+Fact = ItemsIn | ItemsWith | NothingIn | NothingWith | AgentAt | LeversHeld | BlockIs | BlocksAlike
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,8 @@ from beliefnest.belief.conditions import (
     ItemsIn,
     ItemsWith,
     LeversHeld,
+    NothingIn,
+    NothingWith,
 )
 from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.scenarios.goals import Goal, Progress
@@ -93,7 +95,7 @@ def _bringers(condition: GoalCondition, events: Sequence[PerceivedEvent]) -> set
     if condition.path:
         return {condition.path[0]}
     fact = condition.fact
-    if isinstance(fact, ItemsWith | AgentAt):
+    if isinstance(fact, ItemsWith | NothingWith | AgentAt):
         return {fact.agent}
     if isinstance(fact, LeversHeld):
         return set(fact.agents)
@@ -101,11 +103,13 @@ def _bringers(condition: GoalCondition, events: Sequence[PerceivedEvent]) -> set
 
 
 def _deeds(
-    fact: ItemsIn | BlockIs | BlocksAlike, events: Sequence[PerceivedEvent]
+    fact: ItemsIn | NothingIn | BlockIs | BlocksAlike, events: Sequence[PerceivedEvent]
 ) -> Sequence[PerceivedEvent]:
     """Return the acts that gave a container or a block its state."""
     here = [each for each in events if each.detail.get("position") == fact.place]
     if isinstance(fact, ItemsIn):
         deposits = [each for each in here if each.kind is EventKind.DEPOSIT_ITEM_INTO_CHEST]
         return [each for each in deposits if fact.item in each.detail["items"]]
+    if isinstance(fact, NothingIn):
+        return [each for each in here if each.kind is EventKind.GET_ITEM_FROM_CHEST]
     return [each for each in here if each.kind not in _CHANGES_NO_BLOCK][-1:]

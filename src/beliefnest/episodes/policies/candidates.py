@@ -9,6 +9,8 @@ from beliefnest.belief.conditions import (
     ItemsIn,
     ItemsWith,
     LeversHeld,
+    NothingIn,
+    NothingWith,
     agrees,
 )
 from beliefnest.episodes.policies.distance import MindFacts, name_of
@@ -98,7 +100,8 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
         (at, held) for at, held in sorted(world.containers.items()) if mind.may_reach(agent, at)
     ]
     wanted = {c.fact.place for g in goals for c in g.conditions if isinstance(c.fact, ItemsIn)}
-    for item in [*items_of(goals), *_materials(mind, agent, goals)]:
+    named = [*items_of(goals), *_materials(mind, agent, goals)]
+    for item in [*named, *sorted(_to_remove(mind, agent, goals) - {*named})]:
         for place, items in near:
             if items.get(item, 0):
                 yield Call("getItemFromChest", (place, {item: 1}))
@@ -110,6 +113,18 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
                 yield Call("depositItemIntoChest", (place, {item: 1}))
         for other in others:
             yield Call("giveItemToOther", (other, item, 1))
+
+
+def _to_remove(mind: Imagination, agent: str, goals: Sequence[Goal]) -> set[str]:
+    """Return the items in containers that goals want to be empty, and those to get rid of."""
+    world = mind.world
+    items: set[str] = set()
+    for fact in (condition.fact for goal in goals for condition in goal.conditions):
+        if isinstance(fact, NothingIn):
+            items |= world.containers.get(fact.place, {}).keys()
+        elif isinstance(fact, NothingWith) and fact.agent == agent:
+            items |= world.agents[agent].inventory.keys()
+    return items
 
 
 def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:

@@ -16,6 +16,8 @@ from beliefnest.belief.conditions import (
     ItemsIn,
     ItemsWith,
     LeversHeld,
+    NothingIn,
+    NothingWith,
 )
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
@@ -44,6 +46,10 @@ class MindFacts:
     def items_in(self, place: Position) -> Items:
         """Return items known to be in a container."""
         return self._world.containers.get(place, {})
+
+    def is_empty(self, place: Position) -> bool:
+        """Return True if a container is known to hold nothing."""
+        return self._world.containers.get(place) == {}
 
     def items_of(self, agent: str) -> Items:
         """Return items that an agent is known to have."""
@@ -93,6 +99,11 @@ class BeliefFacts:
         known = self._view.containers.get(place)
         return {} if known is None else known.items
 
+    def is_empty(self, place: Position) -> bool:
+        """Return True if a container is known to hold nothing."""
+        known = self._view.containers.get(place)
+        return known is not None and known.complete and not known.items
+
     def items_of(self, agent: str) -> Items:
         """Return items that an agent is known to have."""
         return self._view.agents[agent].inventory
@@ -139,6 +150,10 @@ def _still_to_do(fact: Fact, facts: MindFacts) -> float:
         case ItemsIn(place=place, item=item, count=count):
             missing = count - facts.items_in(place).get(item, 0)
             return missing * _to_container(facts, place, item)
+        case NothingIn(place=place):
+            return float(max(1, sum(facts.items_in(place).values())))
+        case NothingWith(agent=agent):
+            return float(sum(facts.items_of(agent).values()))
         case AgentAt(agent=agent):
             feet = facts.feet_of(agent)
             return 1.0 + (_FAR if feet is None else fact.distance(feet)) * _PER_BLOCK

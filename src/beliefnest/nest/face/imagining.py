@@ -72,6 +72,9 @@ class _WorldFacts:
     def items_in(self, place: Position) -> Items:
         return self.world.containers.get(place, {})
 
+    def is_empty(self, place: Position) -> bool:
+        return self.world.containers.get(place) == {}
+
     def items_of(self, agent: str) -> Items:
         state = self.world.agents.get(agent)
         return {} if state is None else state.inventory
