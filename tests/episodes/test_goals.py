@@ -116,6 +116,23 @@ def test_any_scenario_can_be_played_with_rules_of_its_player() -> None:
         bn.Task.of(scenario)
 
 
+def test_planners_empty_a_container(tmp_path: Path) -> None:
+    file = tmp_path / "fetch.yaml"
+    file.write_text(FETCH.replace("accept}", "accept, containers: transparent}"))
+    goal = {
+        "reach": [{"container": [1, 1, 1], "items": {}}, {"agent": "eve", "items": {}}],
+        "never": [{"path": "/ann", "container": [1, 1, 1], "items": {"apple": 2}}],
+    }
+    task = bn.Task.of(bn.Scenario.load(str(file), condition=1), goal=goal)
+    assert [str(each) for each in task.goal.reach] == [
+        "nothing in the container at (1, 1, 1)",
+        "eve has nothing",
+    ]
+    with bn.Episode(task, {"ann": "search:0"}) as episode:
+        assert episode.play().success
+        assert episode.nest["/ann"].state.agents["ann"].inventory == {"apple": 1}
+
+
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

@@ -472,3 +472,34 @@ def test_live_late_and_recorded_histories_are_the_same(tmp_path):
         assert drawn(recorded.at(head)["/anne"]) == live
     with bn.Nest.resume(store) as resumed:
         assert drawn(resumed["/anne"], head) == live
+
+
+def test_an_empty_container_and_empty_hands_are_conditions():
+    with kitchen() as nest:
+        nest.scripted_world.step(20)
+        drawn = {"since": 0, "actors": {"bob": {"fetch": TAKE, "idle": ""}}, "n": 10}
+        imagined = nest["/anne"].imagine(**drawn)
+        assert imagined.share({"container": CHEST, "items": {}}) == pytest.approx(0.5)
+        assert imagined.share({"agent": "bob", "items": {}}) == pytest.approx(0.5)
+        assert imagined.share({"path": "/bob", "container": CHEST, "items": {}}) == pytest.approx(
+            0.5
+        )
+        told = nest["/anne"].imagine(**drawn, evidence=[{"container": CHEST, "items": {}}])
+        assert told.by_candidate("bob") == pytest.approx({"fetch": 1, "idle": 0})
+
+
+def test_a_failing_candidate_is_named_once():
+    with kitchen() as nest:
+        nest.scripted_world.step(3)
+        slip = "await waitTicks(bot, 1); nobody()"
+        with pytest.warns(ImaginationWarning, match=r"candidate 'slip' of bob failed: .*nobody"):
+            imagined = nest["/anne"].imagine(0, actors={"bob": {"slip": slip, "idle": ""}}, n=4)
+        assert imagined.failed.keys() == {"bob"}
+        assert "nobody" in imagined.failed["bob"]["slip"]
+        assert "bob 'slip' failed" in repr(imagined)
+        frame = imagined.frame()
+        assert list(frame.columns) == ["history", "weight", "agent", "candidate", "failed"]
+        assert sorted(frame[frame.failed.notna()].candidate) == ["slip", "slip"]
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            nest["/anne"].imagine(0, actors={"bob": {"fetch": TAKE, "idle": ""}}, n=4)

@@ -445,3 +445,38 @@ def test_simplex_grid():
     assert np.allclose(grid.sum(axis=1), 1)
     assert grid.min() == pytest.approx(0.025)
     assert bn.simplex_grid(2, 1).tolist() == [[0, 1], [1, 0]]
+
+
+def test_only_a_change_of_cell_is_a_movement():
+    world = lane(5)
+    nest = bn.Nest(world)
+    walk(world, (1, 0))
+    world.step(1)
+    model = bn.MindModel("bob", {"end": {"at": (4, 1, 0)}}, {"end": [0, 10]})
+    changes = nest["/"].infer(model).explain()
+    assert [
+        (change.text.split()[0], change.is_action, change.is_movement) for change in changes
+    ] == [
+        ("is", False, False),
+        ("moves", True, True),
+        ("stays", True, False),
+    ]
+
+
+def test_what_is_impossible_is_told_with_its_cells():
+    world, nest, model = chests()
+    walk(world, (1, 0), (0, 0))
+    world.withdraw("bob", (0, 1, 1), {"diamond": 1})
+    told = str(nest["/"].infer(model).impossible)
+    assert told.startswith(
+        "tick 3: the agent acts on goal D at (0, 1, 0), which no hypothesis"
+    )
+    assert "the goal is not in reach there" in told
+    split = lane(5, 1, [(2, 0)])
+    jumping = bn.Nest(split)
+    walk(split, (3, 0))
+    ends = {"a": {"at": (1, 1, 0)}, "b": {"at": (4, 1, 0)}}
+    failed = jumping["/"].infer(bn.MindModel("bob", ends, {"a": 1, "b": [1, 2]})).impossible
+    assert failed is not None
+    assert failed.text == "moves from (0, 1, 0) to (3, 1, 0)"
+    assert failed.why.startswith("no steps lead")

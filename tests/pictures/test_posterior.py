@@ -7,10 +7,12 @@ from tests.pictures.measuring import faults, texts
 
 import beliefnest as bn
 from beliefnest.minds.charts import bars_of
-from beliefnest.pictures.marks import Rectangle
+from beliefnest.pictures.marks import Polygon, Rectangle
+from beliefnest.pictures.palette import AGENT_COLOURS, hypothesis_colours
 from beliefnest.pictures.plan import heat_colour
 from beliefnest.pictures.posterior import PosteriorPanel, posterior_plot
 from beliefnest.pictures.time_axis import NotedAct
+from beliefnest.viewer.page.posteriors import told_inference
 
 CURRY, SOUP, PASTA = "gold_block", "emerald_block", "diamond_block"
 
@@ -66,9 +68,11 @@ def test_many_values_and_long_names_keep_apart() -> None:
     ticks = tuple(range(0, 600, 7))
     names = [f"a very long name of an alternative {n}" for n in range(12)]
     shares = {name: tuple(1 / 12 for _ in ticks) for name in names}
+    colours = hypothesis_colours(names, ())
+    curves = {name: shares[name] for name in names[:8]}
     panels = [
-        PosteriorPanel("shares " * 30, 0, 1, ticks, shares, stacked=True),
-        PosteriorPanel("curves", -20, 100, ticks, {name: shares[name] for name in names[:8]}),
+        PosteriorPanel("shares " * 30, 0, 1, ticks, shares, colours, stacked=True),
+        PosteriorPanel("curves", -20, 100, ticks, curves, colours),
     ]
     notes = [NotedAct(t, f"moves {t} " * 4) for t in (3, 4, 500)]
     for size in (50, 85, 174):
@@ -96,6 +100,26 @@ def test_a_figure_has_bars_and_a_tint_of_probable_cells(court, inference, size) 
     tints = [mark.fill for mark in drawing.marks if isinstance(mark, Rectangle)]
     for share in inference.predict(1, tick=3)[0].values():
         assert (heat_colour(share) in tints) == (share >= 0.005)
+
+
+def test_goals_have_the_same_colours_everywhere_and_none_of_an_agent(inference) -> None:
+    colours = hypothesis_colours(inference.model.goals, inference.model.alternative_names)
+    assert not set(colours.values()) & set(AGENT_COLOURS)
+    panels = told_inference(inference, 1)["panels"]
+    told = {name: colour for panel in panels for name, colour, _ in panel["series"]}
+    groups = bars_of(inference, 3).groups
+    bars = {name: group.colours[name] for group in groups for name in group.bars}
+    marks = inference.plot("utility").drawing().marks
+    lines = {mark.stroke for mark in marks if isinstance(mark, Polygon)}
+    for name in ("curry", "soup", "pasta"):
+        assert told[name] == bars[name] == colours[name]
+        assert colours[name] in lines
+
+
+def test_the_axis_ends_with_the_last_tick(inference) -> None:
+    numbers = [word for word in texts(inference.plot("actual").drawing()) if word.isdigit()]
+    assert inference.until == 5
+    assert max(map(int, numbers)) == 5
 
 
 def test_a_later_figure_shows_the_last_posterior(court, inference) -> None:

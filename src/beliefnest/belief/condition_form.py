@@ -1,6 +1,7 @@
 """Conditions: their form in files and in calls, and their meaning."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from typing import Annotated
 
 import msgspec
@@ -113,20 +114,25 @@ def conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[GoalCo
 
 def _facts(entry: ConditionEntry) -> list[Fact]:
     match entry:
-        case ConditionEntry(container=place, items=items) if place is not None:
-            if items == {}:
-                return [NothingIn(place)]
-            return [ItemsIn(place, item, count) for item, count in (items or {}).items()]
+        case ConditionEntry(container=place) if place is not None:
+            return _item_facts(entry.items, partial(ItemsIn, place), NothingIn(place))
         case ConditionEntry(agent=agent, at=place) if agent is not None and place is not None:
             return [AgentAt(agent, place, entry.within)]
         case ConditionEntry(agents=[_, *_], sites=[_, *_]):
             sites = tuple(tuple(site) for site in entry.sites)
             return [LeversHeld(tuple(entry.agents), sites)]
-        case ConditionEntry(agent=agent, items=items) if agent is not None:
-            if items == {}:
-                return [NothingWith(agent)]
-            return [ItemsWith(agent, item, count) for item, count in (items or {}).items()]
+        case ConditionEntry(agent=agent) if agent is not None:
+            return _item_facts(entry.items, partial(ItemsWith, agent), NothingWith(agent))
     return _block_facts(entry)
+
+
+def _item_facts(
+    items: Mapping[str, int] | None, some: Callable[[str, int], Fact], nothing: Fact
+) -> list[Fact]:
+    """Return the facts about each item; `nothing` if no item is named, none without `items`."""
+    if items is None:
+        return []
+    return [some(item, count) for item, count in items.items()] or [nothing]
 
 
 def _block_facts(entry: ConditionEntry) -> list[Fact]:

@@ -189,6 +189,10 @@ class BlockIs:
         there = facts.block(self.place)
         return there is not None and agrees(there, self.state)
 
+    def wanted(self, facts: GoalFacts) -> str:
+        """Return the state."""
+        return self.state
+
     def __str__(self) -> str:
         return f"{self.state} at {self.place}"
 

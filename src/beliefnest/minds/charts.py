@@ -8,6 +8,7 @@ from beliefnest.minds.findings import Change, Impossible
 from beliefnest.minds.model import MindModel
 from beliefnest.pictures.bars import BarChart, BarGroup
 from beliefnest.pictures.figure import Figure
+from beliefnest.pictures.palette import hypothesis_colours, shades
 from beliefnest.pictures.posterior import PosteriorPanel, posterior_plot
 from beliefnest.pictures.time_axis import NotedAct
 from beliefnest.world.values import Position
@@ -81,7 +82,7 @@ def plot_of(inference: Posterior, factors: Sequence[str]) -> Figure:
         InputError: There is no such factor, or it is `cell`.
     """
     panels = panels_of(inference, factors)
-    title = f"what {inference.model.agent} wants and believes, inferred from what it did"
+    title = f"{inference.model.agent}: inferred goals and beliefs"
     return posterior_plot(panels, inference.until + 1, _notes(inference), title)
 
 
@@ -97,14 +98,16 @@ def bars_of(inference: Posterior, tick: int | None) -> BarChart:
         if kind == "rationality":
             shares = inference.marginal(kind, tick).items()
             bars = {f"{value:g}": share for value, share in shares}
+            colours = shades(list(bars))
         else:
+            colours = _colours(inference)
             bars = {
                 factor.partition(".")[2]: inference.mean(factor, tick)
                 for factor in inference.factors
                 if factor.partition(".")[0] == kind
             }
         low, high = _utility_scale(inference) if kind == "utility" else (0.0, 1.0)
-        groups.append(BarGroup(title, low, high, bars, is_share=kind != "utility"))
+        groups.append(BarGroup(title, low, high, bars, colours, is_share=kind != "utility"))
     last = inference.until if tick is None else tick
     return BarChart(inference.model.agent, f"inferred from ticks to {last}", tuple(groups))
 
@@ -115,6 +118,11 @@ def heat_of(inference: Posterior, steps: int, tick: int | None) -> dict[tuple[in
     for (x, _, z), share in inference.predict(steps, tick)[-1].items():
         heat[x, z] = heat.get((x, z), 0.0) + share
     return heat
+
+
+def _colours(inference: Posterior) -> dict[str, str]:
+    """Return the colours of the goals and alternatives of a model."""
+    return hypothesis_colours(inference.model.goals, inference.model.alternative_names)
 
 
 def _utility_scale(inference: Posterior) -> tuple[float, float]:
@@ -134,24 +142,26 @@ def _panel(inference: Posterior, name: str) -> PosteriorPanel:
         shares = [inference.marginal(name, tick) for tick in ticks]
         values = sorted({value for share in shares for value in share})
         series = {f"{v:.3g}": tuple(share.get(v, 0.0) for share in shares) for v in values}
-        return PosteriorPanel(f"{name}: probability of its values", 0, 1, ticks, series, True, True)
+        title = f"{name}: probability of its values"
+        return PosteriorPanel(title, 0, 1, ticks, series, shades(list(series)), True, True)
     names = [factor for factor in inference.factors if factor.partition(".")[0] == name]
     series = {
         factor.partition(".")[2]: tuple(inference.mean(factor, tick) for tick in ticks)
         for factor in names
     }
-    if name != "utility":
-        return PosteriorPanel(_TITLES[name], 0, 1, ticks, series, stacked=True)
-    low, high = _utility_scale(inference)
-    return PosteriorPanel(_TITLES[name], low, high, ticks, series)
+    is_share = name != "utility"
+    low, high = (0.0, 1.0) if is_share else _utility_scale(inference)
+    return PosteriorPanel(
+        _TITLES[name], low, high, ticks, series, _colours(inference), stacked=is_share
+    )
 
 
 def _notes(inference: Posterior) -> list[NotedAct]:
-    """Return the movements that told most, and the one that nothing explains."""
+    """Return the actions that told most, and the one that nothing explains."""
     told = [
         (max(bits.values()), change)
         for change in inference.explain()
-        if change.is_movement
+        if change.is_action
         and (bits := {k: v for k, v in change.bits.items() if not k.startswith("actual.")})
     ]
     most = sorted((each for each in told if each[0] >= _LEAST_BITS), key=lambda each: -each[0])

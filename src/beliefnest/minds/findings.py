@@ -15,14 +15,16 @@ class Impossible:
 
     Attributes:
         tick: When.
-        text: What the agent did.
+        text: What the agent did, with the cells.
+        why: Why that is impossible.
     """
 
     tick: int
     text: str
+    why: str
 
     def __str__(self) -> str:
-        return f"tick {self.tick}: the agent {self.text}, which no hypothesis explains"
+        return f"tick {self.tick}: the agent {self.text}, which no hypothesis explains: {self.why}"
 
 
 @dataclass(frozen=True)
@@ -47,12 +49,15 @@ class Change:
         text: The evidence in words.
         bits: By factor, the divergence of its marginal after the step from that before
             (Kullback and Leibler), in bits.
-        is_movement: Whether the agent did something, or stayed.
+        is_action: Whether it is something that the agent did: it moved, stayed, opened a container
+            or acted on a goal, in sight or not. False: it only perceived something.
+        is_movement: Whether the agent was seen to change its cell.
     """
 
     tick: int
     text: str
     bits: Mapping[str, float]
+    is_action: bool = False
     is_movement: bool = False
 
     def __str__(self) -> str:

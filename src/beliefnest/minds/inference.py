@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -93,7 +94,7 @@ class Inference:
         if self._failed is None:
             return None
         step = self._steps[self._failed]
-        return Impossible(step.tick, step.text)
+        return Impossible(step.tick, step.text, step.why)
 
     @property
     def ticks(self) -> tuple[int, ...]:
@@ -197,7 +198,7 @@ class Inference:
             after = {name: self._marginal_of(name, number) for name in names}
             if tick is None or step.tick == tick:
                 bits = {name: _divergence(after[name], before[name]) for name in names}
-                changes.append(Change(step.tick, step.text, bits, step.is_movement))
+                changes.append(Change(step.tick, step.text, bits, step.is_action, step.is_movement))
             before = after
         return changes
 
@@ -456,9 +457,7 @@ def _joined_steps(parts: Sequence[Sequence[Step]]) -> Iterator[Step]:
                     logs.setdefault(state, []).append(mass)
             states.append({state: log_sum(np.stack(each)) for state, each in logs.items()})
         is_possible = any(step.is_possible for step in at)
-        yield Step(
-            told.tick, told.text, weights, tuple(states), told.agrees, told.is_movement, is_possible
-        )
+        yield replace(told, weights=weights, states=tuple(states), is_possible=is_possible)
 
 
 def _shares(logs: Mapping[Any, Sequence[float]]) -> dict[Any, float]:

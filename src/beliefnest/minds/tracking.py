@@ -36,6 +36,15 @@ __all__ = ["Step", "Tracker", "known_after"]
 
 Floats = npt.NDArray[np.float64]
 
+# Reasons why no hypothesis explains a piece of evidence.
+_DISAGREES = "no alternative agrees with what the observer's node holds"
+_MOVES = "no steps lead from the one cell to the other on the floor that the observer knows"
+_OPENS = "from there the container is out of reach, or its contents are not in doubt for the agent"
+_ACTS = "the goal is not in reach there, or the agent cannot be certain of it"
+_ENDS = "no goal is in reach there"
+_HIDES = "the observer would have seen it wherever it can be by then"
+_APPEARS = "no way leads there on which the observer would not have seen it"
+
 
 @dataclass(frozen=True, eq=False)
 class Step:
@@ -49,7 +58,9 @@ class Step:
         states: By actual alternative and state, the same summed with the prior over rationalities
             and utilities: log weights (credences,).
         agrees: The alternatives that have agreed with the node until then.
-        is_movement: Whether it is something that the agent did.
+        is_action: Whether it is something that the agent did.
+        is_movement: Whether the agent was seen to change its cell.
+        why: Why no hypothesis explains it, if none does.
     """
 
     tick: int
@@ -57,8 +68,10 @@ class Step:
     weights: Floats
     states: tuple[Mapping[State, Floats], ...]
     agrees: int
+    is_action: bool
     is_movement: bool
-    is_possible: bool = True
+    why: str
+    is_possible: bool
 
 
 @dataclass
@@ -175,7 +188,7 @@ class Tracker:
         self.trail = tuple([] for _ in self.states)
         self._cell = moment.cell
         self._perceive(moment)
-        self._note(moment.tick, f"is first seen at {moment.cell}", is_movement=False)
+        self._note(moment.tick, f"is first seen at {moment.cell}", is_action=False)
 
     def _take(self, moment: Moment) -> None:
         if self._over:
@@ -220,36 +233,38 @@ class Tracker:
             self._agree(moment)
         else:
             self._perceive(moment)
-            self._note(moment.tick, f"perceives at {moment.cell}", is_movement=False)
+            self._note(moment.tick, f"perceives at {moment.cell}", is_action=False)
 
     def _see(self, moment: Moment) -> None:
         """Explain what the agent does in sight."""
         assert moment.cell is not None and self._cell is not None
         self.tick = moment.tick
         before, cell = self._cell, moment.cell
-        text, is_movement = "", True
+        text, why, is_action = "", _DISAGREES, True
         if cell != before:
             self._quiet = 0
             self.states = self._moved(moment, before, cell)
-            text = f"moves from {before} to {cell}"
+            text, why = f"moves from {before} to {cell}", _MOVES
         elif moment.act is not None or moment.opened is not None:
             self._quiet = 0
             stage = self._stage(before)
             self.states = self._did(stage, moment)
             if moment.act is not None:
                 text = f"acts on goal {self.hypotheses.goals[moment.act]} at {cell}"
+                why = _ACTS
                 self._over = True
             else:
-                text = f"opens the container at {moment.opened}"
+                text, why = f"opens the container at {moment.opened} from {cell}", _OPENS
         elif not moment.deed and self._stays_now():
             self.states = self._stayed(self._stage(before))
             text = f"stays at {cell}"
         else:
-            is_movement = False
+            is_action = False
         self._cell = cell
         changed = self._perceive(moment)
         if text or changed:
-            self._note(moment.tick, text or f"perceives at {cell}", is_movement=is_movement)
+            text = text or f"perceives at {cell}"
+            self._note(moment.tick, text, why, is_action=is_action, is_movement=cell != before)
 
     def _stays_now(self) -> bool:
         """Count a tick without movement; whether it completes a stay."""
@@ -271,7 +286,7 @@ class Tracker:
             elif self._stays_now():
                 assert self._cell is not None
                 self.states = self._stayed(self._stage(self._cell))
-                self._note(self.tick, f"stays at {self._cell}", is_movement=True)
+                self._note(self.tick, f"stays at {self._cell}")
         self.tick = max(self.tick, tick)
 
     def _stayed(self, stage: Stage) -> States:
@@ -404,7 +419,7 @@ class Tracker:
                     sums.add((place, *knowledge, True), weight, state, policy, by)
             found.append(sums.total())
         self.states = tuple(found)
-        self._note(tick, "acts on a goal where it is, and ends", is_movement=True)
+        self._note(tick, f"acts on a goal where it is, at {self._cell}, and ends", _ENDS)
 
     # Gaps
 
@@ -419,7 +434,7 @@ class Tracker:
         before = self._gap.moments[-2] if self._moment.tick == tick else self._moment
         self.states = self._unseen_action(before.scene, self._moment, self.states)
         self._gap.count += 1
-        self._note(tick, "is out of sight", is_movement=True)
+        self._note(tick, f"is out of sight, last seen at {self._gap.cell}", _HIDES)
 
     def _unseen_action(self, scene: Scene, moment: Moment, states: States) -> States:
         found = []
@@ -519,7 +534,8 @@ class Tracker:
             self.states = self._did(self._stage_of(moment.scene, moment.cell), moment)
             self._over = moment.act is not None
         self._perceive(moment)
-        self._note(moment.tick, f"is seen again at {moment.cell}", is_movement=True)
+        text = f"is seen again at {moment.cell}, last seen at {gap.cell}"
+        self._note(moment.tick, text, _APPEARS, is_movement=moment.cell != gap.cell)
 
     def _arrived_from(
         self, scene: Scene, actual: int, weights: Mapping[State, Floats], moment: Moment
@@ -673,15 +689,34 @@ class Tracker:
         self.trail[actual].append(layer)
         return Sums(layer)
 
-    def _note(self, tick: int, text: str, *, is_movement: bool) -> None:
+    def _note(
+        self,
+        tick: int,
+        text: str,
+        why: str = _DISAGREES,
+        *,
+        is_action: bool = True,
+        is_movement: bool = False,
+    ) -> None:
         shape = (self.hypotheses.alternatives, *self.hypotheses.shape)
         total = np.full(shape, -np.inf)
         for actual, weights in enumerate(self.states):
             if weights:
                 total[actual] = joined(weights.values())
         is_possible = bool(np.isfinite(total).any())
-        masses = self.masses()
-        self.steps.append(Step(tick, text, total, masses, self._agrees, is_movement, is_possible))
+        self.steps.append(
+            Step(
+                tick,
+                text,
+                total,
+                self.masses(),
+                self._agrees,
+                is_action,
+                is_movement,
+                why,
+                is_possible,
+            )
+        )
         if not is_possible:
             self._over = True
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width
 from beliefnest.pictures.marks import XY, Lines, Rectangle, Text
-from beliefnest.pictures.palette import INK, PAPER, QUIET, colours_of, mix
+from beliefnest.pictures.palette import INK, PAPER, QUIET, mix
 from beliefnest.pictures.panel import Block, paragraph
 
 __all__ = ["BarChart", "BarGroup", "draw_bars", "number_text"]
@@ -20,6 +20,7 @@ class BarGroup:
         low: Lower end of the scale.
         high: Upper end of the scale.
         bars: Values by name.
+        colours: Colour of each bar.
         is_share: True if the values are probabilities.
     """
 
@@ -27,6 +28,7 @@ class BarGroup:
     low: float
     high: float
     bars: Mapping[str, float]
+    colours: Mapping[str, str]
     is_share: bool = False
 
 
@@ -64,7 +66,6 @@ def draw_bars(chart: BarChart, at: XY, width: float, size: float) -> Block:
     paragraph(block, chart.title, left, width, size * 1.15, bold=True)
     paragraph(block, chart.note, left, width, size * 0.95, QUIET)
     names = [name for group in chart.groups for name in group.bars]
-    colours = colours_of(dict.fromkeys(names))
     inset = min(width * 0.4, max(text_width(name, size) for name in names)) + 3
     room = text_width("100 %", size) + 3
     span = (left + inset, left + width - room)
@@ -79,8 +80,9 @@ def draw_bars(chart: BarChart, at: XY, width: float, size: float) -> Block:
             block.marks.append(Text(left, base, ellipsis(name, size, inset - 3), size, INK))
             end = zero + value * scale
             box = (min(zero, end), block.bottom + size * 0.15, abs(end - zero), size * 0.9)
-            edge = mix(colours[name], INK, 0.4)
-            block.marks.append(Rectangle(*box, mix(PAPER, colours[name], 0.72), edge, 0.4))
+            colour = group.colours[name]
+            edge = mix(colour, INK, 0.4)
+            block.marks.append(Rectangle(*box, mix(PAPER, colour, 0.72), edge, 0.4))
             words = f"{100 * value:.0f} %" if group.is_share else number_text(value, digits=0)
             block.marks.append(Text(left + width, base, words, size, INK, anchor="end"))
             block.bottom += size * 1.3

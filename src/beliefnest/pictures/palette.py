@@ -7,13 +7,14 @@ apart. Colour is never the only distinction.
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import cycle
 
 __all__ = [
     "AGENT_COLOURS",
+    "HYPOTHESIS_COLOURS",
     "INK",
     "MARKS",
     "PAPER",
@@ -24,7 +25,9 @@ __all__ = [
     "age_text",
     "agent_looks",
     "colours_of",
+    "hypothesis_colours",
     "mix",
+    "shades",
     "told_text",
 ]
 
@@ -36,6 +39,13 @@ AGENT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#F0E442
 """Blue, orange, bluish green, purple, sky blue, yellow, grey. Vermillion is reserved for false
 entries."""
 
+HYPOTHESIS_COLOURS = ("#332288", "#999933", "#882255", "#44AA99", "#CC6677", "#117733", "#AA4499")
+"""Indigo, olive, wine, teal, rose, green, purple: goals and alternatives of inferences.
+
+They are those of Paul Tol's scheme "muted" that differ from the colours of agents.
+"""
+
+_DARKEST_SHADE = "#08306b"
 _DARK = frozenset({"#0072B2", "#009E73", "#4D4D4D", "#1A1A1A", "#8C510A", "#9E1B32"})
 _NAMED: Mapping[str, str] = {
     "light blue": "#56B4E9",
@@ -150,6 +160,24 @@ def colours_of(names: Iterable[str]) -> dict[str, str]:
     free = [colour for colour in AGENT_COLOURS if colour not in wanted.values()]
     rest = cycle(free or AGENT_COLOURS)
     return {name: colour or next(rest) for name, colour in wanted.items()}
+
+
+def hypothesis_colours(goals: Iterable[str], alternatives: Iterable[str]) -> dict[str, str]:
+    """Return a colour for each goal and alternative of a model, the same in all views.
+
+    A goal and an alternative of one name share a colour.
+    """
+    names = dict.fromkeys([*goals, *alternatives])
+    return dict(zip(names, cycle(HYPOTHESIS_COLOURS), strict=False))
+
+
+def shades(names: Sequence[str]) -> dict[str, str]:
+    """Return colours from light to dark for names that are ordered."""
+    most = max(1, len(names) - 1)
+    return {
+        name: mix(PAPER, _DARKEST_SHADE, 0.08 + 0.82 * number / most)
+        for number, name in enumerate(names)
+    }
 
 
 def _named_colour(name: str) -> str | None:

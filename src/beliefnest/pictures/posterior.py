@@ -9,7 +9,7 @@ from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width
 from beliefnest.pictures.marks import XY, Drawing, Lines, Polygon, Rectangle, Text
 from beliefnest.pictures.marks import Mark as Drawn
-from beliefnest.pictures.palette import INK, PAPER, QUIET, colours_of, mix
+from beliefnest.pictures.palette import INK, PAPER, QUIET, mix
 from beliefnest.pictures.panel import Block, paragraph
 from beliefnest.pictures.time_axis import NotedAct, TimeAxis
 
@@ -21,7 +21,6 @@ _LINE = TEXT_SIZE * 1.22
 _SWATCH = 11.0
 _DASHES = (0.0, 4.0, 1.4, 7.0)
 _MOST_KEYS = 8
-_DARK = "#08306b"
 
 
 @dataclass(frozen=True)
@@ -34,6 +33,7 @@ class PosteriorPanel:
         high: Upper end of the scale.
         ticks: Ticks at which values change.
         series: Values from each tick on, by name.
+        colours: Colour of each series.
         stacked: True if the values are shares of a whole, drawn on top of each other.
         ordered: True if the names are numbers, shaded from light to dark.
     """
@@ -43,6 +43,7 @@ class PosteriorPanel:
     high: float
     ticks: tuple[int, ...]
     series: Mapping[str, tuple[float, ...]]
+    colours: Mapping[str, str]
     stacked: bool = False
     ordered: bool = False
 
@@ -75,8 +76,6 @@ def _draw(
     axis = TimeAxis(panels[0].ticks[0], max(end, panels[0].ticks[0] + 1), span)
     top = axis.note(notes, head.bottom + 2, marks)
     first, bottom = top, top
-    names = [name for panel in panels if not panel.ordered for name in panel.series]
-    colours = colours_of(dict.fromkeys(names))
     drawn: list[Drawn] = []
     titles: list[Drawn] = []
     for panel in panels:
@@ -85,7 +84,7 @@ def _draw(
         titles.append(Text(left, base, words, TEXT_SIZE, INK, bold=True, halo=PAPER))
         top += _LINE + 2
         high = max(_HIGH, len(_keyed(panel)) * _LINE)
-        drawn += _Panel(panel, axis, (top, top + high), _looks(panel, colours)).marks(keys)
+        drawn += _Panel(panel, axis, (top, top + high), _looks(panel)).marks(keys)
         bottom = top + high
         top = bottom + 7
     marks += drawn
@@ -103,16 +102,10 @@ class _Look:
     dash: float
 
 
-def _looks(panel: PosteriorPanel, colours: Mapping[str, str]) -> dict[str, _Look]:
+def _looks(panel: PosteriorPanel) -> dict[str, _Look]:
     """Return the look of each series."""
-    if not panel.ordered:
-        return {
-            name: _Look(colours[name], _DASHES[number % len(_DASHES)])
-            for number, name in enumerate(panel.series)
-        }
-    most = max(1, len(panel.series) - 1)
     return {
-        name: _Look(mix(PAPER, _DARK, 0.08 + 0.82 * number / most), 0.0)
+        name: _Look(panel.colours[name], 0.0 if panel.ordered else _DASHES[number % len(_DASHES)])
         for number, name in enumerate(panel.series)
     }
 

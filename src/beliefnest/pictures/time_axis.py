@@ -48,11 +48,11 @@ class TimeAxis:
         return low + (high - low) * (tick - self.start) / (self.end - self.start)
 
     def draw(self, top: float, marks: list[Drawn]) -> float:
-        """Add the axis with its numbers; return its lower end."""
+        """Add the axis with the numbers of its ticks, `end` excluded; return its lower end."""
         low, high = self.span
         widest = text_width(str(self.end), TEXT_SIZE)
         step = _round_step((self.end - self.start) / max(1.0, (high - low) / (widest * 2.2)))
-        ticks = list(range(-(-self.start // step) * step, self.end + 1, step))
+        ticks = list(range(-(-self.start // step) * step, self.end, step))
         strokes = (
             ((low, top), (high, top)),
             *(((self.x(t), top), (self.x(t), top + 2)) for t in ticks),

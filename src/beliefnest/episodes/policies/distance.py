@@ -150,10 +150,12 @@ def _still_to_do(fact: Fact, facts: MindFacts) -> float:
         case ItemsIn(place=place, item=item, count=count):
             missing = count - facts.items_in(place).get(item, 0)
             return missing * _to_container(facts, place, item)
-        case NothingIn(place=place):
-            return float(max(1, sum(facts.items_in(place).values())))
-        case NothingWith(agent=agent):
-            return float(sum(facts.items_of(agent).values()))
+        case NothingIn() | NothingWith():
+            if isinstance(fact, NothingIn):
+                held = facts.items_in(fact.place)
+            else:
+                held = facts.items_of(fact.agent)
+            return float(max(1, sum(held.values())))
         case AgentAt(agent=agent):
             feet = facts.feet_of(agent)
             return 1.0 + (_FAR if feet is None else fact.distance(feet)) * _PER_BLOCK
@@ -161,10 +163,8 @@ def _still_to_do(fact: Fact, facts: MindFacts) -> float:
             left = [fact.missing(facts, site) for site in fact.known(facts)]
             off = [deeds + far * _PER_BLOCK for deeds, far in left]
             return 1.0 + min(off, default=2 * _FAR * _PER_BLOCK)
-        case BlocksAlike(place=place):
+        case BlocksAlike(place=place) | BlockIs(place=place):
             return _to_block(facts, place, fact.wanted(facts))
-        case BlockIs(place=place, state=state):
-            return _to_block(facts, place, state)
 
 
 def _to_block(facts: MindFacts, place: Position, wanted: str | None) -> float:

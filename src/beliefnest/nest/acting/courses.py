@@ -85,6 +85,11 @@ class CoursePlan:
         return Engines()
 
     @cached_property
+    def failures(self) -> dict[tuple[str, str], Fault]:
+        """First failure of each program that failed in a course, by agent and candidate."""
+        return {}
+
+    @cached_property
     def _worlds(self) -> dict[tuple[int, ...], ScriptedWorld]:
         return {}
 
@@ -282,10 +287,11 @@ class Course:
             programs.leave()
             fault = programs.results()[name].error
             if fault is not None:
+                candidate = self.candidates[name].name
                 if fault.kind == "syntax":
-                    candidate = self.candidates[name].name
                     raise InputError(f"candidate {candidate!r} of {name}: {fault}")
                 self.faults[name] = fault
+                self.plan.failures.setdefault((name, candidate), fault)
             policy = self.candidates[name].policy
             if policy is not None:
                 self._begin(name, policy(self, name))

@@ -35,7 +35,9 @@ from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.signs import plain_state
 from beliefnest.world.values import AgentState, Block, Items, Point, Position
 
-if TYPE_CHECKING:  # Pictures take long to import, and few histories are drawn.
+if TYPE_CHECKING:  # These take long to import, and few histories are drawn or listed.
+    import pandas as pd
+
     from beliefnest.pictures.figure import Figure
 
 __all__ = ["Faces", "History", "ImaginationWarning", "Imagined", "imagine_in"]
@@ -275,6 +277,32 @@ class Imagined:
             for name in actors[agent]
         }
 
+    @property
+    def failed(self) -> dict[str, dict[str, str]]:
+        """The first reason why a candidate's program failed, by agent and candidate.
+
+        Histories that were dropped count too.
+        """
+        found: dict[str, dict[str, str]] = {}
+        for (agent, name), fault in self._drawing.plan.failures.items():
+            found.setdefault(agent, {})[name] = str(fault)
+        return found
+
+    def frame(self) -> "pd.DataFrame":
+        """Return the candidates of all histories.
+
+        Returns:
+            Columns history, weight, agent, candidate, failed (the reason, or None).
+        """
+        import pandas as pd
+
+        rows = [
+            (history.number, history.weight, agent, name, history.failed.get(agent))
+            for history in self
+            for agent, name in history.candidates.items()
+        ]
+        return pd.DataFrame(rows, columns=["history", "weight", "agent", "candidate", "failed"])
+
     def keep(self, number: int, name: str) -> None:
         """Record one history in the nest, as a branch of the simulator; nothing else is recorded.
 
@@ -304,6 +332,8 @@ class Imagined:
 
     def __repr__(self) -> str:
         head = f"<{self.n} histories of {path_text(self._path)}, ticks {self.since} to {self.until}"
+        for agent, named in self.failed.items():
+            head += "".join(f", {agent} {name!r} failed ({why})" for name, why in named.items())
         if self.impossible is not None:
             return (
                 f"{head}: none agrees with what was perceived; the last was lost at tick "
@@ -812,6 +842,15 @@ def _weigh(imagined: Imagined, evidence: Sequence[tuple[Sequence[GoalCondition],
 
 
 def _warn(imagined: Imagined) -> None:
+    for agent, named in imagined.failed.items():
+        for name, why in named.items():
+            warnings.warn(
+                f"the program of candidate {name!r} of {agent} failed: {why}. From there on it "
+                f"does nothing in that history, which counts all the same; correct the program, or "
+                "look at history.failed",
+                ImaginationWarning,
+                stacklevel=5,
+            )
     if imagined.impossible is not None:
         warnings.warn(
             f"none of {imagined.n} histories agrees with what was perceived: "

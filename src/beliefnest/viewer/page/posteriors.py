@@ -4,7 +4,6 @@ from typing import Any
 
 from beliefnest.minds.charts import heat_of, panels_of
 from beliefnest.minds.inference import Inference
-from beliefnest.pictures.palette import colours_of
 from beliefnest.pictures.plan import LEAST_HEAT
 
 __all__ = ["told_inference"]
@@ -33,8 +32,6 @@ def told_inference(inference: Inference, steps: int) -> dict[str, Any]:
     panels = panels_of(inference)
     ticks = inference.ticks
     gap = -(-len(ticks) // _MOST_PREDICTIONS)
-    names = [name for panel in panels for name in panel.series]
-    colours = colours_of(dict.fromkeys(names))
     return {
         "agent": inference.model.agent,
         "steps": steps,
@@ -46,7 +43,7 @@ def told_inference(inference: Inference, steps: int) -> dict[str, Any]:
                 "high": panel.high,
                 "stacked": panel.stacked,
                 "series": [
-                    [name, colours[name], [round(value, 4) for value in values]]
+                    [name, panel.colours[name], [round(value, 4) for value in values]]
                     for name, values in panel.series.items()
                 ],
             }
