@@ -8,7 +8,8 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.errors import ScenarioError, UnknownNameError
-from beliefnest.scenarios.expected import Arrives, Holds, Opens, Stands
+from beliefnest.scenarios.expected import Arrives, Opens
+from beliefnest.scenarios.expected_state import Holds, Stands
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.reading import parse_yaml
 from beliefnest.scenarios.scenario import Scenario

@@ -9,9 +9,9 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.llm.messages import Answer, Message, Sampling
-from beliefnest.scenarios.judging import opened_by
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
+from beliefnest.scenarios.trial import opened_by
 from beliefnest.world.values import Event, EventKind
 
 BLUE, RED = (1, 1, 5), (7, 1, 5)

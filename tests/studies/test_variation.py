@@ -11,14 +11,14 @@ from tests.studies.small import SMALL, small_in
 import beliefnest as bn
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.document import plain
+from beliefnest.scenarios.expected import ExpectEntry
+from beliefnest.scenarios.expected_state import ExpectationEntry
 from beliefnest.scenarios.expressions import evaluate
 from beliefnest.scenarios.format import (
     AgentEntry,
     BelievedSignEntry,
     ContainerEntry,
     DoubtEntry,
-    ExpectationEntry,
-    ExpectEntry,
     InferEntry,
     InitialBeliefEntry,
     ProbeEntry,

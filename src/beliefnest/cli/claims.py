@@ -9,9 +9,9 @@ from rich.table import Table
 from rich.text import Text
 
 from beliefnest.cli.console import folded
-from beliefnest.cli.pictures import container_name, place_text
 from beliefnest.cli.text import printable
 from beliefnest.nest.explain.made_claims import MadeClaim
+from beliefnest.scenarios.naming import container_name, named_place
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.paths import parse_path, path_text, paths_below
@@ -135,8 +135,8 @@ def _words(claim: Claim, scenario: Scenario) -> str:
     """Return a claim in words, with the scenario's names of containers and places."""
     if claim.kind is ClaimKind.POSITION:
         x, y, z = claim.place
-        return claim.about(place_text((x, y, z), scenario).removeprefix("at "))
-    return claim.about(container_name(claim.cell, scenario))
+        return claim.about(named_place((x, y, z), scenario.setting).removeprefix("at "))
+    return claim.about(container_name(claim.cell, scenario.setting))
 
 
 def _verdict(told: MadeClaim, path: str) -> str:

@@ -1,6 +1,5 @@
 """Pictures of conditions: the values to draw, read from an outcome."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -11,20 +10,16 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.overview import Card, ConditionPicture, Note
 from beliefnest.pictures.palette import Mark, age_text
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores
-from beliefnest.scenarios.expected import Arrives, Hears, Infers, Stands
+from beliefnest.scenarios.expected import Arrives, Infers
 from beliefnest.scenarios.inferring import means_text
+from beliefnest.scenarios.naming import container_name, named_place, titled
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
-from beliefnest.world.texts import on_one_line
-from beliefnest.world.values import Point, Position
 
-__all__ = ["container_name", "place_text", "point_text", "read_condition", "read_trails", "titled"]
-
-_NEAR = 3.0
-"""Distance in blocks from a named place within which an agent is said to be there."""
+__all__ = ["read_condition", "read_trails"]
 
 
 def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> ConditionPicture:
@@ -72,21 +67,6 @@ def read_trails(
                 if agent is not None:
                     trails.setdefault(name, []).append(agent.position)
     return {name: tuple((x, z) for x, _, z in points) for name, points in trails.items()}
-
-
-def container_name(place: Position, scenario: Scenario) -> str:
-    """Return the label of a container, or its position if it has none."""
-    return on_one_line(scenario.labels.get(place, f"({', '.join(map(str, place))})"))
-
-
-def point_text(point: tuple[float, float, float]) -> str:
-    """Return a point as text with one decimal, for people."""
-    return f"({', '.join(f'{value:.1f}' for value in point)})"
-
-
-def titled(name: str) -> str:
-    """Return an agent's name with a capital letter, for the start of a sentence."""
-    return name[:1].upper() + name[1:]
 
 
 def _viewers(scenario: Scenario) -> tuple[str, ...]:
@@ -141,38 +121,24 @@ def _state_card(state: State, outcome: Outcome) -> Card:
 def _agents_told(outcome: Outcome) -> tuple[str, ...]:
     """Return the agents about whose positions the scenario states expectations."""
     contents = [each.expectation.content for each in outcome.expectations]
-    return tuple(dict.fromkeys(each.agent for each in contents if isinstance(each, Stands)))
+    return tuple(dict.fromkeys(agent for each in contents for agent in each.agents))
 
 
 def _heard(state: State, outcome: Outcome) -> list[Note]:
     """Return a note for each utterance that the scenario states expectations about."""
     contents = [each.expectation.content for each in outcome.expectations]
-    notes = []
-    for text in dict.fromkeys(each.text for each in contents if isinstance(each, Hears)):
-        heard = any(text in said for _, _, said in state.chat)
-        notes.append(Note(f"{text!r}: {'heard' if heard else 'not heard'}"))
-    return notes
+    found = [each.found(state, outcome.scenario.setting) for each in contents if each.noted]
+    return [Note(f"{what}: {there}") for what, there in dict.fromkeys(found)]
 
 
 def _place_words(name: str, state: State, scenario: Scenario) -> str:
     agent = state.agents[name]
     if agent.position is None:
         return f"{name}: place not known"
-    where = place_text(agent.position, scenario)
+    where = named_place(agent.position, scenario.setting)
     if agent.current or agent.basis is None:
         return f"{name}: {where}"
     return f"{name}: {where}, {age_text(state.tick - agent.basis.observed_at)}"
-
-
-def place_text(point: Point, scenario: Scenario) -> str:
-    """Return a point as text for people: the name of a named place near it, or its coordinates."""
-    near = {
-        name: math.dist(point, (x + 0.5, y, z + 0.5))
-        for name, (x, y, z) in scenario.setting.places.items()
-    }
-    if near and min(near.values()) <= _NEAR:
-        return f"at {min(near, key=lambda name: near[name])}"
-    return f"at {point_text(point)}"
 
 
 def _held(state: State, outcome: Outcome) -> bool | None:
@@ -194,10 +160,12 @@ def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
         answers = [repr(reply.answer) for reply in outcome.replies if reply.answer]
         deed = f"{agent} answers {' and '.join(answers) or 'nothing'}"
     elif any(isinstance(each, Arrives) for each in probe.expect):
-        where = "nowhere" if outcome.arrived is None else place_text(outcome.arrived, scenario)
+        where = (
+            "nowhere" if outcome.arrived is None else named_place(outcome.arrived, scenario.setting)
+        )
         deed = f"{agent} ends {where}"
     elif outcome.opened:
-        deed = f"{agent} opens the {container_name(outcome.opened[0], scenario)}"
+        deed = f"{agent} opens the {container_name(outcome.opened[0], scenario.setting)}"
     else:
         deed = f"{agent} opens nothing"
     reported = f"{scenario.reported_by} reports" if scenario.reported_by else "expected"

@@ -1,6 +1,5 @@
 """Report of a run: the object that `--json` prints, and the table."""
 
-import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,32 +13,15 @@ from rich.measure import Measurement
 from rich.table import Table
 
 from beliefnest.belief.plain import state_json
-from beliefnest.belief.view import State
-from beliefnest.cli.pictures import container_name, point_text
 from beliefnest.cli.text import printable
 from beliefnest.llm.messages import Usage
-from beliefnest.scenarios.expected import (
-    Arrives,
-    Believes,
-    Expected,
-    Hears,
-    Holds,
-    Infers,
-    Intends,
-    Is,
-    Judge,
-    Opens,
-    Reads,
-    Says,
-    Takes,
-)
+from beliefnest.scenarios.expected import Infers, Opens
 from beliefnest.scenarios.inferring import means_text
-from beliefnest.scenarios.judging import OUTCOMES, places_of
-from beliefnest.scenarios.naming import items_text
-from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome, ProbeOutcome
+from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.scenarios.naming import container_name, point_text
+from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Placements, Point, Position
 
 __all__ = [
@@ -268,9 +250,10 @@ def _cells(outcome: Outcome) -> dict[str, str]:
     """Return the text of each expectation and each probe, by heading."""
     cells: dict[str, list[str]] = {}
     for each in outcome.expectations:
-        state = outcome.state(each.expectation.path)
-        heading, text = _found(each, state, outcome.scenario)
-        cells.setdefault(heading, []).append(text)
+        expectation, setting = each.expectation, outcome.scenario.setting
+        what, found = expectation.content.found(outcome.state(expectation.path), setting)
+        heading = f"{escape(what)} in {expectation.where}"
+        cells.setdefault(heading, []).append(_marked(escape(found), each.ok))
     for probe in outcome.probes:
         heading, text = _acted(probe, outcome.scenario)
         placed = {} if probe.trial is None else probe.trial.result.placed
@@ -281,47 +264,22 @@ def _cells(outcome: Outcome) -> dict[str, str]:
     return {heading: "\n".join(lines) for heading, lines in cells.items()}
 
 
-def _found(outcome: ExpectationOutcome, state: State, scenario: Scenario) -> tuple[str, str]:
-    content = outcome.expectation.content
-    if isinstance(content, Holds) and content.items:
-        names = [
-            escape(container_name(place, scenario)) for place in places_of(content.items, state)
-        ]
-        what, found = ", ".join(content.items), " and ".join(names) or "nowhere"
-    elif isinstance(content, Holds):
-        held = state.containers.get(content.container)
-        what, found = escape(container_name(content.container, scenario)), "nothing"
-        if held is not None and held.items:
-            found = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
-    elif isinstance(content, Reads):
-        text = state.signs.get(content.sign)
-        what = f"sign ({', '.join(map(str, content.sign))})"
-        found = "unknown" if text is None else escape(sign_words(text) or "nothing")
-    elif isinstance(content, Is):
-        what = f"block ({', '.join(map(str, content.block))})"
-        found = state.blocks[content.block] or "unknown"
-    elif isinstance(content, Hears):
-        heard = any(content.text in text for _, _, text in state.chat)
-        what, found = f"{content.text!r}", "heard" if heard else "not heard"
-    else:
-        position = state.agents[content.agent].position
-        what, found = content.agent, "unknown" if position is None else point_text(position)
-    path = outcome.expectation.path
-    return f"{what} in {'reality' if path == '/' else path}", _marked(found, outcome.ok)
-
-
 def _acted(outcome: ProbeOutcome, scenario: Scenario) -> tuple[str, str]:
     probe = outcome.probe
-    text = "; ".join(_deeds(outcome, scenario))
+    setting = scenario.setting
+    alone = len({type(each) for each in probe.expect}) == 1
+    told = [each.expected.told(each, outcome, setting, alone=alone) for each in outcome.verdicts]
+    if not probe.expect:
+        told = [container_name(outcome.opened[0], setting) if outcome.opened else "nothing"]
+    text = "; ".join(told)
     if outcome.outcome not in ("ok", "wrong"):
         text += f" ({outcome.outcome.replace('_', ' ')})"
     if outcome.inferred is not None:
         return f"inferred of {probe.agent} from {probe.path}", _marked(
             escape(_means(outcome)), outcome.ok
         )
-    kinds = {type(each) for each in probe.expect}
-    verb = "opens" if kinds <= {Opens} else "arrives at" if kinds == {Arrives} else "does"
-    heading = f"predicted {probe.agent} {verb}"
+    verbs = {each.verb for each in probe.expect} or {Opens.verb}
+    heading = f"predicted {probe.agent} {verbs.pop() if len(verbs) == 1 else 'does'}"
     if not probe.asks_for_program:
         heading = f"answers from {probe.path}"
     return heading, _marked(escape(text), outcome.ok)
@@ -333,51 +291,8 @@ def _means(outcome: ProbeOutcome) -> str:
     factors: dict[str, None] = {}
     for each in outcome.probe.expect:
         if isinstance(each, Infers):
-            named = [each.factor, each.above, each.below]
-            factors |= dict.fromkeys(name for name in named if isinstance(name, str))
+            factors |= dict.fromkeys(each.factors)
     return outcome.inferred.impossible or means_text(outcome.inferred.means, tuple(factors))
-
-
-def _deeds(outcome: ProbeOutcome, scenario: Scenario) -> list[str]:
-    """Return what the agent did in a probe, in words, for each kind of expectation."""
-    kinds = {type(each) for each in outcome.probe.expect} or {Opens}
-    told = []
-    if Opens in kinds:
-        opened = container_name(outcome.opened[0], scenario) if outcome.opened else "nothing"
-        told.append(opened if kinds == {Opens} else f"opens {opened}")
-    if Arrives in kinds:
-        where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
-        told.append(where if kinds == {Arrives} else f"arrives at {where}")
-    if Intends in kinds:
-        told.append(f"makes for {_made_for(outcome, scenario)}")
-    told += [f"answers {reply.answer or 'nothing'}" for reply in outcome.replies]
-    others = [each for each in outcome.verdicts if isinstance(each.expected, _TOLD_BY_VERDICT)]
-    return told + [_name(each.expected) if each.ok else each.why_not for each in others]
-
-
-def _made_for(outcome: ProbeOutcome, scenario: Scenario) -> str:
-    if outcome.intended is None:
-        return "nothing"
-    x, y, z = map(math.floor, outcome.intended)
-    labelled = (x, y, z) in scenario.labels
-    return container_name((x, y, z), scenario) if labelled else point_text(outcome.intended)
-
-
-_TOLD_BY_VERDICT = (Takes, Says, Believes, Judge)
-
-
-def _name(expected: Expected) -> str:
-    match expected:
-        case Takes(items):
-            return f"takes {items_text(items)}"
-        case Says(text):
-            return f"says {text!r}"
-        case Believes(expectation):
-            return expectation.label or f"{expectation.path} as expected"
-        case Judge(_, name):
-            return name
-        case _:
-            return type(expected).__name__.lower()
 
 
 def _marked(text: str, ok: bool | None) -> str:

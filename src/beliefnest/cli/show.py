@@ -18,7 +18,6 @@ from beliefnest.belief.view import State
 from beliefnest.cli.claims import claims_json, claims_table, paths_of_beliefs, print_claims
 from beliefnest.cli.console import print_table, stdout
 from beliefnest.cli.folder import store_in, stores_in
-from beliefnest.cli.pictures import container_name, place_text, titled
 from beliefnest.cli.report import placed_lines
 from beliefnest.cli.text import printable
 from beliefnest.errors import BranchError, InputError, TickError
@@ -34,6 +33,7 @@ from beliefnest.prompts.templates import (
     built_in_template,
     load_template,
 )
+from beliefnest.scenarios.naming import container_name, named_place, titled
 from beliefnest.scenarios.records import placed_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import FOLLOW
@@ -272,16 +272,18 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         agents.add_column("how that is known")
     for place, held in sorted(state.containers.items()):
         items = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
-        name = container_name(place, scenario)
+        name = container_name(place, scenario.setting)
         is_all = "yes" if held.complete else "not known"
         known = _how_known(state, held.basis, current=held.current)
         containers.add_row(_foreign(name), items or "-", is_all, *known)
     for name, agent in state.agents.items():
-        where = "unknown" if agent.position is None else place_text(agent.position, scenario)
+        where = (
+            "unknown" if agent.position is None else named_place(agent.position, scenario.setting)
+        )
         holds = (agent.equipment or {}).get("main_hand", "-")
         seen = "yes" if agent.current else "no"
         known = _how_known(state, agent.basis, current=agent.current)
-        agents.add_row(titled(name), _foreign(where), seen, holds, *known)
+        agents.add_row(titled(name), _foreign(where or "unknown"), seen, holds, *known)
     print_table(console, containers)
     print_table(console, agents)
     for (tick, speaker, text), to in zip(state.chat, state.addressees, strict=True):

@@ -9,13 +9,12 @@ from beliefnest.bodies.worlds import Worlds
 from beliefnest.llm.messages import Answer, Message, Sampling
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Answers, Intends, Opens
+from beliefnest.scenarios.expected import Answers
 from beliefnest.scenarios.loading import read_document
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.probing import Asking, run_probe
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.variation import Variation
-from beliefnest.world.values import Position
 
 __all__ = ["JudgedOutcome", "Stage", "requests_of"]
 
@@ -114,13 +113,5 @@ class Stage:
 
 def _grounds(nest: Nest, probe: Probe) -> list[str]:
     belief = nest[probe.path]
-    places: list[Position] = [each.container for each in probe.expect if isinstance(each, Opens)]
-    for each in probe.expect:
-        if isinstance(each, Intends) and each.is_container:
-            x, y, z = each.place
-            places.append((int(x), int(y), int(z)))
-    return [
-        line
-        for place in dict.fromkeys(places)
-        for line in str(belief.explain(container=place)).splitlines()
-    ]
+    places = dict.fromkeys(each.explained for each in probe.expect if each.explained is not None)
+    return [line for place in places for line in str(belief.explain(container=place)).splitlines()]

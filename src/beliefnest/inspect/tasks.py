@@ -13,8 +13,9 @@ from beliefnest.errors import InputError
 from beliefnest.inspect.messages import messages_of
 from beliefnest.inspect.parts import metrics_by, score_of, task_of
 from beliefnest.inspect.stage import Stage, requests_of
+from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.loading import read_document
-from beliefnest.scenarios.records import expected_json, probe_json
+from beliefnest.scenarios.records import probe_json
 from beliefnest.studies.design import Design
 from beliefnest.studies.plan import Cell, plan_cells
 

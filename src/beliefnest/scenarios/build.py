@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -13,31 +13,13 @@ from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.unique import unique_fault, unique_items
 from beliefnest.perception.options import Perception
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
+from beliefnest.scenarios.checks import Checks, check_inside
 from beliefnest.scenarios.content import Probe, ScenarioContent
 from beliefnest.scenarios.document import Document, KeyPath, plain
-from beliefnest.scenarios.expected import (
-    Answers,
-    Arrives,
-    Believes,
-    Content,
-    Expectation,
-    Expected,
-    Hears,
-    Holds,
-    Infers,
-    Intends,
-    Is,
-    Opens,
-    Reads,
-    Says,
-    Stands,
-    Takes,
-)
+from beliefnest.scenarios.expected import Answers, Expected, Infers, read_expected, read_inferred
+from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.format import (
-    AnswersEntry,
     BelievedSignEntry,
-    ExpectationEntry,
-    ExpectEntry,
     InitialBeliefEntry,
     PerceptionEntry,
     ProbeEntry,
@@ -45,8 +27,7 @@ from beliefnest.scenarios.format import (
     ScenarioFile,
     StepEntry,
 )
-from beliefnest.scenarios.functions import judge_of
-from beliefnest.scenarios.inferring import build_inferring, build_infers
+from beliefnest.scenarios.inferring import build_inferring
 from beliefnest.scenarios.people import build_agents
 from beliefnest.scenarios.reading import template_text
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, rule_faults
@@ -57,23 +38,15 @@ from beliefnest.scenarios.space import (
     build_grid,
     build_sign_claims,
     build_signs,
-    check_inside,
-    check_items,
     entry_mask,
 )
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.limits import AGENT_SLOTS, container_slots
-from beliefnest.world.paths import parse_path, parse_pattern
+from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
-from beliefnest.world.values import Block, Items, Position
+from beliefnest.world.values import Block, Position
 
 __all__ = ["build_scenario"]
-
-T = TypeVar("T")
-
-_MOST_OPTIONS = 26
-"""Greatest number of options: one for each letter."""
 
 _WORKED_IN = ("conditions", "parameters", "constraints")
 """Keys that are resolved before the scenario is built."""
@@ -110,7 +83,8 @@ def build_scenario(
         conditions=descriptions,
         probes=probes,
         expectations=tuple(
-            builder.expectation(n, entry) for n, entry in enumerate(file.expectations)
+            Expectation.read(entry, ("expectations", n), builder.checks)
+            for n, entry in enumerate(file.expectations)
         ),
         rules=builder.rules(),
         written=_written(document),
@@ -139,13 +113,14 @@ class _Builder:
         agents = build_agents(document, file, grid, box, registry)
         grid.flags.writeable = False
         self._snapshot = Snapshot(0, box, grid, containers, agents, signs=signs, sign_claims=claims)
+        self.checks = Checks(document, self._snapshot, registry)
 
     def setting(self) -> Setting:
         """Return the setting from which a nest starts."""
         file = self._file
         for number, static in enumerate(file.static_blocks):
             if isinstance(static, str):
-                self._check_block_name(("static_blocks", number), static)
+                self.checks.block_name(("static_blocks", number), static)
             elif static not in self._snapshot.box:
                 raise self._document.fault(
                     ("static_blocks", number), f"{list(static)} lies outside the box"
@@ -185,18 +160,16 @@ class _Builder:
     def probe(self, number: int, entry: ProbeEntry) -> Probe:
         """Return one probe with the text of its template."""
         path = ("probes", number)
-        believers = self._check_belief_path((*path, "path"), entry.path)
+        believers = self.checks.belief_path((*path, "path"), entry.path)
         if entry.infer is not None:
             return self._inferring(path, entry)
-        if entry.expect is not None and entry.expect.inferred is not None:
-            raise self._document.fault(
-                (*path, "expect", "inferred"), "is for probes that infer; give 'infer', too"
-            )
         if entry.acts_in is not None:
-            self._check_belief_path((*path, "acts_in"), entry.acts_in)
+            self.checks.belief_path((*path, "acts_in"), entry.acts_in)
         if entry.agent is not None:
-            self._check_agent((*path, "agent"), entry.agent)
-        expect = () if entry.expect is None else self._expect((*path, "expect"), entry.expect)
+            self.checks.agent((*path, "agent"), entry.agent)
+        expect: tuple[Expected, ...] = ()
+        if entry.expect is not None:
+            expect = read_expected(entry.expect, (*path, "expect"), self.checks)
         if not expect or any(not isinstance(each, Answers) for each in expect):
             for key in ("acts_in", "agent", "task"):
                 if getattr(entry, key) is None:
@@ -223,97 +196,19 @@ class _Builder:
                     (*path, key), "is for probes that ask a model; remove it, or 'infer'"
                 )
         infer = build_inferring(self._document, (*path, "infer"), entry.infer, self._snapshot)
-        expect: list[Infers] = []
+        expect: tuple[Infers, ...] = ()
         if entry.expect is not None:
-            for key in entry.expect.__struct_fields__:
-                if key not in ("inferred", "within") and getattr(entry.expect, key) is not None:
-                    raise self._document.fault(
-                        (*path, "expect", key), "is for probes that ask a model; give 'inferred'"
-                    )
-            place = (*path, "expect", "inferred")
-            expect = build_infers(self._document, place, entry.expect.inferred or {}, infer.model)
+            place = (*path, "expect")
+            expect = read_inferred(entry.expect, place, self.checks, infer.model.factors)
         return Probe(
             path=entry.path,
             acts_in=entry.path,
             agent=infer.model.agent,
             task="",
-            expect=tuple(expect),
+            expect=expect,
             label=entry.label,
             infer=infer,
         )
-
-    def _expect(self, path: KeyPath, entry: ExpectEntry) -> tuple[Expected, ...]:
-        """Return all expectations of a probe."""
-        expected: list[Expected] = []
-        if entry.opens is not None:
-            self._check_container((*path, "opens"), entry.opens)
-            expected.append(Opens(entry.opens))
-        if entry.arrives is not None:
-            expected.append(Arrives(entry.arrives, entry.within))
-        if entry.intends is not None:
-            is_container = entry.intends in self._snapshot.containers
-            expected.append(Intends(entry.intends, entry.within, is_container))
-        if entry.takes is not None:
-            slots = AGENT_SLOTS
-            items = dict(entry.takes)
-            place = (*path, "takes")
-            if not items:
-                raise self._document.fault(place, "name at least one item")
-            check_items(self._document, place, items, self._registry, slots, "an inventory")
-            expected.append(Takes(items))
-        if entry.says is not None:
-            if not entry.says.strip():
-                raise self._document.fault((*path, "says"), "is empty; give part of an utterance")
-            expected.append(Says(entry.says))
-        for number, answers in enumerate(_listed(entry.answers)):
-            expected.append(self._answers((*path, "answers", number), answers))
-        for number, believed in enumerate(_listed(entry.believes)):
-            place = (*path, "believes", number)
-            self._check_belief_path((*place, "path"), believed.path)
-            content = self._expected(place, believed)
-            expected.append(Believes(Expectation(believed.path, content, believed.label)))
-        if entry.function is not None:
-            with self._document.naming((*path, "function")):
-                expected.append(judge_of(entry.function))
-        if not expected:
-            keys = ", ".join(
-                field for field in entry.__struct_fields__ if field not in ("within", "inferred")
-            )
-            raise self._document.fault(path, f"expects nothing; give at least one of {keys}")
-        return tuple(expected)
-
-    def _answers(self, path: KeyPath, entry: AnswersEntry) -> Answers:
-        right = (entry.right,) if isinstance(entry.right, str) else tuple(entry.right)
-        if not entry.question.strip() or not all(each.strip() for each in right) or not right:
-            raise self._document.fault(path, "give a question and at least one right answer")
-        missing = [each for each in right if each not in entry.options]
-        if entry.options and missing:
-            raise self._document.fault((*path, "right"), f"{missing[0]!r} is none of the options")
-        if len(entry.options) > _MOST_OPTIONS:
-            raise self._document.fault((*path, "options"), f"are more than {_MOST_OPTIONS}")
-        if len({each.casefold() for each in entry.options}) < len(entry.options):
-            raise self._document.fault((*path, "options"), "has an option twice")
-        if entry.options and set(right) == set(entry.options):
-            raise self._document.fault((*path, "options"), "are all right; give one that is not")
-        letters = [each for each in entry.options if len(each.strip()) == 1 and each.isalpha()]
-        if letters:
-            raise self._document.fault(
-                (*path, "options"),
-                f"{letters[0]!r} is a single letter, which names an option; write it out",
-            )
-        both = [each for each in right if each in entry.wrong]
-        if both:
-            raise self._document.fault((*path, "wrong"), f"{both[0]!r} is right as well")
-        if entry.options and entry.wrong:
-            raise self._document.fault((*path, "wrong"), "is for answers in words, without options")
-        options, wrong = tuple(entry.options), tuple(entry.wrong)
-        return Answers(entry.question, right, options, wrong, entry.reason)
-
-    def expectation(self, number: int, entry: ExpectationEntry) -> Expectation:
-        """Return one expectation about a simulator after the script."""
-        path = ("expectations", number)
-        self._check_belief_path((*path, "path"), entry.path)
-        return Expectation(entry.path, self._expected(path, entry), entry.label)
 
     def rules(self) -> EpisodeEntry | None:
         """Return the goals and rules of play, if the scenario has any."""
@@ -334,51 +229,12 @@ class _Builder:
                     with self._document.naming(where):
                         check_condition(entry, agents, self._snapshot.box)
                     if entry.container is not None:
-                        self._check_container((*where, "container"), entry.container)
+                        self.checks.container((*where, "container"), entry.container)
         for path, message in rule_faults(rules, agents):
             raise self._document.fault(("episode", *path), message)
         with self._document.naming(("episode",)):
             check_rules(rules, agents, self._snapshot.box)
         return rules
-
-    def _expected(self, path: KeyPath, entry: ExpectationEntry) -> Content:
-        kinds = (
-            entry.container,
-            entry.agent,
-            entry.sign,
-            entry.block,
-            entry.heard,
-            entry.not_heard,
-        )
-        alone = sum(kind is not None for kind in kinds) == 1
-        if alone and entry.container is not None and entry.items is not None:
-            self._check_container((*path, "container"), entry.container)
-            self._check_items((*path, "items"), entry.container, entry.items)
-            return Holds(entry.container, dict(entry.items))
-        if alone and entry.agent is not None and entry.items is None:
-            self._check_agent((*path, "agent"), entry.agent)
-            return Stands(entry.agent, entry.position, entry.within)
-        if alone and entry.sign is not None and entry.items is None:
-            check_inside(self._document, (*path, "sign"), entry.sign, self._snapshot.box)
-            return Reads(entry.sign, entry.text)
-        if alone and entry.block is not None and entry.items is None:
-            check_inside(self._document, (*path, "block"), entry.block, self._snapshot.box)
-            return Is(entry.block, self._state_text((*path, "state"), entry.state))
-        spoken = entry.heard or entry.not_heard
-        if alone and spoken and entry.items is None:
-            return Hears(spoken, ever=entry.heard is not None)
-        raise self._document.fault(
-            path,
-            "give one of 'container' and 'items', 'agent' and 'position', 'sign' and 'text', "
-            "'block' and 'state', 'heard', 'not_heard'",
-        )
-
-    def _state_text(self, path: KeyPath, text: str | None) -> str | None:
-        """Return the canonical text of a block state."""
-        if text is None:
-            return None
-        with self._document.naming(path):
-            return self._registry.text(self._registry.state_id(text))
 
     def _step(self, number: int, entry: StepEntry) -> Step:
         path = ("script", number)
@@ -389,12 +245,12 @@ class _Builder:
         if entry.agent is not None and entry.program is not None:
             if entry.agent in programs:
                 raise self._document.fault(path, f"has two programs for {entry.agent}")
-            self._check_agent((*path, "agent"), entry.agent)
+            self.checks.agent((*path, "agent"), entry.agent)
             programs[entry.agent] = entry.program
         if not programs:
             raise self._document.fault(path, "has no program; give 'agent' and 'program'")
         for agent in entry.programs:
-            self._check_agent((*path, "programs", agent), agent)
+            self.checks.agent((*path, "programs", agent), agent)
         return Step(
             programs=programs,
             label=entry.label or f"step {number + 1}",
@@ -405,7 +261,7 @@ class _Builder:
 
     def _perception(self, entry: PerceptionEntry) -> Perception:
         for number, name in enumerate(entry.transparent_blocks):
-            self._check_block_name(("perception", "transparent_blocks", number), name)
+            self.checks.block_name(("perception", "transparent_blocks", number), name)
         hearing = entry.hearing
         with self._document.naming(("perception",)):
             return Perception(
@@ -446,10 +302,10 @@ class _Builder:
             blocks[sign.at] = self._believed_sign((*path, "signs", index), sign, blocks)
         for index, container in enumerate(entry.containers):
             place = (*path, "containers", index)
-            self._check_container((*place, "at"), container.at)
-            self._check_items((*place, "items"), container.at, container.items)
+            self.checks.container((*place, "at"), container.at)
+            self.checks.contents((*place, "items"), container.at, container.items)
         for agent, feet in entry.agents.items():
-            self._check_agent((*path, "agents", agent), agent)
+            self.checks.agent((*path, "agents", agent), agent)
             x, y, z = (math.floor(value) for value in feet)
             if (x, y, z) not in box:
                 raise self._document.fault(
@@ -483,45 +339,10 @@ class _Builder:
             return built_in_template(name).text
         return template_text(self._document, path, name)
 
-    def _check_belief_path(self, path: KeyPath, text: str) -> tuple[str, ...]:
-        with self._document.naming(path):
-            return parse_path(text, self._snapshot.agents)
-        raise AssertionError("unreachable")
-
-    def _check_agent(self, path: KeyPath, name: str) -> None:
-        if name not in self._snapshot.agents:
-            known = ", ".join(self._snapshot.agents)
-            raise self._document.fault(path, f"there is no agent {name!r}; agents are {known}")
-
-    def _check_container(self, path: KeyPath, position: Position) -> None:
-        if position not in self._snapshot.containers:
-            known = ", ".join(str(list(place)) for place in self._snapshot.containers)
-            raise self._document.fault(
-                path, f"no container stands at {list(position)}; there are {known or 'none'}"
-            )
-
-    def _check_items(self, path: KeyPath, place: Position, items: Items) -> None:
-        """Refuse items that the container at a place could not hold."""
-        box = self._snapshot.box
-        name = self._registry.name(int(self._snapshot.blocks[box.index(place)]))
-        slots = container_slots(name)
-        check_items(self._document, path, items, self._registry, slots, f"a {name}")
-
-    def _check_block_name(self, path: KeyPath, name: str) -> None:
-        with self._document.naming(path):
-            self._registry.state_ids(name)
-
 
 def _written(document: Document) -> Mapping[str, Any]:
     content: Any = plain(document.root)
     return {key: value for key, value in content.items() if key not in _WORKED_IN}
-
-
-def _listed(entry: T | list[T] | None) -> list[T]:
-    """Return a value that may be written alone or as a list, as a list."""
-    if entry is None:
-        return []
-    return entry if isinstance(entry, list) else [entry]
 
 
 def _prompt_labels(file: ScenarioFile) -> dict[Position, str]:

@@ -11,12 +11,24 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.errors import BeliefNestError, MissingExtraError, ScenarioError
-from beliefnest.scenarios.format import LABELLED
 
-__all__ = ["MAX_DEPTH", "Document", "KeyPath", "YamlNode", "merged", "plain", "under", "wrapped"]
+__all__ = [
+    "LABELLED",
+    "MAX_DEPTH",
+    "Document",
+    "KeyPath",
+    "YamlNode",
+    "merged",
+    "plain",
+    "under",
+    "wrapped",
+]
 
 MAX_DEPTH = 40
 """Greatest nesting depth of lists and mappings."""
+
+LABELLED = ("script", "probes", "expectations")
+"""Lists whose entries a condition may change one by one, by label."""
 
 KeyPath = tuple[str | int, ...]
 """Keys and list indices from the top of a document to a value."""

@@ -8,24 +8,22 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
+from beliefnest.scenarios.expected import ExpectEntry
+from beliefnest.scenarios.expected_state import ExpectationEntry
 from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world import values as world
+from beliefnest.world.forms import Point, Position, note
 from beliefnest.world.limits import FARTHEST
 
 __all__ = [
-    "LABELLED",
     "AgentEntry",
-    "AnswersEntry",
     "BelievedSignEntry",
     "BlockEntry",
     "ContainerEntry",
     "DoubtEntry",
     "EquipmentEntry",
-    "ExpectEntry",
-    "ExpectationEntry",
     "GridEntry",
     "InferEntry",
-    "InferredEntry",
     "InitialBeliefEntry",
     "LevelsEntry",
     "ParameterEntry",
@@ -38,21 +36,13 @@ __all__ = [
 ]
 
 
-def _note(text: str) -> msgspec.Meta:
-    return msgspec.Meta(description=text)
-
-
 _WIDEST = 1_000
 """Greatest angle in radians, in both directions."""
 _LONGEST_TIMEOUT = 10_000_000
 """Ticks; about six days."""
 
-_Whole = Annotated[int, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
-_Number = Annotated[float, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
-Position = tuple[_Whole, _Whole, _Whole]
-Point = tuple[_Number, _Number, _Number]
 _Angle = Annotated[float, msgspec.Meta(ge=-_WIDEST, le=_WIDEST)]
-_ItemsField = Annotated[dict[str, int], _note("Item name to count.")]
+_ItemsField = Annotated[dict[str, int], note("Item name to count.")]
 
 
 class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -62,30 +52,30 @@ class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class BlockEntry(_Entry, frozen=True):
     """Blocks of one kind, with one of `at`, `fill` and `walls`. Later entries replace earlier."""
 
-    block: Annotated[str | None, _note("A block state: name or name[property=value,...].")]
-    at: Annotated[Position | None, _note("One position.")] = None
+    block: Annotated[str | None, note("A block state: name or name[property=value,...].")]
+    at: Annotated[Position | None, note("One position.")] = None
     fill: Annotated[
-        tuple[Position, Position] | None, _note("Two inclusive corners; all between them.")
+        tuple[Position, Position] | None, note("Two inclusive corners; all between them.")
     ] = None
     walls: Annotated[
         tuple[Position, Position] | None,
-        _note("Two inclusive corners; the four vertical sides of the box between them."),
+        note("Two inclusive corners; the four vertical sides of the box between them."),
     ] = None
 
 
 class ContainerEntry(_Entry, frozen=True):
     """A container with its block."""
 
-    at: Annotated[Position, _note("Position of its block.")]
-    block: Annotated[str, _note("A block state of a container.")] = "chest"
+    at: Annotated[Position, note("Position of its block.")]
+    block: Annotated[str, note("A block state of a container.")] = "chest"
     items: _ItemsField = {}
-    label: Annotated[str, _note("Its name in tables and pictures.")] = ""
-    looks: Annotated[str, _note("What it seems to contain, in words; see the key `labels`.")] = ""
+    label: Annotated[str, note("Its name in tables and pictures.")] = ""
+    looks: Annotated[str, note("What it seems to contain, in words; see the key `labels`.")] = ""
 
 
 _SignText = Annotated[
     str,
-    _note("Text on its front: at most 4 lines of 45 characters, separated by line breaks."),
+    note("Text on its front: at most 4 lines of 45 characters, separated by line breaks."),
 ]
 
 
@@ -94,66 +84,66 @@ class ClaimEntry(_Entry, frozen=True):
 
     kind: Annotated[
         Literal["located", "absent", "position", "block"],
-        _note("An item is in a container, or not; an agent is at a place; a block has a state."),
+        note("An item is in a container, or not; an agent is at a place; a block has a state."),
     ]
     place: Annotated[
-        Point, _note("Position of the container, of the agent's feet, or of the block.")
+        Point, note("Position of the container, of the agent's feet, or of the block.")
     ]
-    item: Annotated[str | None, _note("The item of `located` and `absent`.")] = None
-    agent: Annotated[str | None, _note("The agent of `position`.")] = None
-    state: Annotated[str | None, _note("The block of `block`: name[property=value,...].")] = None
+    item: Annotated[str | None, note("The item of `located` and `absent`.")] = None
+    agent: Annotated[str | None, note("The agent of `position`.")] = None
+    state: Annotated[str | None, note("The block of `block`: name[property=value,...].")] = None
 
 
 class SignEntry(_Entry, frozen=True):
     """A sign with its block and its text."""
 
-    at: Annotated[Position, _note("Position of its block.")]
+    at: Annotated[Position, note("Position of its block.")]
     text: _SignText = ""
-    block: Annotated[str, _note("A block state of a sign.")] = "oak_sign"
-    claims: Annotated[list[ClaimEntry], _note("Claims of the text, for its readers.")] = []
+    block: Annotated[str, note("A block state of a sign.")] = "oak_sign"
+    claims: Annotated[list[ClaimEntry], note("Claims of the text, for its readers.")] = []
 
 
 class BelievedSignEntry(_Entry, frozen=True):
     """A believed sign and its text."""
 
-    at: Annotated[Position, _note("Its position.")]
+    at: Annotated[Position, note("Its position.")]
     text: _SignText = ""
     block: Annotated[
-        str | None, _note("A block state of a sign; null: that of the real sign there.")
+        str | None, note("A block state of a sign; null: that of the real sign there.")
     ] = None
 
 
 class EquipmentEntry(_Entry, frozen=True):
     """Equipment of an agent: items by slot."""
 
-    head: Annotated[str | None, _note("A helmet, or another item worn on the head.")] = None
-    chest: Annotated[str | None, _note("A chestplate.")] = None
-    legs: Annotated[str | None, _note("Leggings.")] = None
-    feet: Annotated[str | None, _note("Boots.")] = None
-    main_hand: Annotated[str | None, _note("Item in the main hand.")] = None
-    off_hand: Annotated[str | None, _note("Item in the other hand.")] = None
+    head: Annotated[str | None, note("A helmet, or another item worn on the head.")] = None
+    chest: Annotated[str | None, note("A chestplate.")] = None
+    legs: Annotated[str | None, note("Leggings.")] = None
+    feet: Annotated[str | None, note("Boots.")] = None
+    main_hand: Annotated[str | None, note("Item in the main hand.")] = None
+    off_hand: Annotated[str | None, note("Item in the other hand.")] = None
 
 
 class AgentEntry(_Entry, frozen=True):
     """An agent: a Mineflayer bot in a Minecraft world, or a person."""
 
-    position: Annotated[world.Point, _note("Middle of the feet, in blocks.")]
+    position: Annotated[world.Point, note("Middle of the feet, in blocks.")]
     facing: Annotated[
         Literal["north", "east", "south", "west"] | Point | None,
-        _note("A direction, or a point to look at; instead of yaw and pitch."),
+        note("A direction, or a point to look at; instead of yaw and pitch."),
     ] = None
-    yaw: Annotated[_Angle | None, _note("Radians; 0 looks north (-z), pi/2 west (-x).")] = None
-    pitch: Annotated[_Angle | None, _note("Radians, positive upwards.")] = None
+    yaw: Annotated[_Angle | None, note("Radians; 0 looks north (-z), pi/2 west (-x).")] = None
+    pitch: Annotated[_Angle | None, note("Radians, positive upwards.")] = None
     inventory: Annotated[
         dict[str, int],
-        _note("Counts by item name; equipment is added if it is not listed."),
+        note("Counts by item name; equipment is added if it is not listed."),
     ] = {}
-    equipment: Annotated[EquipmentEntry, _note("Worn and held items.")] = EquipmentEntry()
+    equipment: Annotated[EquipmentEntry, note("Worn and held items.")] = EquipmentEntry()
     health: Annotated[float, msgspec.Meta(gt=0, le=20, description="Half hearts.")] = 20.0
     food: Annotated[float, msgspec.Meta(ge=0, le=20, description="Half drumsticks.")] = 20.0
     type: Annotated[
         Literal["bot", "human"],
-        _note("A bot that runs programs, or a person who joins with the agent's name."),
+        note("A bot that runs programs, or a person who joins with the agent's name."),
     ] = "bot"
 
 
@@ -166,28 +156,28 @@ class RadiusEntry(_Entry, frozen=True):
 class PerceptionEntry(_Entry, frozen=True):
     """Perception of agents; the same for all agents, at every depth."""
 
-    max_visible_distance: Annotated[float | None, _note("In blocks; null: no limit.")] = 20.0
-    field_of_view: Annotated[float, _note("Full angle of sight in degrees, up to 360.")] = 360.0
+    max_visible_distance: Annotated[float | None, note("In blocks; null: no limit.")] = 20.0
+    field_of_view: Annotated[float, note("Full angle of sight in degrees, up to 360.")] = 360.0
     hearing: Annotated[
-        Literal["global", "sight"] | RadiusEntry, _note("Speakers that an agent hears.")
+        Literal["global", "sight"] | RadiusEntry, note("Speakers that an agent hears.")
     ] = "global"
     containers: Annotated[
-        Literal["opaque", "transparent"], _note("Whether contents are visible from outside.")
+        Literal["opaque", "transparent"], note("Whether contents are visible from outside.")
     ] = "opaque"
-    transparent_blocks: Annotated[list[str], _note("Further blocks that do not block sight.")] = []
+    transparent_blocks: Annotated[list[str], note("Further blocks that do not block sight.")] = []
     negative_evidence: Annotated[
-        bool, _note("Whether seeing an empty place makes a pose believed there unknown.")
+        bool, note("Whether seeing an empty place makes a pose believed there unknown.")
     ] = False
     testimony: Annotated[
         Literal["none", "accept", "informed"],
-        _note("Claims that hearers believe: none, all, or those of speakers who may know better."),
+        note("Claims that hearers believe: none, all, or those of speakers who may know better."),
     ] = "none"
     grace: Annotated[
         int,
         msgspec.Meta(ge=0, description="Ticks out of sight after which a speaker may know better."),
     ] = 100
     sincere: Annotated[
-        bool, _note("Whether hearers assume that speakers believe what they say.")
+        bool, note("Whether hearers assume that speakers believe what they say.")
     ] = True
     speech_ticks: Annotated[
         int, msgspec.Meta(ge=0, le=1200, description="Ticks needed to say something.")
@@ -197,9 +187,9 @@ class PerceptionEntry(_Entry, frozen=True):
 class _BelievedContainerEntry(_Entry, frozen=True):
     """Believed contents of a container."""
 
-    at: Annotated[Position, _note("Its position.")]
+    at: Annotated[Position, note("Its position.")]
     items: _ItemsField = {}
-    complete: Annotated[bool, _note("Whether these are believed to be all items in it.")] = True
+    complete: Annotated[bool, note("Whether these are believed to be all items in it.")] = True
 
 
 class InitialBeliefEntry(_Entry, frozen=True):
@@ -207,26 +197,26 @@ class InitialBeliefEntry(_Entry, frozen=True):
 
     path: Annotated[
         str,
-        _note("A belief path such as /observer/sally; with /** at the end, also all below it."),
+        note("A belief path such as /observer/sally; with /** at the end, also all below it."),
     ]
     containers: Annotated[
-        list[_BelievedContainerEntry], _note("Believed contents of containers.")
+        list[_BelievedContainerEntry], note("Believed contents of containers.")
     ] = []
-    blocks: Annotated[list[BlockEntry], _note("Believed blocks; `block` null: unknown.")] = []
-    signs: Annotated[list[BelievedSignEntry], _note("Believed signs.")] = []
-    agents: Annotated[dict[str, Point], _note("Believed positions of the feet.")] = {}
+    blocks: Annotated[list[BlockEntry], note("Believed blocks; `block` null: unknown.")] = []
+    signs: Annotated[list[BelievedSignEntry], note("Believed signs.")] = []
+    agents: Annotated[dict[str, Point], note("Believed positions of the feet.")] = {}
 
 
 class StepEntry(_Entry, frozen=True):
     """Programs that run together in the real world; `agent` and `program`, or `programs`."""
 
-    label: Annotated[str, _note("What happens; used in progress, messages and overrides.")] = ""
-    agent: Annotated[str | None, _note("The agent of a single program.")] = None
-    program: Annotated[str | None, _note("JavaScript, the body of an async function.")] = None
-    programs: Annotated[dict[str, str], _note("Programs by agent.")] = {}
+    label: Annotated[str, note("What happens; used in progress, messages and overrides.")] = ""
+    agent: Annotated[str | None, note("The agent of a single program.")] = None
+    program: Annotated[str | None, note("JavaScript, the body of an async function.")] = None
+    programs: Annotated[dict[str, str], note("Programs by agent.")] = {}
     senses: Annotated[
         Literal["world", "percepts"] | None,
-        _note("Facts that programs read: all, or what their agents perceive or remember."),
+        note("Facts that programs read: all, or what their agents perceive or remember."),
     ] = None
     timeout_ticks: Annotated[
         int,
@@ -238,102 +228,18 @@ class StepEntry(_Entry, frozen=True):
     ] = 1200
 
 
-class AnswersEntry(_Entry, frozen=True):
-    """A question to the model, and its right answers."""
-
-    question: Annotated[str, _note("The question.")]
-    right: Annotated[
-        str | list[str],
-        _note("Right answers; a right answer in words contains one of them."),
-    ]
-    options: Annotated[
-        list[str], _note("Options to choose from, shuffled by the seed; empty: an answer in words.")
-    ] = []
-    wrong: Annotated[list[str], _note("Texts that an answer in words must not contain.")] = []
-    reason: Annotated[
-        bool, _note("Whether the model is also asked for a reason, which is recorded.")
-    ] = False
-
-
-class ExpectationEntry(_Entry, frozen=True):
-    """Expected content of a belief: a container, agent, sign, block, or utterance."""
-
-    path: Annotated[str, _note("Belief path; / is the real world.")]
-    label: Annotated[str, _note("A name for tables and overrides.")] = ""
-    container: Annotated[Position | None, _note("A container that holds `items`.")] = None
-    items: Annotated[dict[str, int] | None, _note("Exactly the known items in it.")] = None
-    agent: Annotated[str | None, _note("An agent that stands at `position`.")] = None
-    sign: Annotated[Position | None, _note("A sign that says `text`.")] = None
-    text: Annotated[str | None, _note("Exact text of the sign; null: unknown.")] = None
-    block: Annotated[Position | None, _note("A block that is `state`.")] = None
-    state: Annotated[str | None, _note("A block state; null: unknown.")] = None
-    heard: Annotated[str | None, _note("Part of a known utterance.")] = None
-    not_heard: Annotated[str | None, _note("Text that no known utterance contains.")] = None
-    position: Annotated[Point | None, _note("Middle of the feet.")] = None
-    within: Annotated[
-        float,
-        msgspec.Meta(
-            gt=0, le=FARTHEST, description="Greatest distance from `position`, in blocks."
-        ),
-    ] = 2.0
-
-
-class InferredEntry(_Entry, frozen=True):
-    """Bounds of a posterior mean: above a value, below a value, or both."""
-
-    above: Annotated[float | str | None, _note("A number, or a factor with a lower mean.")] = None
-    below: Annotated[float | str | None, _note("A number, or a factor with a higher mean.")] = None
-
-
-class ExpectEntry(_Entry, frozen=True):
-    """Expectations about a probe: at least one of these; all of them must hold."""
-
-    opens: Annotated[Position | None, _note("The container that the agent opens first.")] = None
-    arrives: Annotated[Point | None, _note("Place of the agent at the end.")] = None
-    intends: Annotated[
-        Point | None,
-        _note("Container or place that the program heads for, even if it never gets there."),
-    ] = None
-    within: Annotated[
-        float,
-        msgspec.Meta(gt=0, le=FARTHEST, description="Greatest distance from there, in blocks."),
-    ] = 2.0
-    takes: Annotated[
-        dict[str, int] | None, _note("Counts of items that the agent takes out of containers.")
-    ] = None
-    says: Annotated[str | None, _note("Part of an utterance of the agent.")] = None
-    answers: Annotated[
-        AnswersEntry | list[AnswersEntry] | None, _note("Questions to the model and right answers.")
-    ] = None
-    believes: Annotated[
-        ExpectationEntry | list[ExpectationEntry] | None,
-        _note("Content of a belief after the program has ended."),
-    ] = None
-    inferred: Annotated[
-        dict[str, InferredEntry] | None,
-        _note("Expected posterior means by factor, such as utility.K or credence.L."),
-    ] = None
-    function: Annotated[
-        Any,
-        _note(
-            "module:function of the trial; it is imported and run, so use only trusted code. "
-            "In code, the function itself."
-        ),
-    ] = None
-
-
 class _MindGoalEntry(_Entry, frozen=True):
     """A possible goal of an agent; exactly one of the keys."""
 
-    at: Annotated[Position | None, _note("The cell in which to stand.")] = None
-    block: Annotated[str | None, _note("Name of the block on which to stand.")] = None
-    item: Annotated[str | None, _note("Name of the item to take.")] = None
+    at: Annotated[Position | None, note("The cell in which to stand.")] = None
+    block: Annotated[str | None, note("Name of the block on which to stand.")] = None
+    item: Annotated[str | None, note("Name of the item to take.")] = None
 
 
 class LevelsEntry(_Entry, frozen=True):
     """Utilities to consider: all values of a range."""
 
-    range: Annotated[tuple[float, float], _note("Lowest and highest value.")]
+    range: Annotated[tuple[float, float], note("Lowest and highest value.")]
     step: Annotated[float, msgspec.Meta(gt=0, description="Between values.")] = 1.0
 
 
@@ -349,23 +255,23 @@ class GridEntry(_Entry, frozen=True):
 class _DoubtedBlockEntry(_Entry, frozen=True):
     """A block in an alternative."""
 
-    at: Annotated[Position, _note("Its position.")]
-    block: Annotated[str, _note("A block state: name or name[property=value,...].")]
+    at: Annotated[Position, note("Its position.")]
+    block: Annotated[str, note("A block state: name or name[property=value,...].")]
 
 
 class _DoubtedContainerEntry(_Entry, frozen=True):
     """The complete contents of a container in an alternative."""
 
-    at: Annotated[Position, _note("Its position.")]
+    at: Annotated[Position, note("Its position.")]
     items: _ItemsField = {}
 
 
 class DoubtEntry(_Entry, frozen=True):
     """An alternative state of the world; all alternatives set the same blocks and contents."""
 
-    blocks: Annotated[list[_DoubtedBlockEntry], _note("Blocks.")] = []
-    containers: Annotated[list[_DoubtedContainerEntry], _note("Contents of containers.")] = []
-    agents: Annotated[dict[str, Point], _note("Middle of the feet, by agent.")] = {}
+    blocks: Annotated[list[_DoubtedBlockEntry], note("Blocks.")] = []
+    containers: Annotated[list[_DoubtedContainerEntry], note("Contents of containers.")] = []
+    agents: Annotated[dict[str, Point], note("Middle of the feet, by agent.")] = {}
 
 
 class InferEntry(_Entry, frozen=True):
@@ -374,51 +280,51 @@ class InferEntry(_Entry, frozen=True):
     The keys are those of `MindModel` and `Simulator.infer`.
     """
 
-    agent: Annotated[str, _note("The agent that is modelled.")]
+    agent: Annotated[str, note("The agent that is modelled.")]
     goals: Annotated[
         dict[str, _MindGoalEntry], msgspec.Meta(min_length=1, description="Goals by name.")
     ]
     utilities: Annotated[
         dict[str, float | list[float] | LevelsEntry] | list[dict[str, float]],
-        _note("Values to consider by goal, all combinations; or a list of combinations."),
+        note("Values to consider by goal, all combinations; or a list of combinations."),
     ]
     doubt: Annotated[
         dict[str, DoubtEntry] | None,
-        _note("Alternatives that the agent cannot tell apart; null: it knows the world."),
+        note("Alternatives that the agent cannot tell apart; null: it knows the world."),
     ] = None
     credences: Annotated[
         list[list[float]] | GridEntry | None,
-        _note("Initial credences to consider, rows over the alternatives; null: uniform."),
+        note("Initial credences to consider, rows over the alternatives; null: uniform."),
     ] = None
     actual: Annotated[
         str | dict[str, float] | None,
-        _note("An alternative, `unknown`, or weights; null: the state at the probe's path."),
+        note("An alternative, `unknown`, or weights; null: the state at the probe's path."),
     ] = None
     prior: Annotated[
-        list[list[float]] | None, _note("Weights, utilities by credences; null: uniform.")
+        list[list[float]] | None, note("Weights, utilities by credences; null: uniform.")
     ] = None
     rationality: Annotated[
-        float | list[float], _note("Inverse temperature of choices; a list is a factor.")
+        float | list[float], note("Inverse temperature of choices; a list is a factor.")
     ] = 2.5
-    discount: Annotated[float, _note("Factor on the value of the future with each act.")] = 0.99
-    step_cost: Annotated[float, _note("Cost of a step.")] = 1.0
-    stay_cost: Annotated[float, _note("Cost of staying.")] = 0.0
-    act_cost: Annotated[float, _note("Cost of acting on a goal, and of opening.")] = 1.0
-    diagonal: Annotated[bool, _note("Whether steps also lead to diagonal neighbours.")] = False
+    discount: Annotated[float, note("Factor on the value of the future with each act.")] = 0.99
+    step_cost: Annotated[float, note("Cost of a step.")] = 1.0
+    stay_cost: Annotated[float, note("Cost of staying.")] = 0.0
+    act_cost: Annotated[float, note("Cost of acting on a goal, and of opening.")] = 1.0
+    diagonal: Annotated[bool, note("Whether steps also lead to diagonal neighbours.")] = False
     step_ticks: Annotated[
-        int | None, _note("Ticks without movement that are one stay; null: by the world.")
+        int | None, note("Ticks without movement that are one stay; null: by the world.")
     ] = None
-    stays: Annotated[bool, _note("Whether ticks without movement are evidence.")] = True
-    lapse: Annotated[float, _note("Weight that a contradicted alternative keeps.")] = 0.0
+    stays: Annotated[bool, note("Whether ticks without movement are evidence.")] = True
+    lapse: Annotated[float, note("Weight that a contradicted alternative keeps.")] = 0.0
     since: Annotated[int, msgspec.Meta(ge=0, description="The first tick that counts.")] = 0
     until: Annotated[
         Annotated[int, msgspec.Meta(ge=0)] | None,
-        _note("The last tick that counts; null: the script's end."),
+        note("The last tick that counts; null: the script's end."),
     ] = None
     ended: Annotated[
-        bool, _note("Whether the agent acts on the goal at its place after the last tick.")
+        bool, note("Whether the agent acts on the goal at its place after the last tick.")
     ] = False
-    smooth: Annotated[bool, _note("Whether credence_now uses later evidence too.")] = False
+    smooth: Annotated[bool, note("Whether credence_now uses later evidence too.")] = False
 
 
 class ProbeEntry(_Entry, frozen=True):
@@ -429,23 +335,23 @@ class ProbeEntry(_Entry, frozen=True):
     `label` and `expect` may stand beside it.
     """
 
-    path: Annotated[str, _note("Belief path from which the prompt is rendered.")]
-    acts_in: Annotated[str | None, _note("Path of the simulator in which the program runs.")] = None
-    agent: Annotated[str | None, _note("The agent that runs the program.")] = None
-    task: Annotated[str | None, _note("Task of the agent, for the model.")] = None
-    label: Annotated[str, _note("A name for tables and overrides.")] = ""
+    path: Annotated[str, note("Belief path from which the prompt is rendered.")]
+    acts_in: Annotated[str | None, note("Path of the simulator in which the program runs.")] = None
+    agent: Annotated[str | None, note("The agent that runs the program.")] = None
+    task: Annotated[str | None, note("Task of the agent, for the model.")] = None
+    label: Annotated[str, note("A name for tables and overrides.")] = ""
     template: Annotated[
         str | None,
-        _note("`default`, `paper`, or a prompt template file beside the scenario; null: `paper`."),
+        note("`default`, `paper`, or a prompt template file beside the scenario; null: `paper`."),
     ] = None
-    expect: Annotated[ExpectEntry | None, _note("How the outcome is judged.")] = None
+    expect: Annotated[ExpectEntry | None, note("How the outcome is judged.")] = None
     infer: Annotated[
         InferEntry | None,
-        _note("Inference about an agent from the state at `path`; no model is asked."),
+        note("Inference about an agent from the state at `path`; no model is asked."),
     ] = None
     senses: Annotated[
         Literal["world", "percepts"] | None,
-        _note("Facts that programs read: all, or what their agents perceive or remember."),
+        note("Facts that programs read: all, or what their agents perceive or remember."),
     ] = None
     timeout_ticks: Annotated[
         int,
@@ -460,86 +366,80 @@ class ProbeEntry(_Entry, frozen=True):
 class ParameterEntry(_Entry, frozen=True):
     """A parameter, whose value replaces `${name}` in any value."""
 
-    default: Annotated[Any, _note("Value if none is given.")]
-    values: Annotated[list[Any], _note("Allowed values; empty: `range`, or only the default.")] = []
-    range: Annotated[tuple[int | float, int | float] | None, _note("Lowest and highest value.")] = (
+    default: Annotated[Any, note("Value if none is given.")]
+    values: Annotated[list[Any], note("Allowed values; empty: `range`, or only the default.")] = []
+    range: Annotated[tuple[int | float, int | float] | None, note("Lowest and highest value.")] = (
         None
     )
     step: Annotated[
         int | float | None,
-        _note("Step in `range`; 0: any number. Default: 1 for whole bounds, else 0."),
+        note("Step in `range`; 0: any number. Default: 1 for whole bounds, else 0."),
     ] = None
-    description: Annotated[str, _note("Description.")] = ""
+    description: Annotated[str, note("Description.")] = ""
 
 
 class ScenarioFile(_Entry, frozen=True):
     """A scenario: a world, agents, a script, and expected beliefs."""
 
-    name: Annotated[str, _note("Short name, for tables and folders.")]
+    name: Annotated[str, note("Short name, for tables and folders.")]
     box: Annotated[
-        tuple[Position, Position], _note("Two inclusive corners of the scenario's space.")
+        tuple[Position, Position], note("Two inclusive corners of the scenario's space.")
     ]
     agents: Annotated[
         dict[str, AgentEntry],
         msgspec.Meta(min_length=1, description="Agents by name."),
     ]
-    description: Annotated[str, _note("Description of the scenario.")] = ""
+    description: Annotated[str, note("Description of the scenario.")] = ""
     reported_by: Annotated[
-        str, _note("Source of the expectations, as in 'as the paper reports'.")
+        str, note("Source of the expectations, as in 'as the paper reports'.")
     ] = ""
     parameters: Annotated[
-        dict[str, ParameterEntry], _note("Parameters, which replace `${name}` in other values.")
+        dict[str, ParameterEntry], note("Parameters, which replace `${name}` in other values.")
     ] = {}
     constraints: Annotated[
-        list[str], _note("Expressions over parameters that must hold, such as `gap < 4`.")
+        list[str], note("Expressions over parameters that must hold, such as `gap < 4`.")
     ] = []
-    blocks: Annotated[list[BlockEntry], _note("Blocks in the box; the rest is air.")] = []
+    blocks: Annotated[list[BlockEntry], note("Blocks in the box; the rest is air.")] = []
     containers: Annotated[
-        list[ContainerEntry], _note("Containers, their initial contents, and their names.")
+        list[ContainerEntry], note("Containers, their initial contents, and their names.")
     ] = []
-    signs: Annotated[list[SignEntry], _note("Signs and their texts.")] = []
-    places: Annotated[dict[str, Position], _note("Named places: block positions by name.")] = {}
+    signs: Annotated[list[SignEntry], note("Signs and their texts.")] = []
+    places: Annotated[dict[str, Position], note("Named places: block positions by name.")] = {}
     perception: Annotated[
         PerceptionEntry,
-        _note("Range of sight and hearing, and effect of claims."),
+        note("Range of sight and hearing, and effect of claims."),
     ] = PerceptionEntry()
     senses: Annotated[
         Literal["world", "percepts"],
-        _note("Facts that programs read: all, or what their agents perceive or remember."),
+        note("Facts that programs read: all, or what their agents perceive or remember."),
     ] = "world"
     static_blocks: Annotated[
         list[str | Position],
-        _note("Blocks that all agents know from the start: names, or positions."),
+        note("Blocks that all agents know from the start: names, or positions."),
     ] = []
     unique: Annotated[
         list[str],
-        _note(
+        note(
             "Items that all agents know to exist only once: an agent that sees one believes that "
             "it is nowhere else."
         ),
     ] = []
     labels: Annotated[
         bool,
-        _note("Whether prompts contain `label` and `looks` of containers."),
+        note("Whether prompts contain `label` and `looks` of containers."),
     ] = False
-    initial_beliefs: Annotated[list[InitialBeliefEntry], _note("Beliefs before the script.")] = []
-    script: Annotated[list[StepEntry], _note("Steps in the real world, in order.")] = []
-    probes: Annotated[list[ProbeEntry], _note("Requests to models after the script.")] = []
-    expectations: Annotated[
-        list[ExpectationEntry], _note("Expected beliefs after the script.")
-    ] = []
+    initial_beliefs: Annotated[list[InitialBeliefEntry], note("Beliefs before the script.")] = []
+    script: Annotated[list[StepEntry], note("Steps in the real world, in order.")] = []
+    probes: Annotated[list[ProbeEntry], note("Requests to models after the script.")] = []
+    expectations: Annotated[list[ExpectationEntry], note("Expected beliefs after the script.")] = []
     episode: Annotated[
         EpisodeEntry | None,
-        _note("Goals of agents, and the rules of play in rounds."),
+        note("Goals of agents, and the rules of play in rounds."),
     ] = None
     conditions: Annotated[
         dict[int, dict[str, Any]],
-        _note(
+        note(
             "Overrides by number: a mapping is merged key by key, any other value replaces. For a "
             "list of labelled entries, a mapping changes the entries with these labels."
         ),
     ] = {}
-
-
-LABELLED = ("script", "probes", "expectations")
-"""Lists whose entries a condition may change one by one, by label."""

@@ -5,10 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from beliefnest.errors import InputError
-from beliefnest.scenarios.expected import Judge
 from beliefnest.scenarios.trial import Trial
 
-__all__ = ["NamedFunction", "judge_of"]
+__all__ = ["NamedFunction", "function_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,16 +46,16 @@ class NamedFunction:
         return found
 
 
-def judge_of(written: object) -> Judge:
-    """Return the judge that a scenario names.
+def function_of(written: object) -> tuple[Callable[[Trial], bool | str], str]:
+    """Return the function that a scenario names, and its name in tables.
 
     Raises:
         InputError: The value is neither a function nor a text `module:function`.
     """
     if callable(written):
-        return Judge(written, getattr(written, "__name__", "the judging function"))
+        return written, getattr(written, "__name__", "the judging function")
     if isinstance(written, str):
         module, _, function = written.partition(":")
         if function.isidentifier() and all(part.isidentifier() for part in module.split(".")):
-            return Judge(NamedFunction(module, function), function)
+            return NamedFunction(module, function), function
     raise InputError(f"{written!r} is no function; give one as module:function")

@@ -6,17 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.minds.model import MindModel, simplex_grid
+from beliefnest.scenarios.checks import check_inside
 from beliefnest.scenarios.document import Document, KeyPath
-from beliefnest.scenarios.expected import Infers
 from beliefnest.scenarios.format import (
     DoubtEntry,
     GridEntry,
     InferEntry,
-    InferredEntry,
     LevelsEntry,
 )
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.values import Box, Position
 
 if TYPE_CHECKING:
     from beliefnest.minds.inference import Inference
@@ -26,9 +24,7 @@ __all__ = [
     "Inferred",
     "Inferring",
     "build_inferring",
-    "build_infers",
     "means_text",
-    "why_not_inferred",
 ]
 
 MOST_HYPOTHESES = 2_000_000
@@ -84,24 +80,6 @@ class Inferred:
         )
 
 
-def why_not_inferred(expected: Infers, inferred: Inferred) -> str | None:
-    """Return how the inferred means differ from the expected ones; None: they do not."""
-    if inferred.impossible is not None:
-        return inferred.impossible
-    mean = inferred.means[expected.factor]
-    for word, bound, is_met in (
-        ("above", expected.above, mean.__gt__),
-        ("below", expected.below, mean.__lt__),
-    ):
-        if bound is None:
-            continue
-        number = inferred.means[bound] if isinstance(bound, str) else bound
-        if not is_met(number):
-            told = f"{bound} ({number:.3g})" if isinstance(bound, str) else f"{number:g}"
-            return f"{expected.factor} is {mean:.3g}, not {word} {told}"
-    return None
-
-
 def means_text(means: Mapping[str, float], factors: Sequence[str] = ()) -> str:
     """Return the means of some factors in words; without names, of all factors."""
     return ", ".join(f"{name} {means[name]:.3g}" for name in factors or means)
@@ -122,7 +100,7 @@ def build_inferring(
         )
     for name, goal in entry.goals.items():
         if goal.at is not None:
-            _check_inside(document, (*path, "goals", name, "at"), goal.at, snapshot.box)
+            check_inside(document, (*path, "goals", name, "at"), goal.at, snapshot.box)
     doubt = None
     if entry.doubt is not None:
         doubt = {
@@ -168,31 +146,6 @@ def build_inferring(
     return Inferring(
         model, entry.since, entry.until, entry.ended, entry.smooth, document.where(path)
     )
-
-
-def build_infers(
-    document: Document, path: KeyPath, entries: Mapping[str, InferredEntry], model: MindModel
-) -> list[Infers]:
-    """Build the expectations about inferred means.
-
-    Raises:
-        ScenarioError: A factor is not in the model, or has no bounds.
-    """
-    if not entries:
-        raise document.fault(path, "expects nothing; name a factor, such as utility.K")
-    found = []
-    for factor, entry in entries.items():
-        place = (*path, factor)
-        named = [factor, *(b for b in (entry.above, entry.below) if isinstance(b, str))]
-        for name in named:
-            if name not in model.factors:
-                raise document.fault(
-                    place, f"there is no factor {name!r}; there are {', '.join(model.factors)}"
-                )
-        if entry.above is None and entry.below is None:
-            raise document.fault(place, "expects nothing; give above, below or both")
-        found.append(Infers(factor, entry.above, entry.below))
-    return found
 
 
 def _utilities(document: Document, path: KeyPath, entry: InferEntry) -> Any:
@@ -245,9 +198,9 @@ def _alternative(
 ) -> dict[str, Any]:
     """Return one alternative as `MindModel` takes it."""
     for number, block in enumerate(entry.blocks):
-        _check_inside(document, (*path, "blocks", number, "at"), block.at, snapshot.box)
+        check_inside(document, (*path, "blocks", number, "at"), block.at, snapshot.box)
     for number, container in enumerate(entry.containers):
-        _check_inside(document, (*path, "containers", number, "at"), container.at, snapshot.box)
+        check_inside(document, (*path, "containers", number, "at"), container.at, snapshot.box)
     for agent in entry.agents:
         if agent not in snapshot.agents:
             raise document.fault((*path, "agents", agent), f"there is no agent {agent!r}")
@@ -256,10 +209,3 @@ def _alternative(
         "containers": {container.at: dict(container.items) for container in entry.containers},
         "agents": dict(entry.agents),
     }
-
-
-def _check_inside(document: Document, path: KeyPath, place: Position, box: Box) -> None:
-    if place not in box:
-        raise document.fault(
-            path, f"{list(place)} lies outside the box {list(box.low)} to {list(box.high)}"
-        )

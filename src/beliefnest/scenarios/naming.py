@@ -1,15 +1,37 @@
-"""Texts for places and items, for people."""
+"""Names of places of a scenario, for people."""
 
-from beliefnest.world.values import Items, Point
+import math
 
-__all__ = ["items_text", "place_text"]
+from beliefnest.nest.past.setting import Setting
+from beliefnest.world.texts import on_one_line
+from beliefnest.world.values import Point, Position
+
+__all__ = ["container_name", "named_place", "point_text", "titled"]
+
+_NEAR = 3.0
+"""Distance in blocks from a named place within which an agent is said to be there."""
 
 
-def place_text(point: Point) -> str:
-    """Return a place such as `(2, -51, -4)`; other than whole numbers have one decimal."""
-    return f"({', '.join(f'{round(value, 1):g}' for value in point)})"
+def container_name(place: Position, setting: Setting) -> str:
+    """Return the label of a container, or its position if it has none."""
+    return on_one_line(setting.labels.get(place, f"({', '.join(map(str, place))})"))
 
 
-def items_text(items: Items) -> str:
-    """Return items as `1 diamond, 2 apple`; `nothing` if there are none."""
-    return ", ".join(f"{count} {name}" for name, count in sorted(items.items())) or "nothing"
+def named_place(point: Point, setting: Setting) -> str:
+    """Return a point as text: `at` with a named place near it, or with its coordinates."""
+    near = {
+        name: math.dist(point, (x + 0.5, y, z + 0.5)) for name, (x, y, z) in setting.places.items()
+    }
+    if near and min(near.values()) <= _NEAR:
+        return f"at {min(near, key=lambda name: near[name])}"
+    return f"at {point_text(point)}"
+
+
+def point_text(point: Point) -> str:
+    """Return a point as text with exactly one decimal, as in tables."""
+    return f"({', '.join(f'{value:.1f}' for value in point)})"
+
+
+def titled(name: str) -> str:
+    """Return an agent's name with a capital letter, for the start of a sentence."""
+    return name[:1].upper() + name[1:]

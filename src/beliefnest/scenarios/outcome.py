@@ -8,9 +8,9 @@ from beliefnest.bodies.protocol import Fault, ProgramResult
 from beliefnest.errors import InputError
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Expectation
+from beliefnest.scenarios.expected import Judgement
+from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.inferring import Inferred
-from beliefnest.scenarios.judging import Judgement
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.trial import Trial
 from beliefnest.world.paths import parse_path, path_text

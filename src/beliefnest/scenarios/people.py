@@ -3,9 +3,9 @@
 import math
 from itertools import combinations
 
+from beliefnest.scenarios.checks import check_items
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.format import AgentEntry, ScenarioFile
-from beliefnest.scenarios.space import check_items
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import AGENT_SLOTS, MOST_AGENTS, agent_name_fault
 from beliefnest.world.registry import Registry

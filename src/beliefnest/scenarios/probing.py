@@ -12,15 +12,9 @@ from beliefnest.programs import skills
 from beliefnest.prompts import Template, built_in_template, instructions
 from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Answers, Infers
-from beliefnest.scenarios.inferring import Inferred, Inferring, why_not_inferred
-from beliefnest.scenarios.judging import (
-    Judgement,
-    answer_verdict,
-    opened_by,
-    outcome_of,
-    verdict_of,
-)
+from beliefnest.scenarios.expected import Answers, Deed, Infers, Judgement
+from beliefnest.scenarios.inferring import Inferred, Inferring
+from beliefnest.scenarios.judging import outcome_of
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply
 from beliefnest.scenarios.questioning import ask_question
 from beliefnest.scenarios.trial import Trial
@@ -87,7 +81,7 @@ def run_probe(
         usage += used
     judged = iter(programs.verdicts)
     verdicts = tuple(
-        answer_verdict(each, replies[each].answer) if isinstance(each, Answers) else next(judged)
+        each.judge(replies[each].answer) if isinstance(each, Answers) else next(judged)
         for each in probe.expect
     )
     trial = programs.trial
@@ -124,9 +118,7 @@ def _infer(nest: Nest, probe: Probe, infer: Inferring) -> ProbeOutcome:
     except (InputError, PathError, TickError) as error:
         raise ScenarioError(f"{infer.where}: {error}") from None
     inferred = Inferred.of(inference)
-    verdicts = tuple(
-        _inferred_verdict(each, inferred) for each in probe.expect if isinstance(each, Infers)
-    )
+    verdicts = tuple(each.judge(inferred) for each in probe.expect if isinstance(each, Infers))
     return ProbeOutcome(
         probe=probe,
         verdicts=verdicts,
@@ -135,13 +127,6 @@ def _infer(nest: Nest, probe: Probe, infer: Inferring) -> ProbeOutcome:
         fault=inferred.impossible or "",
         inferred=inferred,
     )
-
-
-def _inferred_verdict(expected: Infers, inferred: Inferred) -> Judgement:
-    why_not = why_not_inferred(expected, inferred)
-    if why_not is None:
-        return Judgement(expected, ok=True, outcome="ok")
-    return Judgement(expected, ok=False, why_not=why_not, outcome="wrong")
 
 
 def _ask_for_program(
@@ -167,7 +152,7 @@ def _ask_for_program(
             told = tuple(
                 Judgement(each, ok=False, why_not="there is no program", outcome="no_answer")
                 for each in probe.expect
-                if not isinstance(each, Answers | Infers)
+                if isinstance(each, Deed)
             )
             return _Programs(attempts, None, told, str(error))
     return _Programs(attempts, *trials.done[-1])
@@ -228,13 +213,8 @@ class _Trials:
                 result=result,
                 state=simulator.state,
                 belief=self._belief,
-                opened=opened_by(probe.agent, result.events),
             )
-            verdicts = tuple(
-                verdict_of(each, trial)
-                for each in probe.expect
-                if not isinstance(each, Answers | Infers)
-            )
+            verdicts = tuple(each.judge(trial) for each in probe.expect if isinstance(each, Deed))
         finally:
             simulator.switch(before)
         self.done.append((trial, verdicts))

@@ -1,33 +1,15 @@
 """Outcomes as plain values, for `--json` and for the files of runs and studies."""
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from beliefnest.bodies.protocol import Aim
 from beliefnest.llm.messages import Usage
-from beliefnest.scenarios.expected import (
-    Answers,
-    Arrives,
-    Believes,
-    Expectation,
-    Expected,
-    Hears,
-    Holds,
-    Infers,
-    Intends,
-    Is,
-    Judge,
-    Opens,
-    Reads,
-    Says,
-    Takes,
-)
+from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.outcome import ExpectationOutcome, ProbeOutcome, Reply
 from beliefnest.world.values import Placements, Point
 
-__all__ = ["expectation_json", "expected_json", "placed_json", "probe_json", "usage_json"]
+__all__ = ["expectation_json", "placed_json", "probe_json", "usage_json"]
 
 
 def usage_json(usage: Usage) -> dict[str, object]:
@@ -43,24 +25,10 @@ def usage_json(usage: Usage) -> dict[str, object]:
 def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
     """Return the outcome of an expectation as plain values."""
     return {
-        **_expected_of(outcome.expectation),
+        **outcome.expectation.written(),
         "ok": outcome.ok,
         "why_not": outcome.why_not or "",
     }
-
-
-def expected_json(expected: tuple[Expected, ...]) -> dict[str, object] | None:
-    """Return the expectations of a probe with the keys of scenario files; None: none."""
-    found: dict[str, Any] = {}
-    for each in expected:
-        for key, value in _one(each).items():
-            if key in ("answers", "believes"):
-                found[key] = [*found.get(key, []), *value]
-            elif key == "inferred":
-                found[key] = {**found.get(key, {}), **value}
-            else:
-                found[key] = value
-    return found or None
 
 
 def placed_json(placed: Placements) -> dict[str, object]:
@@ -111,7 +79,7 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
         "log_evidence": evidence if math.isfinite(evidence) else None,
         "expected": expected_json(probe.expect),
         "checks": [
-            {"expected": _one(each.expected), "ok": each.ok, "why_not": each.why_not}
+            {"expected": each.expected.written(), "ok": each.ok, "why_not": each.why_not}
             for each in outcome.verdicts
         ],
         "ok": outcome.ok,
@@ -122,55 +90,6 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
         "cost": outcome.usage.cost,
         "run_dir": str(run_dir),
     }
-
-
-def _one(expected: Expected) -> dict[str, Any]:
-    found: dict[str, Any]
-    match expected:
-        case Opens(container):
-            found = {"opens": list(container)}
-        case Arrives(place, within):
-            found = {"arrives": list(place), "within": within}
-        case Intends(place, within, _):
-            found = {"intends": list(place), "within": within}
-        case Takes(items):
-            found = {"takes": dict(items)}
-        case Says(text):
-            found = {"says": text}
-        case Answers(question, right, options, wrong, reason):
-            asked = {
-                "question": question,
-                "right": list(right),
-                "options": list(options),
-                "wrong": list(wrong),
-                "reason": reason,
-            }
-            found = {"answers": [asked]}
-        case Believes(expectation):
-            found = {"believes": [_expected_of(expectation)]}
-        case Judge(_, name):
-            found = {"function": name}
-        case Infers(factor, above, below):
-            bounds = {"above": above, "below": below}
-            told = {word: bound for word, bound in bounds.items() if bound is not None}
-            found = {"inferred": {factor: told}}
-    return found
-
-
-def _expected_of(expectation: Expectation) -> dict[str, object]:
-    content = expectation.content
-    expected: Mapping[str, object]
-    if isinstance(content, Holds):
-        expected = {"container": list(content.container), "items": dict(content.items)}
-    elif isinstance(content, Reads):
-        expected = {"sign": list(content.sign), "text": content.text}
-    elif isinstance(content, Is):
-        expected = {"block": list(content.block), "state": content.state}
-    elif isinstance(content, Hears):
-        expected = {"heard" if content.ever else "not_heard": content.text}
-    else:
-        expected = {"agent": content.agent, "position": _list(content.place)}
-    return {"path": expectation.path, "label": expectation.label, "expected": expected}
 
 
 def _reply_json(reply: Reply) -> dict[str, object]:

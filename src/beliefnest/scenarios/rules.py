@@ -8,6 +8,7 @@ import msgspec
 from beliefnest.belief.condition_form import ConditionEntry, check_condition, conditions_of
 from beliefnest.errors import InputError
 from beliefnest.scenarios.goals import Goal
+from beliefnest.world.forms import note
 from beliefnest.world.values import Box
 
 __all__ = [
@@ -19,10 +20,6 @@ __all__ = [
 ]
 
 
-def _note(text: str) -> msgspec.Meta:
-    return msgspec.Meta(description=text)
-
-
 class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     """Base of all parts; unknown keys are errors."""
 
@@ -30,41 +27,39 @@ class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defau
 class GoalEntry(_Entry, frozen=True):
     """A goal of an agent or of a task."""
 
-    reach: Annotated[list[ConditionEntry], _note("Must hold, all at the same tick.")] = []
-    never: Annotated[list[ConditionEntry], _note("Must not hold at any tick until then.")] = []
+    reach: Annotated[list[ConditionEntry], note("Must hold, all at the same tick.")] = []
+    never: Annotated[list[ConditionEntry], note("Must not hold at any tick until then.")] = []
     messages: Annotated[
-        Annotated[int, msgspec.Meta(ge=0)] | None, _note("Most utterances of all players.")
+        Annotated[int, msgspec.Meta(ge=0)] | None, note("Most utterances of all players.")
     ] = None
     ticks: Annotated[
         Annotated[int, msgspec.Meta(ge=1)] | None,
-        _note("Most ticks from the first round until all of `reach` holds."),
+        note("Most ticks from the first round until all of `reach` holds."),
     ] = None
     helps: Annotated[
-        str | None, _note("Agent whose goal it is too, whatever that is; given alone.")
+        str | None, note("Agent whose goal it is too, whatever that is; given alone.")
     ] = None
 
 
 class EpisodeEntry(_Entry, frozen=True, kw_only=True):
     """Goals of agents, and the rules of play."""
 
-    goal: Annotated[GoalEntry, _note("Goal of the players; it decides about success.")] = (
-        GoalEntry()
-    )
-    goals: Annotated[dict[str, GoalEntry], _note("Goals of agents that have other goals.")] = {}
-    goals_known: Annotated[bool, _note("Whether every agent knows the goals of the others.")] = True
+    goal: Annotated[GoalEntry, note("Goal of the players; it decides about success.")] = GoalEntry()
+    goals: Annotated[dict[str, GoalEntry], note("Goals of agents that have other goals.")] = {}
+    goals_known: Annotated[bool, note("Whether every agent knows the goals of the others.")] = True
     possible_goals: Annotated[
         dict[str, dict[str, GoalEntry]],
-        _note("By agent and name the goals that it may have, as far as the others know."),
+        note("By agent and name the goals that it may have, as far as the others know."),
     ] = {}
     order: Annotated[int, msgspec.Meta(ge=0, description="Order of Theory of Mind it needs.")] = 0
     players: Annotated[
         list[str],
-        _note("Agents whose policies are tested; empty: all agents not in `policies`."),
+        note("Agents whose policies are tested; empty: all agents not in `policies`."),
     ] = []
-    policies: Annotated[dict[str, str], _note("Policies of agents that are no players.")] = {}
-    talk: Annotated[list[str], _note("Agents that may speak.")] = []
+    policies: Annotated[dict[str, str], note("Policies of agents that are no players.")] = {}
+    talk: Annotated[list[str], note("Agents that may speak.")] = []
     play: Annotated[
-        Literal["together", "turns"], _note("Whether programs of a round run together or in turn.")
+        Literal["together", "turns"], note("Whether programs of a round run together or in turn.")
     ] = "together"
     rounds: Annotated[int, msgspec.Meta(ge=1, description="Greatest number of rounds.")] = 10
     round_ticks: Annotated[

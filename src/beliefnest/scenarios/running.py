@@ -6,9 +6,7 @@ from beliefnest.belief import kernel
 from beliefnest.llm.messages import Model, Usage
 from beliefnest.nest.face.nest import Nest, Progress
 from beliefnest.perception.rays import is_compiled
-from beliefnest.scenarios.expected import Believes, Judge
-from beliefnest.scenarios.functions import NamedFunction
-from beliefnest.scenarios.judging import found_instead
+from beliefnest.scenarios.expected import Deed
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome
 from beliefnest.scenarios.probing import Asking, run_probe
 from beliefnest.scenarios.scenario import Scenario
@@ -53,7 +51,7 @@ def run_scenario(
     paths = _paths(scenario)
     states = nest.states(["/", *paths])
     expectations = tuple(
-        ExpectationOutcome(each, found_instead(each.content, nest[each.path].state))
+        ExpectationOutcome(each, each.content.instead(nest[each.path].state))
         for each in scenario.expectations
     )
     probes = []
@@ -79,12 +77,7 @@ def _paths(scenario: Scenario) -> list[str]:
     agents = scenario.setting.snapshot.agents
     named = [each.path for each in scenario.expectations]
     named += [path for probe in scenario.probes for path in (probe.path, probe.acts_in)]
-    named += [
-        each.expectation.path
-        for probe in scenario.probes
-        for each in probe.expect
-        if isinstance(each, Believes)
-    ]
+    named += [path for probe in scenario.probes for each in probe.expect for path in each.paths]
     paths = {parse_path(path, agents) for path in named}
     return [path_text(path) for path in sorted(paths, key=lambda p: (len(p), p)) if path]
 
@@ -98,5 +91,5 @@ def _reading(nest: Nest) -> Usage:
 
 def _check_functions(scenario: Scenario) -> None:
     for expected in (each for probe in scenario.probes for each in probe.expect):
-        if isinstance(expected, Judge) and isinstance(expected.function, NamedFunction):
-            expected.function.loaded()
+        if isinstance(expected, Deed):
+            expected.check()

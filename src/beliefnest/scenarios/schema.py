@@ -6,7 +6,8 @@ from typing import Any
 
 import msgspec
 
-from beliefnest.scenarios.format import LABELLED, ScenarioFile
+from beliefnest.scenarios.document import LABELLED
+from beliefnest.scenarios.format import ScenarioFile
 
 __all__ = ["allowed_keys", "allowed_values", "schema"]
 

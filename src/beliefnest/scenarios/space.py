@@ -6,11 +6,12 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.scenarios.checks import check_inside, check_items
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
 from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.frames import BlockGrid, PlainClaims
-from beliefnest.world.limits import box_fault, container_slots, items_fault
+from beliefnest.world.limits import box_fault, container_slots
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
 from beliefnest.world.values import Box, Items, Position
@@ -23,8 +24,6 @@ __all__ = [
     "build_grid",
     "build_sign_claims",
     "build_signs",
-    "check_inside",
-    "check_items",
     "entry_mask",
 ]
 
@@ -140,32 +139,6 @@ def build_containers(
                 x, y, z = (i + low for i, low in zip(index, box.low, strict=True))
                 found.setdefault((x, y, z), {})
     return dict(sorted(found.items()))
-
-
-def check_items(
-    document: Document,
-    path: KeyPath,
-    items: Mapping[str, int],
-    registry: Registry,
-    slots: int,
-    holder: str,
-) -> None:
-    """Refuse unknown items, counts below 1, and more items than the slots of a holder can hold."""
-    for name, count in items.items():
-        with document.naming((*path, name)):
-            registry.item_stack(name)
-        if count < 1:
-            raise document.fault((*path, name), f"the count is {count}; it must be at least 1")
-    if fault := items_fault(items, registry, slots, holder):
-        raise document.fault(path, fault)
-
-
-def check_inside(document: Document, path: KeyPath, position: Position, box: Box) -> None:
-    """Refuse a position that lies outside the box."""
-    if position not in box:
-        raise document.fault(
-            path, f"{list(position)} lies outside the box {list(box.low)} to {list(box.high)}"
-        )
 
 
 def entry_mask(

@@ -1,13 +1,22 @@
 """Trial: the run of one program of a probe, as it is judged."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from beliefnest.belief.view import State
 from beliefnest.bodies.protocol import ProgramResult
-from beliefnest.world.values import Point, Position
+from beliefnest.world.values import Event, EventKind, Point, Position
 
-__all__ = ["Trial"]
+__all__ = ["Trial", "opened_by"]
+
+
+def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:
+    """Return the containers that an agent opened, in order."""
+    return tuple(
+        tuple(event.detail["position"])
+        for event in events
+        if event.kind is EventKind.OPEN_CONTAINER and event.actor == agent
+    )
 
 
 @dataclass(frozen=True)
@@ -22,7 +31,6 @@ class Trial:
         state: State of its simulator at the end.
         belief: Function from a belief path to the state at the end of the program; valid only
             while the trial is judged.
-        opened: Containers that the agent opened, in order.
     """
 
     agent: str
@@ -31,7 +39,11 @@ class Trial:
     result: ProgramResult
     state: State
     belief: Callable[[str], State]
-    opened: tuple[Position, ...]
+
+    @property
+    def opened(self) -> tuple[Position, ...]:
+        """Return the containers that the agent opened, in order."""
+        return opened_by(self.agent, self.result.events)
 
     @property
     def arrived(self) -> Point | None:

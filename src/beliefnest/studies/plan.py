@@ -9,8 +9,8 @@ from typing import Any, Generic, Protocol, TypeVar
 from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.loading import condition_numbers
-from beliefnest.scenarios.records import expected_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.chance import scenario_draws
 from beliefnest.studies.design import Design, Template

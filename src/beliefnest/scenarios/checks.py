@@ -1,0 +1,99 @@
+"""Checks of names and places in a document against the world that it describes."""
+
+from dataclasses import dataclass
+
+from beliefnest.errors import ScenarioError
+from beliefnest.scenarios.document import Document, KeyPath
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.limits import container_slots, items_fault
+from beliefnest.world.paths import parse_path
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box, Items, Position
+
+__all__ = ["Checks", "check_inside", "check_items"]
+
+
+def check_items(
+    document: Document, path: KeyPath, items: Items, registry: Registry, slots: int, holder: str
+) -> None:
+    """Refuse unknown items, counts below 1, and more items than the slots of a holder can hold."""
+    for name, count in items.items():
+        with document.naming((*path, name)):
+            registry.item_stack(name)
+        if count < 1:
+            raise document.fault((*path, name), f"the count is {count}; it must be at least 1")
+    if fault := items_fault(items, registry, slots, holder):
+        raise document.fault(path, fault)
+
+
+def check_inside(document: Document, path: KeyPath, position: Position, box: Box) -> None:
+    """Refuse a position that lies outside the box."""
+    if position not in box:
+        raise document.fault(
+            path, f"{list(position)} lies outside the box {list(box.low)} to {list(box.high)}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Checks:
+    """Checks that raise `ScenarioError` with file, line and key.
+
+    Attributes:
+        document: The document.
+        snapshot: Its first tick.
+        registry: Registry of blocks and items.
+    """
+
+    document: Document
+    snapshot: Snapshot
+    registry: Registry
+
+    def fault(self, path: KeyPath, message: str) -> ScenarioError:
+        """Return the error about a key."""
+        return self.document.fault(path, message)
+
+    def belief_path(self, path: KeyPath, text: str) -> tuple[str, ...]:
+        """Return the agents of a belief path."""
+        with self.document.naming(path):
+            return parse_path(text, self.snapshot.agents)
+        raise AssertionError("unreachable")
+
+    def agent(self, path: KeyPath, name: str) -> None:
+        """Refuse an unknown agent."""
+        if name not in self.snapshot.agents:
+            known = ", ".join(self.snapshot.agents)
+            raise self.fault(path, f"there is no agent {name!r}; agents are {known}")
+
+    def container(self, path: KeyPath, position: Position) -> None:
+        """Refuse a position without a container."""
+        if position not in self.snapshot.containers:
+            known = ", ".join(str(list(place)) for place in self.snapshot.containers)
+            raise self.fault(
+                path, f"no container stands at {list(position)}; there are {known or 'none'}"
+            )
+
+    def contents(self, path: KeyPath, place: Position, items: Items) -> None:
+        """Refuse items that the container at a place could not hold."""
+        box = self.snapshot.box
+        name = self.registry.name(int(self.snapshot.blocks[box.index(place)]))
+        self.items(path, items, container_slots(name), f"a {name}")
+
+    def items(self, path: KeyPath, items: Items, slots: int, holder: str) -> None:
+        """Refuse unknown items, counts below 1, and more than the slots of a holder can hold."""
+        check_items(self.document, path, items, self.registry, slots, holder)
+
+    def inside(self, path: KeyPath, position: Position) -> None:
+        """Refuse a position outside the box."""
+        check_inside(self.document, path, position, self.snapshot.box)
+
+    def state(self, path: KeyPath, text: str | None) -> str | None:
+        """Return the canonical text of a block state; None stays None."""
+        if text is None:
+            return None
+        with self.document.naming(path):
+            return self.registry.text(self.registry.state_id(text))
+
+    def block_name(self, path: KeyPath, name: str) -> None:
+        """Refuse an unknown block."""
+        with self.document.naming(path):
+            self.registry.state_ids(name)
