@@ -19,7 +19,7 @@ check: ## Linters and type checkers
 	mypy
 	mypy tools
 	lint-imports
-	cd src/beliefnest/bodies/node && $(NODE) node_modules/eslint/bin/eslint.js .
+	cd src/beliefnest/worlds/minecraft/node && $(NODE) node_modules/eslint/bin/eslint.js .
 	cd src/beliefnest/viewer/page/web && $(NODE) node_modules/eslint/bin/eslint.js .
 
 format: ## Lay out the code

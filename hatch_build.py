@@ -11,7 +11,7 @@ __all__ = ["BundleError", "JavaScriptBundleHook"]
 
 PACKAGE = Path("src", "beliefnest")
 BUNDLES = {
-    PACKAGE / "bodies" / "node": PACKAGE / "_bundle",
+    PACKAGE / "worlds" / "minecraft" / "node": PACKAGE / "_bundle",
     PACKAGE / "viewer" / "page" / "web": PACKAGE / "_page",
 }
 """Each folder with a `build.js`, and where it is told to put what it makes."""

@@ -6,8 +6,8 @@ import signal
 import pytest
 from hypothesis import HealthCheck, settings
 from tests.profiles import NIGHTLY
+from tests.shared_worlds import kept_worlds, lent
 from tests.sharing import ByFile, rank
-from tests.worlds import kept_worlds, lent
 from xdist.remote import Producer
 
 __all__ = ["kept_worlds", "lent"]

@@ -9,11 +9,11 @@ from typing import IO, Any, Self
 
 from tests.servers import given_version
 
-from beliefnest.bodies.node_files import node_path
+from beliefnest.worlds.minecraft.node_files import node_path
 
 __all__ = ["Person"]
 
-_ROOM = Path(__file__).parents[1] / "src" / "beliefnest" / "bodies" / "node"
+_ROOM = Path(__file__).parents[1] / "src" / "beliefnest" / "worlds" / "minecraft" / "node"
 _LIMIT_S = 120
 
 

@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import IO, Any, Protocol, Self
 from urllib.parse import parse_qs, urlsplit
 
-from beliefnest.bodies.node_files import node_path
+from beliefnest.worlds.minecraft.node_files import node_path
 
 __all__ = ["GameServer", "Served", "given_version", "serving"]
 
 _GIVEN = "BELIEFNEST_TEST_SERVER"
-_ROOM = Path(__file__).parents[1] / "src" / "beliefnest" / "bodies" / "node"
+_ROOM = Path(__file__).parents[1] / "src" / "beliefnest" / "worlds" / "minecraft" / "node"
 
 
 class Served(Protocol):

@@ -5,29 +5,29 @@ from xdist.scheduler import LoadFileScheduling
 __all__ = ["ByFile", "rank"]
 
 _LONGEST = (
-    "tests/bodies/test_node_suite.py::test_javascript[test/tcp/",
+    "tests/worlds/minecraft/test_node_suite.py::test_javascript[test/tcp/",
     "tests/nest/test_on_servers.py",
-    "tests/bodies/test_node_suite.py::test_javascript[test/process.",
+    "tests/worlds/minecraft/test_node_suite.py::test_javascript[test/process.",
     "tests/nest/test_people.py",
     "tests/viewer/page/test_page.py",
     "tests/studies/test_models.py",
     "tests/studies/test_study.py",
-    "tests/bodies/test_node_suite.py",
-    "tests/inspect/",
+    "tests/worlds/minecraft/test_node_suite.py",
+    "tests/adapters/inspect_ai/",
     "tests/cli/test_pictures.py",
     "tests/cli/test_models.py",
     "tests/nest/test_killed_node.py",
     "tests/nest/test_percepts_embedded.py",
     "tests/nest/test_against_reference.py",
     "tests/nest/test_laws.py",
-    "tests/bodies/",
+    "tests/worlds/",
     "tests/docs/",
     "tests/cli/",
     "tests/nest/",
 )
 """What takes long, by the beginnings of names: what waits for real time, then what computes."""
 
-_APART = ("tests/bodies/test_node_suite.py", "tests/nest/test_against_reference.py")
+_APART = ("tests/worlds/minecraft/test_node_suite.py", "tests/nest/test_against_reference.py")
 """Files whose tests have nothing in common, so that each may run anywhere."""
 
 

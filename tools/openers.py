@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parent.parent
-FOLDERS = ("src", "tools", "examples")
+FOLDERS = ("src", "benchmarks", "tools", "examples")
 SKIPPED = {"node_modules", "_bundle", "_page"}
 
 QUESTION_WORD = re.compile(r"(What|Who|Whom|Whose|Where|Whether|How|That|Which|Why|When)\b")

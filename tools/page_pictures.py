@@ -9,8 +9,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from beliefnest.cli.bench.browser import Browser, opened_browser
 from beliefnest.cli.page import PageOptions, write_page
+from beliefnest_benchmarks.browser import Browser, opened_browser
 
 IMAGES = Path(__file__).parents[1] / "docs" / "img"
 

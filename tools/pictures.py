@@ -8,7 +8,7 @@ from pathlib import Path
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.cli.folder import STORE
-from beliefnest.studies.plot import svg_of
+from beliefnest.studies.accuracy_figure import svg_of
 
 ROOT = Path(__file__).parents[1]
 IMAGES = ROOT / "docs" / "img"

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from beliefnest.scenarios.schema import schema
+from beliefnest.scenarios.json_schema import schema
 
 if __name__ == "__main__":
     target = Path(__file__).parents[1] / "docs" / "scenario.schema.json"

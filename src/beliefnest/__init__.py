@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING
 from beliefnest.version import VERSION
 
 if TYPE_CHECKING:  # Each name is imported when it is first used.
-    from beliefnest.belief.entries import InitialBelief
-    from beliefnest.bodies.limits import ProcessLimits
-    from beliefnest.bodies.protocol import ProgramResult
+    from beliefnest.belief.grounds import InitialBelief
+    from beliefnest.episodes.agent_view import GO_ON, AgentView
     from beliefnest.episodes.episode import Episode
     from beliefnest.episodes.record import Budget
     from beliefnest.episodes.task import Task
-    from beliefnest.episodes.view import GO_ON, AgentView
     from beliefnest.errors import (
         BeliefNestError,
         BodyError,
@@ -35,7 +33,7 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
         WorldError,
     )
     from beliefnest.minds.inference import Inference
-    from beliefnest.minds.model import MindModel, simplex_grid
+    from beliefnest.minds.mind_model import MindModel, simplex_grid
     from beliefnest.nest.explain.comparison import Difference, Pose
     from beliefnest.nest.explain.explanation import Explanation
     from beliefnest.nest.explain.parts import Contents
@@ -48,7 +46,9 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
     from beliefnest.studies.result import StudyResult
     from beliefnest.studies.study import Study
     from beliefnest.world.claims import Claim, ClaimKind
-    from beliefnest.world.scripted import ScriptedWorld
+    from beliefnest.worlds.process_limits import ProcessLimits
+    from beliefnest.worlds.protocol import ProgramResult
+    from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __version__ = VERSION
 
@@ -101,8 +101,8 @@ __all__ = [
 ]
 
 _HOMES = {
-    "GO_ON": "beliefnest.episodes.view",
-    "AgentView": "beliefnest.episodes.view",
+    "GO_ON": "beliefnest.episodes.agent_view",
+    "AgentView": "beliefnest.episodes.agent_view",
     "Attempt": "beliefnest.nest.face.exploration",
     "Budget": "beliefnest.episodes.record",
     "Claim": "beliefnest.world.claims",
@@ -115,21 +115,21 @@ _HOMES = {
     "ImaginationWarning": "beliefnest.nest.face.imagining",
     "Imagined": "beliefnest.nest.face.imagining",
     "Inference": "beliefnest.minds.inference",
-    "InitialBelief": "beliefnest.belief.entries",
-    "MindModel": "beliefnest.minds.model",
+    "InitialBelief": "beliefnest.belief.grounds",
+    "MindModel": "beliefnest.minds.mind_model",
     "Nest": "beliefnest.nest.face.nest",
     "Perception": "beliefnest.perception.options",
     "Pose": "beliefnest.nest.explain.comparison",
-    "ProcessLimits": "beliefnest.bodies.limits",
-    "ProgramResult": "beliefnest.bodies.protocol",
+    "ProcessLimits": "beliefnest.worlds.process_limits",
+    "ProgramResult": "beliefnest.worlds.protocol",
     "Radius": "beliefnest.perception.options",
     "Scenario": "beliefnest.scenarios",
-    "ScriptedWorld": "beliefnest.world.scripted",
+    "ScriptedWorld": "beliefnest.worlds.scripted.world",
     "Simulator": "beliefnest.nest.face.simulator",
     "Study": "beliefnest.studies.study",
     "StudyResult": "beliefnest.studies.result",
     "Task": "beliefnest.episodes.task",
-    "simplex_grid": "beliefnest.minds.model",
+    "simplex_grid": "beliefnest.minds.mind_model",
 }
 
 

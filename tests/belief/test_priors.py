@@ -4,7 +4,7 @@ import pytest
 from tests.nest.places import CLOSED, EAST, WEST, nest_of
 
 import beliefnest as bn
-from beliefnest.belief.entries import Source
+from beliefnest.belief.grounds import Source
 from beliefnest.world.registry import Registry
 
 AGENTS = {"a": WEST, "b": EAST, "c": (2.5, 0, 8.5)}

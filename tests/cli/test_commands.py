@@ -252,7 +252,7 @@ def test_doctor_compiles_what_the_first_belief_would_wait_for(
 def test_doctor_says_what_to_do_about_a_missing_bundle(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("beliefnest.bodies.node_files._BUNDLE", tmp_path)
+    monkeypatch.setattr("beliefnest.worlds.minecraft.node_files._BUNDLE", tmp_path)
     assert run_command_line(["doctor"]) == 3
     failed = [line for line in capsys.readouterr().out.splitlines() if line.startswith("FAIL")]
     assert failed

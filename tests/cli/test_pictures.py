@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import pytest
 from tests.pictures.measuring import faults, texts
-from tests.worlds import Lent
+from tests.shared_worlds import Lent
 
 from beliefnest.cli.pictures import read_condition
-from beliefnest.llm.offline.model import OfflineModel
+from beliefnest.llm.offline.offline_model import OfflineModel
 from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.marks import Circle, Rectangle, Text

@@ -9,10 +9,10 @@ from xml.etree import ElementTree
 import pytest
 
 import beliefnest as bn
-from beliefnest.bodies.scripted import ScriptedBodies
 from beliefnest.cli.app import run_command_line
 from beliefnest.cli.folder import store_in
 from beliefnest.errors import BodyError
+from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 
@@ -95,7 +95,7 @@ def test_a_run_that_cannot_begin_says_why(
     def refuse(*_: object) -> None:
         raise BodyError("there is no room for it")
 
-    monkeypatch.setattr(ScriptedBodies, "open_body", refuse)
+    monkeypatch.setattr(ScriptedNestWorld, "open_body", refuse)
     arguments = ["--condition", "1", "--world", "scripted", "--out", str(tmp_path / "run")]
     assert run_command_line(["run", "sally-anne", *arguments]) != 0
     assert capsys.readouterr().err.endswith("there is no room for it\n")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from beliefnest.minds.model import MindModel
+from beliefnest.minds.mind_model import MindModel
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "minds.md").read_text(encoding="utf-8")

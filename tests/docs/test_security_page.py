@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 TOP = Path(__file__).parents[2]
-NODE = TOP / "src" / "beliefnest" / "bodies" / "node"
+NODE = TOP / "src" / "beliefnest" / "worlds" / "minecraft" / "node"
 NAMED = re.compile(r"`((?:tests?/)?[\w./-]+\.(?:test\.js|py))`")
 
 

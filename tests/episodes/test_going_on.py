@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 import beliefnest as bn
-from beliefnest.bodies.worlds import WORLDS
 from beliefnest.episodes.policies import Program, Scripted
+from beliefnest.worlds.by_name import WORLDS
 
 ERRAND = """
 await say(bot, 'I begin.')

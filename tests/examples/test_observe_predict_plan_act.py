@@ -11,7 +11,7 @@ from types import ModuleType
 import pytest
 
 from beliefnest.llm.offline import OfflineModel
-from beliefnest.llm.recorded import ScriptedModel
+from beliefnest.llm.recorded_models import ScriptedModel
 from beliefnest.timeline.store import SqliteJournal
 
 ROOT = Path(__file__).parents[2]

@@ -7,7 +7,7 @@ import pytest
 from beliefnest.errors import InputError, ModelError
 from beliefnest.llm import NoProgramError, Sampling, Usage, ask_for_program, extract_program
 from beliefnest.llm.messages import Answer
-from beliefnest.llm.recorded import ScriptedModel
+from beliefnest.llm.recorded_models import ScriptedModel
 
 
 class Listening(ScriptedModel):

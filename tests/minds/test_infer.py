@@ -468,9 +468,7 @@ def test_what_is_impossible_is_told_with_its_cells():
     walk(world, (1, 0), (0, 0))
     world.withdraw("bob", (0, 1, 1), {"diamond": 1})
     told = str(nest["/"].infer(model).impossible)
-    assert told.startswith(
-        "tick 3: the agent acts on goal D at (0, 1, 0), which no hypothesis"
-    )
+    assert told.startswith("tick 3: the agent acts on goal D at (0, 1, 0), which no hypothesis")
     assert "the goal is not in reach there" in told
     split = lane(5, 1, [(2, 0)])
     jumping = bn.Nest(split)

@@ -21,7 +21,7 @@ from tests.nest.reference_testimony import Ear, read
 from tests.nest.reference_unique import remove
 
 import beliefnest as bn
-from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
+from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.world.claims import Claim, claims_from_plain, claims_of
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.signs import text_of

@@ -9,7 +9,7 @@ from tests.nest.reference_testimony import Ear, Matter, hear, read
 from tests.nest.reference_unique import see_alone, see_moved
 
 import beliefnest as bn
-from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
+from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.perception.sight import Sight
 from beliefnest.world.claims import Claim
 from beliefnest.world.frames import Snapshot

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from tests.nest.reference_unique import is_perceived_elsewhere, remove
 
-from beliefnest.belief.entries import Basis, ContainerBelief, Source
+from beliefnest.belief.grounds import Basis, ContainerBelief, Source
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EventKind, Items, Point, Position

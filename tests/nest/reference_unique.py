@@ -13,7 +13,7 @@ from collections.abc import Collection
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.belief.entries import Basis, Source
+from beliefnest.belief.grounds import Basis, Source
 from beliefnest.world.values import Position
 
 if TYPE_CHECKING:

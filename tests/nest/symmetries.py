@@ -7,7 +7,7 @@ from typing import Any
 
 from tests.nest.stories import HIGH, Act, Story
 
-from beliefnest.belief.entries import AgentBelief
+from beliefnest.belief.grounds import AgentBelief
 
 WIDTH = HIGH[0] + 1
 """The box is as deep as it is wide."""

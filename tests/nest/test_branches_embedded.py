@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import beliefnest as bn
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.errors import BeliefNestError
+from beliefnest.worlds.by_name import Worlds
 
 BOX, LEVER = (1, 1, 5), (8, 1, 2)
 ROOM = {

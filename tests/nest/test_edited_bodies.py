@@ -3,7 +3,7 @@
 import pytest
 
 import beliefnest as bn
-from beliefnest.bodies.worlds import Worlds
+from beliefnest.worlds.by_name import Worlds
 
 FULL, EMPTY, FLOOR = (2, 1, 2), (4, 1, 2), (4, 1, 4)
 ROOM = {

@@ -6,7 +6,7 @@ from tests.nest.places import CHEST, CORNER, EAST, GAP, MEETING, WEST, nest_of
 from tests.nest.stories import REGISTRY
 
 import beliefnest as bn
-from beliefnest.belief.entries import Source
+from beliefnest.belief.grounds import Source
 from beliefnest.errors import InputError, PositionError, UnknownNameError
 
 THREE = {"observer": WEST, "sally": MEETING, "anne": GAP}

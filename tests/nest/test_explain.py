@@ -7,7 +7,7 @@ from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, OPEN, W
 from tests.nest.test_sally_anne import BEFORE_LEFT, LEFT, RIGHT, walls
 
 import beliefnest as bn
-from beliefnest.belief.entries import Basis, Source
+from beliefnest.belief.grounds import Basis, Source
 from beliefnest.errors import InputError, PathError, PositionError, TickError
 from beliefnest.nest.explain.parts import View
 from beliefnest.world.values import EventKind

@@ -9,9 +9,9 @@ import pytest
 from tests.nest.comparing import everything
 
 import beliefnest as bn
-from beliefnest.bodies.channel import Channel
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.nest.face import exploration as exploring
+from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.minecraft.channel import Channel
 
 ROOM = {
     "name": "room",

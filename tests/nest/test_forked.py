@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import beliefnest as bn
-from beliefnest.bodies.embedded import EmbeddedWorld
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.worlds.minecraft.embedded import EmbeddedWorld
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
 

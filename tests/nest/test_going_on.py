@@ -14,7 +14,6 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 import beliefnest as bn
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.nest.acting.replay import replay
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import first_difference
@@ -23,6 +22,7 @@ from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box
+from beliefnest.worlds.by_name import Worlds
 
 BOX = Box((0, 0, 0), (13, 8, 13))
 CHEST, FURNACE, TABLE, BARREL = (3, 1, 3), (6, 1, 3), (9, 1, 3), (3, 1, 9)

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from tests.profiles import at_night
 
 import beliefnest as bn
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.app import run_command_line
 from beliefnest.nest.acting.placement import BodySpace, placed, unknown_floors
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box
+from beliefnest.worlds.by_name import Worlds
 
 REGISTRY = Registry.load()
 SHUT = "oak_door[facing=north,half={half},hinge=left,open=false,powered=false]"

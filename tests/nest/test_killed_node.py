@@ -11,10 +11,10 @@ import pytest
 from tests.nest.comparing import everything
 
 import beliefnest as bn
-from beliefnest.bodies.channel import Channel
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.app import run_command_line
 from beliefnest.nest.acting.frame_recorder import FrameRecorder
+from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.minecraft.channel import Channel
 
 ROOM = {
     "name": "room",

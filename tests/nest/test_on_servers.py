@@ -12,10 +12,10 @@ from tests.profiles import NIGHTLY
 from tests.servers import GameServer, Served, given_version, serving
 
 from beliefnest import Nest, Scenario
-from beliefnest.bodies.worlds import joined_of, open_world
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import BodyError, InputError
 from beliefnest.world.values import EventKind
+from beliefnest.worlds.by_name import joined_of, open_world
 
 LONG_S = 120
 PATIENCE = 60

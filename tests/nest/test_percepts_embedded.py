@@ -16,13 +16,13 @@ from tests.profiles import at_night
 from tests.servers import serving
 
 import beliefnest as bn
-from beliefnest.bodies import messages
-from beliefnest.bodies.node_files import node_path
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.app import run_command_line
 from beliefnest.world.values import Point
+from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.minecraft import node_messages
+from beliefnest.worlds.minecraft.node_files import node_path
 
-NODE = Path(bn.__file__).parent / "bodies" / "node"
+NODE = Path(bn.__file__).parent / "worlds" / "minecraft" / "node"
 READS = (Path(__file__).parent / "reads.js").read_text()
 FLOOR = {"block": "stone", "fill": [[0, 0, 0], [9, 0, 6]]}
 WALL = {"block": "bricks", "fill": [[4, 1, 0], [4, 3, 6]]}
@@ -208,7 +208,7 @@ def test_a_fault_in_telling_percepts_leaves_everything_as_it_was(
     walk = "await goToPosition(bot, new Vec3(7, 1, 1), 0)"
     with bn.Nest.open(scenario, worlds=worlds) as nest:
         before = nest["/"].state.agents["ann"]
-        told = messages.percepts_changes
+        told = node_messages.percepts_changes
 
         def failing(*sensed: Any) -> Any:
             if len(failed) < 3:
@@ -218,7 +218,7 @@ def test_a_fault_in_telling_percepts_leaves_everything_as_it_was(
 
         failed: list[Any] = []
         with monkeypatch.context() as patched, pytest.raises(RuntimeError, match="no more"):
-            patched.setattr(messages, "percepts_changes", failing)
+            patched.setattr(node_messages, "percepts_changes", failing)
             nest["/"].run("ann", walk, senses="percepts")
         assert nest["/"].state.agents["ann"] == before
         assert nest["/"].run("ann", walk, senses="percepts").ok

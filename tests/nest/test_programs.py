@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 import beliefnest as bn
-from beliefnest.bodies.protocol import Unfinished
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.world.values import Event, EventKind
+from beliefnest.worlds.protocol import Unfinished
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import pytest
 from tests.profiles import at_night
 
 import beliefnest as bn
-from beliefnest.bodies.worlds import Worlds
+from beliefnest.worlds.by_name import Worlds
 
 ROOM = {
     "name": "behind-a-wall",

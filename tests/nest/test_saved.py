@@ -9,7 +9,7 @@ from beliefnest.errors import StoreError
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.setting_codec import decode_start, encode_start
 from beliefnest.scenarios import Scenario
-from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.worlds.scripted.world import ScriptedWorld
 
 
 def parts(setting):

@@ -8,7 +8,7 @@ from tests.nest.reference import Reference
 from tests.nest.test_against_reference import split
 
 import beliefnest as bn
-from beliefnest.belief.entries import Basis, Source
+from beliefnest.belief.grounds import Basis, Source
 from beliefnest.errors import InputError, WorldError
 from beliefnest.world.values import EventKind, Position
 

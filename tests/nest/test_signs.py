@@ -6,7 +6,7 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.belief.columns import cell_of
-from beliefnest.belief.entries import Source
+from beliefnest.belief.grounds import Source
 from beliefnest.nest.past.forest_codec import restored, saved
 from beliefnest.nest.past.history import context_of
 from beliefnest.nest.past.setting import Setting

@@ -11,7 +11,7 @@ from tests.nest.reference import Reference
 from tests.nest.test_against_reference import split
 
 import beliefnest as bn
-from beliefnest.belief.entries import Basis, ContainerBelief, Source
+from beliefnest.belief.grounds import Basis, ContainerBelief, Source
 from beliefnest.world.values import EventKind, Position
 
 LEFT, MIDDLE, RIGHT = (3, 0, 3), (10, 0, 3), (17, 0, 3)

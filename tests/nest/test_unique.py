@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 import beliefnest as bn
-from beliefnest.belief.entries import Basis, Source
+from beliefnest.belief.grounds import Basis, Source
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.world.values import EventKind, Position
 

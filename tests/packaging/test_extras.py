@@ -46,7 +46,7 @@ def test_what_is_missing_is_told_with_its_command(tmp_path, monkeypatch, package
     # pandas looks for pyarrow once, when it is first imported, and then holds to what it found.
     importlib.import_module("pandas")
     for name in list(sys.modules):
-        if name.startswith(("beliefnest.inspect", "beliefnest.env.")):
+        if name.startswith(("beliefnest.inspect", "beliefnest.adapters.")):
             monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(MissingExtraError, match=rf'pip install "beliefnest\[{extra}\]"'):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 TOP = Path(__file__).parents[2]
 SOURCES = TOP / "src" / "beliefnest"
-NODE_SOURCES = SOURCES / "bodies" / "node" / "src"
+NODE_SOURCES = SOURCES / "worlds" / "minecraft" / "node" / "src"
 
 
 def rooms_in(folder):

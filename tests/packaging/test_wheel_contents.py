@@ -11,12 +11,12 @@ def test_a_wheel_carries_what_is_read_at_run_time_and_no_sources_of_the_bundle()
     builder = WheelBuilder(str(ROOT))
     files = {Path(each.distribution_path).as_posix() for each in builder.recurse_included_files()}
     assert {
-        "beliefnest/programs/skills/manifests.json",
-        "beliefnest/programs/manifests.py",
+        "beliefnest/skills/manifests.json",
+        "beliefnest/skills/manifests.py",
         "beliefnest/scenarios/builtin/ice-cream-van.yaml",
         "beliefnest/scenarios/builtin/help-sally.yaml",
         "beliefnest/scenarios/starter/starter.yaml",
         "beliefnest/prompts/texts/paper.txt",
     } <= files
-    sources = ("beliefnest/programs/skills/", "beliefnest/bodies/node/")
+    sources = ("beliefnest/skills/code/", "beliefnest/worlds/minecraft/node/")
     assert not [file for file in files if file.startswith(sources) and file.endswith(".js")]

@@ -4,11 +4,11 @@ import dataclasses
 
 import pytest
 
-from beliefnest.belief.entries import AgentBelief, PerceivedEvent
+from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import TemplateError
 from beliefnest.prompts import BUILT_IN, render
-from beliefnest.prompts.actions import ACTION_NAMES
+from beliefnest.prompts.event_rows import ACTION_NAMES
 from beliefnest.prompts.example import ExampleBlocks, ExampleBranch, example_branch
 from beliefnest.prompts.reference import EXAMPLES
 from beliefnest.prompts.text import number

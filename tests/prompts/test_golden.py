@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
+from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.belief.view import FixedState
 from beliefnest.prompts import BUILT_IN, built_in_template, render
 from beliefnest.prompts.example import ExampleBlocks, ExampleBranch

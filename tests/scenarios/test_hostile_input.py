@@ -9,7 +9,7 @@ from beliefnest.errors import BeliefNestError, InputError, PathError, ScenarioEr
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios import Scenario
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.scripted import ScriptedWorld
+from beliefnest.worlds.scripted.world import ScriptedWorld
 
 BASE = """\
 name: small

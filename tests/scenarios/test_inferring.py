@@ -13,8 +13,8 @@ from beliefnest.cli.app import run_command_line
 from beliefnest.errors import ScenarioError
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.inferring import Inferred
-from beliefnest.scenarios.rating import compared, rating_prompt, ratings_in
 from beliefnest.scenarios.running import run_scenario
+from beliefnest.suites.films.rating import compared, rating_prompt, ratings_in
 
 FILE = """\
 name: lane

@@ -10,10 +10,10 @@ import beliefnest as bn
 from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.expected import Arrives, Opens
 from beliefnest.scenarios.expected_state import Holds, Stands
+from beliefnest.scenarios.json_schema import schema
 from beliefnest.scenarios.loading import builtin_names
-from beliefnest.scenarios.reading import parse_yaml
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.scenarios.schema import schema
+from beliefnest.scenarios.yaml_reading import parse_yaml
 from beliefnest.world.registry import Registry
 
 ROOT = Path(__file__).parents[2]

@@ -12,12 +12,12 @@ import pytest
 from ruamel.yaml import YAML
 
 import beliefnest as bn
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.timeline import codec
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.worlds.by_name import Worlds
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 

@@ -9,10 +9,10 @@ import pytest
 from tests.profiles import at_night
 
 import beliefnest as bn
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.timeline.journal import Entry, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.worlds.by_name import Worlds
 
 SEED = 6
 LEAP = """

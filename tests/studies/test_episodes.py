@@ -11,7 +11,7 @@ import pytest
 import beliefnest as bn
 from beliefnest import frames
 from beliefnest.cli.app import run_command_line
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 
 TASK = """\
 name: bring

@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from beliefnest.studies.plot import plot_accuracy
+from beliefnest.studies.accuracy_figure import plot_accuracy
 
 LONG = "compatible:a-model-with-a-long-name"
 MANY = [f"openai:gpt-{number}" for number in range(14)]

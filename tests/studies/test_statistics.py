@@ -11,7 +11,7 @@ from tests.studies.small import SMALL, small_in, study_in
 import beliefnest as bn
 from beliefnest import frames
 from beliefnest.cli.app import run_command_line
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 
 # Two questions, one of them about what Bob believes of Ann.
 SEVERAL = (

@@ -18,9 +18,9 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.messages import Usage
-from beliefnest.studies.running import _engine
+from beliefnest.studies.jobs import _engine
 from beliefnest.studies.spending import SharedBudget, spent_in
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 

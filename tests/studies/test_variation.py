@@ -27,9 +27,9 @@ from beliefnest.scenarios.format import (
     StepEntry,
 )
 from beliefnest.scenarios.loading import builtin_names, read_document
-from beliefnest.studies.drawing import drawn_variations
-from beliefnest.studies.javascript import Rewriting, rewritten
-from beliefnest.studies.scene import _SHAPE
+from beliefnest.studies.program_rewriting import Rewriting, rewritten
+from beliefnest.studies.random_variations import drawn_variations
+from beliefnest.studies.scene_changes import _SHAPE
 from beliefnest.studies.variation import Variation
 
 

@@ -6,7 +6,7 @@ import random
 import pytest
 
 from beliefnest.timeline.journal import Edit, TimelineKey
-from beliefnest.timeline.memory import MemoryJournal
+from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, DroppedItem, Event, EventKind

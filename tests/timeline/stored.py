@@ -6,7 +6,7 @@ import numpy as np
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
+from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.values import AgentState, Box
 

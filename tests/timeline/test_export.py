@@ -11,10 +11,17 @@ import pytest
 
 from beliefnest.errors import BranchError, InputError
 from beliefnest.timeline.export import FORMATS, export
+from beliefnest.timeline.export_tables import (
+    IF_ANY,
+    TABLES,
+    BeliefRow,
+    program_row,
+    prompt_row,
+    run_row,
+)
 from beliefnest.timeline.journal import Edit, ForkPoint, TimelineKey
-from beliefnest.timeline.memory import MemoryJournal
-from beliefnest.timeline.records import ProgramRecord, PromptRecord, RunRecord
-from beliefnest.timeline.tables import IF_ANY, TABLES, BeliefRow, program_row, prompt_row, run_row
+from beliefnest.timeline.memory_journal import MemoryJournal
+from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, EventKind, Sign

@@ -11,9 +11,9 @@ from tests.timeline.format_2 import make_format_2
 from tests.timeline.stored import verify
 
 from beliefnest.errors import StoreError
-from beliefnest.timeline.records import ProgramRecord
-from beliefnest.timeline.schema import SCHEMA_VERSION
+from beliefnest.timeline.run_records import ProgramRecord
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store_schema import SCHEMA_VERSION
 
 RAN = ProgramRecord((), "main", "sally", "await x()", 12, False, "line 1: no x", 3, 1)
 PROGRAMS = (

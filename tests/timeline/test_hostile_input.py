@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.schema import STATEMENTS
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store_schema import STATEMENTS
 
 OPENERS = (SqliteJournal.read, SqliteJournal.open)
 TABLES = sorted(text.split()[2] for text in STATEMENTS if text.startswith("CREATE TABLE"))

@@ -13,7 +13,7 @@ import pytest
 from tests.profiles import at_night
 from tests.timeline.stored import verify
 
-from beliefnest.timeline.memory import MemoryJournal
+from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.timeline.store import SqliteJournal
 
 WRITER = Path(__file__).with_name("killed_writer.py")

@@ -13,8 +13,8 @@ from tests.timeline.stored import MAIN, PLAN, PROGRAM, PROMPT, RUN, kept, snapsh
 from beliefnest.errors import StoreError
 from beliefnest.timeline.codec import encode_snapshot
 from beliefnest.timeline.journal import ForkPoint
-from beliefnest.timeline.schema import APPLICATION_ID, SCHEMA_VERSION
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store_schema import APPLICATION_ID, SCHEMA_VERSION
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 

@@ -10,7 +10,7 @@ import pytest
 from beliefnest.errors import InputError
 from beliefnest.timeline.events import REQUIRED
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
-from beliefnest.timeline.memory import MemoryJournal
+from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.timeline.trace import load_trace, read_trace, record_trace
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry

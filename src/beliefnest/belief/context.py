@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, NOBODY, Senses, Space
-from beliefnest.belief.entries import SOURCES, Basis, Source
 from beliefnest.belief.first_perceptions import FirstPerceptions
+from beliefnest.belief.grounds import SOURCES, Basis, Source
 from beliefnest.errors import InputError
 from beliefnest.perception.options import Perception, Radius
 from beliefnest.perception.sight import Sight

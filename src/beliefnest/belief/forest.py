@@ -17,11 +17,11 @@ from beliefnest.belief import kernel
 from beliefnest.belief.arrays import Changes, Facts, Span
 from beliefnest.belief.columns import Columns, place_of
 from beliefnest.belief.context import BeliefContext, SavedWriting
-from beliefnest.belief.entries import Basis, PerceivedEvent
-from beliefnest.belief.hearing import Hearing
+from beliefnest.belief.grounds import Basis, PerceivedEvent
 from beliefnest.belief.holdings import Whereabouts
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts, SavedHoldings
 from beliefnest.belief.node_table import NodeTable, SavedNode
+from beliefnest.belief.perceived_table import PerceivedEventTable
 from beliefnest.belief.poses import PoseTable, SavedPoses
 from beliefnest.belief.testimony import Testimony, Verdict
 from beliefnest.world.paths import BeliefPath
@@ -93,7 +93,7 @@ class Forest:
         columns: The stretch of the timeline that holds the next entries.
         table: The nodes' arrays.
         holdings: The nodes' contents, possessions and dropped items.
-        hearing: Record of the events that each node perceived.
+        perceived_events: Table of the events that each node perceived.
         position: Number of entries folded.
         tick: Tick of the last folded entry, or of the beginning.
         since: Cells that have been tracked since the beginning.
@@ -113,7 +113,7 @@ class Forest:
         self.table, self.holdings = table, holdings
         self.position, self.tick = 0, tick
         self.columns = Columns(self.context, 0, 0, table.poses)
-        self.hearing = Hearing()
+        self.perceived_events = PerceivedEventTable()
         tracked = frozenset(table.tracked.tolist())
         self.since = tracked if since is None else tracked & since
         self.verdicts: Mapping[tuple[int, int], Sequence[Verdict]] = {}
@@ -133,7 +133,7 @@ class Forest:
             NodeState(
                 self.table.saved(node),
                 self.holdings.saved(node),
-                np.packbits(self.hearing.of(node, count)).tobytes(),
+                np.packbits(self.perceived_events.of(node, count)).tobytes(),
             )
             for node in range(self.table.count)
         )
@@ -164,7 +164,7 @@ class Forest:
             table.restore(node.row, tracked, state.signs)
             forest.holdings.restore(node.holdings, state.signs)
             heard = np.unpackbits(np.frombuffer(node.heard, dtype=np.uint8), count=state.events)
-            forest.hearing.set(number, 0, heard.astype(np.bool_))
+            forest.perceived_events.set(number, 0, heard.astype(np.bool_))
         table.link()
         return forest
 
@@ -262,7 +262,7 @@ class Forest:
         """
         self._let_read()
         count = self.count_of_events
-        self.hearing.set(0, count, np.ones(events - count, dtype=np.bool_))
+        self.perceived_events.set(0, count, np.ones(events - count, dtype=np.bool_))
         self.enter(Columns(self.context, position, events, PoseTable()))
         self.position = position
 
@@ -289,7 +289,7 @@ class Forest:
         if first is None:
             yield from self._events.before(self.table.path(node))
         since = first or 0
-        numbers = (np.flatnonzero(self.hearing.of(node, count)[since:]) + since).tolist()
+        numbers = (np.flatnonzero(self.perceived_events.of(node, count)[since:]) + since).tolist()
         events = self._events.events(numbers[-1] + 1) if numbers else ()
         for number in numbers:
             tick, event = events[number]
@@ -308,7 +308,7 @@ class Forest:
             source = other.node(path)
             node = self.table.copy_node(other.table, source, is_root=False, recorded=True)
             self.holdings.add(other.holdings.of(source).copy())
-            self.hearing.set(node, 0, other.hearing.of(source, count))
+            self.perceived_events.set(node, 0, other.perceived_events.of(source, count))
         self.table.link()
 
     def perceive_at_first(self) -> None:
@@ -408,7 +408,7 @@ class Forest:
             context.space, poses, facts, nodes, changes, span, everywhere
         )
         count = columns.events_until(reached) - first
-        self.hearing.note(first, changes.perceived[:count])
+        self.perceived_events.note(first, changes.perceived[:count])
         rows = _by_entry(changes, columns.first)
         entries = columns.with_effects(start, reached) | rows.keys()
         if self.holdings.needs_looks():
@@ -451,7 +451,7 @@ class Forest:
             self.holdings.follow(tick, tick - 1, rows, acts, level)
             if self._weighs:
                 testimony.hear(level)
-        self.hearing.note(first, perceived)
+        self.perceived_events.note(first, perceived)
         self.table.edited_cells.clear()
         if self._weighs and columns.has_claims(entry):
             self.verdicts = testimony.verdicts()

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import SavedWriting
-from beliefnest.belief.entries import Basis, Source
+from beliefnest.belief.grounds import Basis, Source
 from beliefnest.belief.holdings import (
     MOVES,
     TOUCHES,

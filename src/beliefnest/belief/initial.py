@@ -8,8 +8,8 @@ import numpy.typing as npt
 from beliefnest.belief.arrays import UNKNOWN
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.entries import Basis, InitialBelief, Source
 from beliefnest.belief.forest import EventHistory, Forest
+from beliefnest.belief.grounds import Basis, InitialBelief, Source
 from beliefnest.belief.holdings import Content, Holdings
 from beliefnest.belief.holdings_table import HoldingsTable, RootFacts
 from beliefnest.belief.node_table import NodeTable

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from beliefnest.belief import kernel, seeing
 from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.context import BeliefContext, SavedWriting
-from beliefnest.belief.entries import Basis
+from beliefnest.belief.grounds import Basis
 from beliefnest.belief.poses import PoseDetails, PoseTable
 from beliefnest.perception.codes import code_grid
 from beliefnest.world.frames import BlockGrid

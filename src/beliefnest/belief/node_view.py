@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from beliefnest.belief.arrays import NOBODY, READ
 from beliefnest.belief.columns import place_of
-from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.perception.sight import Geometry
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
@@ -105,7 +105,7 @@ class NodeView:
 
     def perceived_since(self, count: int) -> npt.NDArray[np.bool_]:
         """Return a mask of the timeline's events after the first `count`: those perceived."""
-        return self._forest.hearing.of(self._node, self.count_of_events)[count:]
+        return self._forest.perceived_events.of(self._node, self.count_of_events)[count:]
 
     def visible_from(self, agent: str) -> npt.NDArray[np.bool_]:
         """Return a mask of the blocks that an agent sees from its believed pose.

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from beliefnest.belief.entries import Basis
+from beliefnest.belief.grounds import Basis
 from beliefnest.belief.view import State
 from beliefnest.world.values import Position
 

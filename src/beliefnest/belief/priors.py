@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from beliefnest.belief.entries import InitialBelief
+from beliefnest.belief.grounds import InitialBelief
 from beliefnest.world.paths import AND_BELOW, BeliefPath
 
 __all__ = ["merged_belief"]

@@ -18,7 +18,7 @@ from beliefnest.belief import seeing
 from beliefnest.belief.arrays import NOBODY, READ, UNKNOWN, Nodes
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.entries import Basis
+from beliefnest.belief.grounds import Basis
 from beliefnest.belief.holdings import Content, Holdings, SignTold, changed_items, replaced_block
 from beliefnest.belief.holdings_table import HoldingsTable
 from beliefnest.belief.node_table import NodeTable

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
+from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Box, DroppedItem, Position

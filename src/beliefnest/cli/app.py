@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from beliefnest.cli.text import printable
+from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.version import VERSION
 from beliefnest.world.texts import is_well_formed
@@ -179,10 +179,10 @@ def run(
     json: Json = False,
 ) -> int:
     """Play a scenario, track the beliefs, ask the model, and judge the results."""
-    from beliefnest.bodies.address import overwriting
-    from beliefnest.bodies.worlds import world_name
     from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
     from beliefnest.llm.budget import RunLimits
+    from beliefnest.worlds.by_name import world_name
+    from beliefnest.worlds.servers.address import overwriting
 
     limits = RunLimits(max_tokens, max_cost)
     named = world_name(world, realtime=realtime, listen=_listening(listen))
@@ -559,6 +559,6 @@ def bench(
     json: Json = False,
 ) -> int:
     """Run benchmarks; print medians and ratios beside their targets."""
-    from beliefnest.cli.bench.command import run_benches
+    from beliefnest_benchmarks.command import run_benches
 
     return run_benches(tuple(names or ()), as_json=json)

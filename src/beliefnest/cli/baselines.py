@@ -17,8 +17,8 @@ from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import parameters_of, source_of
 from beliefnest.errors import InputError, ModelError
-from beliefnest.studies.plot import plot_accuracy
-from beliefnest.studies.running import StudyProgress
+from beliefnest.studies.accuracy_figure import plot_accuracy
+from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
 
 __all__ = ["BaselineOptions", "page_of", "run_baselines"]

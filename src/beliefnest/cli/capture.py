@@ -5,13 +5,13 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from beliefnest.bodies.address import ServerAddress, is_server
-from beliefnest.bodies.capturing import Captured, capture_file, capture_server
-from beliefnest.cli.text import printable
+from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import read_regular
 from beliefnest.scenarios.writing import scenario_text
 from beliefnest.world.values import Box, Position
+from beliefnest.worlds.servers.address import ServerAddress, is_server
+from beliefnest.worlds.servers.capturing import Captured, capture_file, capture_server
 
 __all__ = ["CaptureOptions", "write_capture"]
 

@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from beliefnest.cli.console import folded
-from beliefnest.cli.text import printable
+from beliefnest.cli.terminal_text import printable
 from beliefnest.nest.explain.made_claims import MadeClaim
 from beliefnest.scenarios.naming import container_name, named_place
 from beliefnest.scenarios.scenario import Scenario

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import asdict, dataclass
 
-from beliefnest.bodies.address import ServerAddress, is_server
 from beliefnest.errors import BeliefNestError, BodyError, InputError, ModelError
+from beliefnest.worlds.servers.address import ServerAddress, is_server
 
 __all__ = ["Finding", "examine"]
 
@@ -72,7 +72,7 @@ def _python() -> str:
 
 
 def _node() -> str:
-    from beliefnest.bodies.node_files import node_path
+    from beliefnest.worlds.minecraft.node_files import node_path
 
     path = node_path()
     try:
@@ -93,8 +93,8 @@ def _node() -> str:
 
 
 def _bundle() -> str:
-    from beliefnest.bodies.node_files import bundle_path
     from beliefnest.world.registry import Registry
+    from beliefnest.worlds.minecraft.node_files import bundle_path
 
     path = bundle_path()
     size = sum(file.stat().st_size for file in path.parent.rglob("*") if file.is_file())
@@ -119,10 +119,10 @@ def _sight() -> str:
 def _kernels() -> str:
     from beliefnest.belief import kernel
     from beliefnest.minds import relaxing
-    from beliefnest.perception import views
+    from beliefnest.perception import eye_loops
     from beliefnest.perception.rays import is_compiled
 
-    if all(is_compiled(each) for each in (kernel.fold, views.seen_blocks, relaxing.sweep)):
+    if all(is_compiled(each) for each in (kernel.fold, eye_loops.seen_blocks, relaxing.sweep)):
         return "compiled"
     return (
         "not compiled yet; the first belief or inference will wait for it, "
@@ -132,9 +132,9 @@ def _kernels() -> str:
 
 def _one_inference() -> None:
     """Compute a belief and infer from it, so that all kernels of both are compiled."""
-    from beliefnest.minds.model import MindModel
+    from beliefnest.minds.mind_model import MindModel
     from beliefnest.nest.face.nest import Nest
-    from beliefnest.world.scripted import ScriptedWorld
+    from beliefnest.worlds.scripted.world import ScriptedWorld
 
     sys.stderr.write(
         "compiling the kernels of beliefs and of inference (once, some 15 to 30 seconds)\n"
@@ -183,7 +183,7 @@ def _server_checks(server: str) -> tuple[tuple[str, Callable[[], str]], ...]:
     address = ServerAddress.parse(server)
 
     def joined() -> str:
-        from beliefnest.bodies.minecraft import MinecraftWorld
+        from beliefnest.worlds.servers.server_world import MinecraftWorld
 
         with closing(MinecraftWorld.start(address, 0)) as world:
             return (

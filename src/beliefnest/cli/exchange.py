@@ -14,9 +14,9 @@ from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.past.trace_import import import_trace
 from beliefnest.timeline.export import Format, export
-from beliefnest.timeline.records import Records
+from beliefnest.timeline.export_tables import BeliefRow, Row, program_row, prompt_row, run_row
+from beliefnest.timeline.run_records import Records
 from beliefnest.timeline.store import SqliteJournal
-from beliefnest.timeline.tables import BeliefRow, Row, program_row, prompt_row, run_row
 from beliefnest.timeline.trace import load_trace
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.registry import Registry

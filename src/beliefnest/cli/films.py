@@ -15,11 +15,11 @@ from rich.table import Table
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
-from beliefnest.scenarios.films.agreement import PUBLISHED, Agreement, agreement, interval
-from beliefnest.scenarios.films.film import ABOUT, About, Film, FilmParameters, grid_for
-from beliefnest.scenarios.films.judging import LESIONS, Judgment, Lesion, judge
-from beliefnest.scenarios.films.reading import read_films
 from beliefnest.studies.plainframe import Typed, write_typed
+from beliefnest.suites.films.agreement import PUBLISHED, Agreement, agreement, interval
+from beliefnest.suites.films.film import ABOUT, About, Film, FilmParameters, grid_for
+from beliefnest.suites.films.film_files import read_films
+from beliefnest.suites.films.film_inference import LESIONS, Judgment, Lesion, judge
 
 __all__ = ["FILMS", "FilmOptions", "run_films"]
 

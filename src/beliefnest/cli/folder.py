@@ -13,7 +13,6 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
 from beliefnest.scenarios.outcome import ProbeOutcome
-from beliefnest.scenarios.reading import templates_file
 from beliefnest.scenarios.record_forms import (
     ExpectationForm,
     ProbeForm,
@@ -22,7 +21,8 @@ from beliefnest.scenarios.record_forms import (
     read_json,
 )
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.store import StudyFolder
+from beliefnest.scenarios.yaml_reading import templates_file
+from beliefnest.studies.study_folder import StudyFolder
 
 __all__ = [
     "PICTURE",

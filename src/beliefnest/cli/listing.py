@@ -6,8 +6,6 @@ import sys
 from rich import box
 from rich.table import Table
 
-from beliefnest.bodies.address import SCHEME
-from beliefnest.bodies.worlds import WORLDS
 from beliefnest.cli.console import print_table, stdout
 from beliefnest.cli.suite import SUITES
 from beliefnest.episodes.tasks import builtin_tasks
@@ -15,6 +13,8 @@ from beliefnest.llm.resolve import model_names
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.worlds.by_name import WORLDS
+from beliefnest.worlds.servers.address import SCHEME
 
 __all__ = ["print_installed"]
 

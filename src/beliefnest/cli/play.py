@@ -11,14 +11,14 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from beliefnest.bodies.worlds import check_world
 from beliefnest.cli.console import print_table, progress_on, stdout
-from beliefnest.cli.text import counted, printable
+from beliefnest.cli.terminal_text import counted, printable
 from beliefnest.episodes.episode import Budget, Episode
 from beliefnest.episodes.helping import Help
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, NotBegunError
+from beliefnest.worlds.by_name import check_world
 
 __all__ = ["PlayOptions", "play_task"]
 

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import msgspec
 
-from beliefnest.bodies.address import is_server
-from beliefnest.bodies.listening import is_hosted
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.cli.folder import stores_in
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.replay import ReplayedTimeline, replay
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
+from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.servers.address import is_server
+from beliefnest.worlds.servers.listening import is_hosted
 
 __all__ = ["replay_runs"]
 

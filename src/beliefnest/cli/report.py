@@ -13,7 +13,7 @@ from rich.measure import Measurement
 from rich.table import Table
 
 from beliefnest.belief.plain import state_json
-from beliefnest.cli.text import printable
+from beliefnest.cli.terminal_text import printable
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.expected import Infers, Opens
 from beliefnest.scenarios.inferring import means_text

@@ -15,7 +15,7 @@ from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.errors import InputError
-from beliefnest.studies.running import StudyProgress
+from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
 
 __all__ = ["run_reproduction"]

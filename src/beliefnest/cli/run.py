@@ -15,27 +15,26 @@ from typing import Any, Literal
 from rich.console import Console
 from rich.table import Table
 
-from beliefnest.bodies.worlds import Worlds, check_world
 from beliefnest.cli.accounts import accounts
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.pictures import read_condition
-from beliefnest.cli.plan import RunCell, plan_run_cells
 from beliefnest.cli.report import (
     OutcomeRow,
     outcome_json,
     outcome_table,
     report_json,
 )
+from beliefnest.cli.run_cells import RunCell, plan_run_cells
 from beliefnest.cli.run_report import report_html
-from beliefnest.cli.text import printable
+from beliefnest.cli.terminal_text import printable
 from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
 from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.cache import CacheMode
-from beliefnest.llm.hearsay import claims_from_model
+from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.face.nest import Nest
@@ -46,6 +45,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
+from beliefnest.worlds.by_name import Worlds, check_world
 
 __all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
 

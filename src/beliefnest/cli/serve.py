@@ -61,7 +61,7 @@ def serve(options: ServeOptions) -> None:
     try:
         import uvicorn
 
-        from beliefnest.viewer.serving.app import page_app
+        from beliefnest.viewer.serving.routes import page_app
     except ImportError:
         raise InputError(
             "serve needs starlette and uvicorn: run `pip install 'beliefnest[serve]'`"

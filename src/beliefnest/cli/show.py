@@ -12,21 +12,21 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from beliefnest.belief.entries import Basis
+from beliefnest.belief.grounds import Basis
 from beliefnest.belief.plain import state_json
 from beliefnest.belief.view import State
 from beliefnest.cli.claims import claims_json, claims_table, paths_of_beliefs, print_claims
 from beliefnest.cli.console import print_table, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.report import placed_lines
-from beliefnest.cli.text import printable
+from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.pictures.animation import check_animated, save_animation
 from beliefnest.pictures.figure import figure_of
 from beliefnest.pictures.scene import Scene
-from beliefnest.prompts.memory import memory
+from beliefnest.prompts.memory_filters import memory
 from beliefnest.prompts.templates import (
     BUILT_IN_TEMPLATES,
     Template,
@@ -36,10 +36,10 @@ from beliefnest.prompts.templates import (
 from beliefnest.scenarios.naming import container_name, named_place, titled
 from beliefnest.scenarios.records import placed_json
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.timeline.export_tables import prompt_row
 from beliefnest.timeline.journal import FOLLOW
-from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
-from beliefnest.timeline.tables import prompt_row
 
 __all__ = ["ShowOptions", "print_prompt", "show_run"]
 

@@ -14,12 +14,12 @@ from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.report import cost_text
-from beliefnest.cli.text import printable
+from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.copies import text_of_copies
+from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.result import StudyResult
-from beliefnest.studies.running import StudyProgress
 from beliefnest.studies.study import Study, checked_shard
 
 __all__ = ["StudyOptions", "run_study"]

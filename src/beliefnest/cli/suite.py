@@ -13,22 +13,22 @@ from typing import TYPE_CHECKING
 from rich import box
 from rich.table import Table
 
-from beliefnest.bodies.worlds import check_world
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.films import FILMS, FilmOptions, run_films
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.scenarios.stories.data import StoryItems, read_items
-from beliefnest.scenarios.stories.own import read_own
-from beliefnest.scenarios.stories.suite import (
+from beliefnest.suites.stories.data import StoryItems, read_items
+from beliefnest.suites.stories.own import read_own
+from beliefnest.suites.stories.suite import (
     JudgedAnswer,
     Score,
     answer_story,
     score,
     scores_by_order,
 )
+from beliefnest.worlds.by_name import check_world
 
 if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
-    from beliefnest.llm.hearsay import ClaimsFromModel
+    from beliefnest.llm.claim_reader import ClaimsFromModel
 
 __all__ = ["SUITES", "SuiteOptions", "run_suite"]
 
@@ -145,7 +145,7 @@ def _reader(options: SuiteOptions) -> "ClaimsFromModel | None":
     """Return the model that extracts claims from utterances; None: there is none."""
     if options.claims_from is None:
         return None
-    from beliefnest.llm.hearsay import claims_from_model
+    from beliefnest.llm.claim_reader import claims_from_model
     from beliefnest.llm.messages import Sampling
     from beliefnest.llm.resolve import Connection, open_model
 

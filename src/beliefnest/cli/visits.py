@@ -5,11 +5,11 @@ import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from beliefnest.bodies.address import is_server
-from beliefnest.bodies.embedded import MINECRAFT
-from beliefnest.bodies.listening import is_hosted
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
+from beliefnest.worlds.minecraft.embedded import MINECRAFT
+from beliefnest.worlds.servers.address import is_server
+from beliefnest.worlds.servers.listening import is_hosted
 
 __all__ = ["check_visits", "visited"]
 

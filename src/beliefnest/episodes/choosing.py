@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
+from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.policies import resolve_policy
 from beliefnest.episodes.task import Task
-from beliefnest.episodes.view import Policy
 from beliefnest.errors import InputError
 
 __all__ = ["check_resumable", "chosen", "name_of"]

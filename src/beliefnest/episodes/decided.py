@@ -6,7 +6,7 @@ from typing import Literal
 
 import msgspec
 
-from beliefnest.bodies.protocol import ProgramPast
+from beliefnest.worlds.protocol import ProgramPast
 
 __all__ = [
     "Decision",

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from beliefnest.bodies.worlds import Worlds
+from beliefnest.episodes.agent_view import AgentView, Brief, Policy
 from beliefnest.episodes.choosing import check_resumable, chosen, name_of
 from beliefnest.episodes.decided import (
     Failure,
@@ -18,8 +18,13 @@ from beliefnest.episodes.decided import (
     spent_in,
 )
 from beliefnest.episodes.helping import Help, help_in
+from beliefnest.episodes.live_people import (
+    check_repeats,
+    people_in,
+    played_by_people,
+    world_of_people,
+)
 from beliefnest.episodes.measures import Measures, false_beliefs, measured
-from beliefnest.episodes.people import check_repeats, people_in, played_by_people, world_of_people
 from beliefnest.episodes.playing import look_around, play_part, play_part_with_people
 from beliefnest.episodes.record import (
     Branch,
@@ -34,7 +39,6 @@ from beliefnest.episodes.record import (
 from beliefnest.episodes.round_start import RoundStart
 from beliefnest.episodes.rounds import Asker, replayed, slots_of
 from beliefnest.episodes.task import Task
-from beliefnest.episodes.view import AgentView, Brief, Policy
 from beliefnest.episodes.watching import Watch
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
@@ -42,6 +46,7 @@ from beliefnest.nest.past.setting import MAIN
 from beliefnest.scenarios.goals import Progress
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import path_text
+from beliefnest.worlds.by_name import Worlds
 
 __all__ = ["Budget", "Episode", "RoundStart"]
 

@@ -16,10 +16,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
+from beliefnest.episodes.agent_view import GO_ON, AgentView, Policy
 from beliefnest.episodes.decided import Decision, Part
 from beliefnest.episodes.shares import Share, shares_of
 from beliefnest.episodes.task import Task
-from beliefnest.episodes.view import GO_ON, AgentView, Policy
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.goals import Progress
 from beliefnest.world.values import EventKind

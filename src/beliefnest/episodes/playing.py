@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
-from beliefnest.bodies.protocol import ProgramPast, ProgramResult
+from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.decided import Ended, Part
-from beliefnest.episodes.people import RealRound
+from beliefnest.episodes.live_people import RealRound
 from beliefnest.episodes.record import cut_in, ended_as, reasons_in
-from beliefnest.episodes.view import Policy
 from beliefnest.nest.face.nest import Nest
+from beliefnest.worlds.protocol import ProgramPast, ProgramResult
 
 __all__ = ["look_around", "play_part", "play_part_with_people"]
 

@@ -5,9 +5,9 @@ from typing import Any, Protocol
 
 import msgspec
 
-from beliefnest.bodies.protocol import NO_WAY, Fault, ProgramPast, ProgramResult
 from beliefnest.episodes.decided import Decision, Ended, Part, Spent
 from beliefnest.errors import BranchError, InputError, NotBegunError, StoreError
+from beliefnest.worlds.protocol import NO_WAY, Fault, ProgramPast, ProgramResult
 
 __all__ = [
     "Branch",

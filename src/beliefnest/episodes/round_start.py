@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Generic, Protocol, Self, TypeVar
 
-from beliefnest.episodes.view import Policy
+from beliefnest.episodes.agent_view import Policy
 
 __all__ = ["RoundStart"]
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import msgspec
 
+from beliefnest.episodes.agent_view import GO_ON, AgentView, Policy
 from beliefnest.episodes.decided import Decision, Part, Spent
-from beliefnest.episodes.view import GO_ON, AgentView, Policy
 from beliefnest.errors import InputError
 from beliefnest.world.texts import is_well_formed
 

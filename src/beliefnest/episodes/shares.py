@@ -14,7 +14,7 @@ from beliefnest.belief.conditions import (
     NothingIn,
     NothingWith,
 )
-from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.scenarios.goals import Goal, Progress
 from beliefnest.world.values import EventKind
 

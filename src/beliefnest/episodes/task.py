@@ -8,7 +8,7 @@ from typing import Any, Self, cast
 
 import msgspec
 
-from beliefnest.episodes.form import TaskForm
+from beliefnest.episodes.task_form import TaskForm
 from beliefnest.episodes.tasks import builtin_tasks, generated
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
 from beliefnest.scenarios.document import Document, YamlNode, plain

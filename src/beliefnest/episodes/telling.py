@@ -7,8 +7,8 @@ from typing import Any
 import msgspec
 
 from beliefnest.episodes.decided import Part
-from beliefnest.episodes.form import TaskForm
 from beliefnest.episodes.record import Branch, EpisodeStart, Keeps, holds_episode, kept_in
+from beliefnest.episodes.task_form import TaskForm
 from beliefnest.errors import StoreError
 
 __all__ = ["goal_rows", "round_rows", "told_episode"]

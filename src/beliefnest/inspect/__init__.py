@@ -1,8 +1,5 @@
-"""Scenarios and suites as tasks of Inspect AI (extra `inspect`); see `registry.py`."""
+"""Scenarios, suites and episodes as tasks of Inspect AI (extra `inspect`)."""
 
-from importlib.util import find_spec
+from beliefnest.adapters import inspect_ai
 
-from beliefnest.errors import MissingExtraError
-
-if find_spec("inspect_ai") is None:
-    raise MissingExtraError("tasks of Inspect AI need inspect_ai", "inspect")
+__all__ = ["inspect_ai"]

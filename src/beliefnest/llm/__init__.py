@@ -10,9 +10,9 @@ from beliefnest.llm.asking import (
 )
 from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.cache import CacheMode
+from beliefnest.llm.claim_reader import ClaimsFromModel, claims_from_model
 from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.extract import NoProgramError, extract_program
-from beliefnest.llm.hearsay import ClaimsFromModel, claims_from_model
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 from beliefnest.llm.remote import AnswerLimits
 from beliefnest.llm.resolve import Connection, model_names, open_model, resolve_model

@@ -10,8 +10,8 @@ import msgspec
 
 from beliefnest.errors import ModelError
 from beliefnest.files import read_regular
-from beliefnest.llm.exchange import Exchange, decode_exchange, encode_exchange, request_key
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.llm.stored_exchange import Exchange, decode_exchange, encode_exchange, request_key
 
 __all__ = ["CacheMode", "CachedModel"]
 

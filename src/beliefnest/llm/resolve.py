@@ -12,7 +12,7 @@ from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.llm.providers import PROVIDERS, endpoint
-from beliefnest.llm.recorded import FileRecordingModel, load_replay, load_script
+from beliefnest.llm.recorded_models import FileRecordingModel, load_replay, load_script
 from beliefnest.llm.remote import AnswerLimits, RemoteModel
 from beliefnest.llm.retrying import RetryingModel, RetryPolicy
 

@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 from beliefnest.errors import InputError
 from beliefnest.minds.findings import Change, Impossible
-from beliefnest.minds.model import MindModel
+from beliefnest.minds.mind_model import MindModel
 from beliefnest.pictures.bars import BarChart, BarGroup
 from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.palette import hypothesis_colours, shades

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from beliefnest.minds.scene import Scene
-from beliefnest.minds.worlds import Pose
+from beliefnest.minds.alternatives import Pose
+from beliefnest.minds.surroundings import Scene
 from beliefnest.world.values import Position
 
 __all__ = ["Moment"]

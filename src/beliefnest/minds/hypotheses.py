@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.minds.model import MindModel
+from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.planner import Knowledge, Planner, PlanRules, planner_for
 from beliefnest.minds.stage import Stage
 from beliefnest.world.values import Position

@@ -13,7 +13,7 @@ from beliefnest.errors import InputError, TickError
 from beliefnest.minds.findings import Change, Impossible, SampledPath
 from beliefnest.minds.hypotheses import log_sum
 from beliefnest.minds.looking_back import sampled_cells, smoothed_steps
-from beliefnest.minds.model import MindModel
+from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.tracking import Step, Tracker
 from beliefnest.world.values import Position
 

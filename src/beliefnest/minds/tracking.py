@@ -14,6 +14,7 @@ from math import ceil
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.minds.alternatives import middle_of
 from beliefnest.minds.evidence import Moment
 from beliefnest.minds.hypotheses import (
     Hypotheses,
@@ -27,9 +28,8 @@ from beliefnest.minds.hypotheses import (
     told,
 )
 from beliefnest.minds.planner import Knowledge
-from beliefnest.minds.scene import Scene
 from beliefnest.minds.stage import Stage, shortest
-from beliefnest.minds.worlds import middle_of
+from beliefnest.minds.surroundings import Scene
 from beliefnest.world.values import EYE_HEIGHT, Position
 
 __all__ = ["Step", "Tracker", "known_after"]

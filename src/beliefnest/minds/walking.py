@@ -8,12 +8,12 @@ from random import Random
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.minds.alternatives import Pose, World, Worlds
 from beliefnest.minds.hypotheses import Hypotheses, conditioned
-from beliefnest.minds.model import MindModel
+from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.planner import Knowledge
-from beliefnest.minds.scene import Scene
 from beliefnest.minds.stage import Stage
-from beliefnest.minds.worlds import Pose, World, Worlds
+from beliefnest.minds.surroundings import Scene
 from beliefnest.perception.sight import Sight
 from beliefnest.world.values import Items, Position
 

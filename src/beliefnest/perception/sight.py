@@ -158,12 +158,12 @@ class Geometry:
 
     def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
         """Return a mask of the visible blocks of the grid: bool (nx, ny, nz)."""
-        from beliefnest.perception import shadows, views
+        from beliefnest.perception import eye_loops, shadows
 
         seer = self._eye(eye, yaw, pitch)
         noted = shadows.cast_shadows(self._scene, self.sight.reaches, seer[0])
         no_cells = np.empty((0, 3), dtype=np.int64)
-        seen = views.seen_blocks(self._scene, seer, no_cells, noted)
+        seen = eye_loops.seen_blocks(self._scene, seer, no_cells, noted)
         return seen.reshape(self.codes.shape)[1:-1, 1:-1, 1:-1]
 
     def sees_blocks(
@@ -180,14 +180,14 @@ class Geometry:
         Raises:
             InputError: `positions` are not rows of three integers.
         """
-        from beliefnest.perception import shadows, views
+        from beliefnest.perception import eye_loops, shadows
 
         rows = _rows(positions)
         if rows.dtype.kind not in "iu" and len(rows):
             raise InputError(f"block positions are of type {rows.dtype}; give integers")
         cells = rows.astype(np.int64) + (1 - np.array(self.origin))
         seer = self._eye(eye, yaw, pitch)
-        return views.seen_blocks(self._scene, seer, cells, shadows.no_shadows())
+        return eye_loops.seen_blocks(self._scene, seer, cells, shadows.no_shadows())
 
     def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
         """Return a mask of the visible points among `points` (n, 3): bool (n,).
@@ -197,10 +197,10 @@ class Geometry:
         Raises:
             InputError: `points` are not rows of three numbers.
         """
-        from beliefnest.perception import views
+        from beliefnest.perception import eye_loops
 
         places = self._local(_rows(points).astype(np.float64))
-        return views.seen_points(self._scene, self._eye(eye, yaw, pitch), places)
+        return eye_loops.seen_points(self._scene, self._eye(eye, yaw, pitch), places)
 
     def sees_agents(self, eye: Point, yaw: float, pitch: float, feet: npt.ArrayLike) -> BoolArray:
         """Return a mask of the visible agents among those with `feet` (n, 3): bool (n,).
@@ -211,10 +211,10 @@ class Geometry:
         Raises:
             InputError: `feet` are not rows of three numbers.
         """
-        from beliefnest.perception import views
+        from beliefnest.perception import eye_loops
 
         places = self._local(_rows(feet).astype(np.float64))
-        return views.seen_agents(self._scene, self._eye(eye, yaw, pitch), places)
+        return eye_loops.seen_agents(self._scene, self._eye(eye, yaw, pitch), places)
 
     def blocker(self, eye: Point, point: Point) -> Position | None:
         """Return the position of the first block whose shape the ray from eye to point enters."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, Source
+from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
 from beliefnest.pictures.words import told_apart

@@ -3,8 +3,8 @@
 from beliefnest.prompts.builtin import BUILT_IN
 from beliefnest.prompts.filterset import FilterSet, PromptFilter, filter
 from beliefnest.prompts.rendering import Renderer, instructions, render
+from beliefnest.prompts.simulator_view import BranchView
 from beliefnest.prompts.templates import Template, built_in_template, load_template
-from beliefnest.prompts.view import BranchView
 
 __all__ = [
     "BUILT_IN",

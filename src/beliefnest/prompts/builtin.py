@@ -6,12 +6,12 @@ values that the belief lacks; faults are raised.
 
 from collections.abc import Iterable, Mapping
 
-from beliefnest.belief.entries import AgentBelief, PerceivedEvent, Source
+from beliefnest.belief.grounds import AgentBelief, PerceivedEvent, Source
 from beliefnest.belief.view import State
-from beliefnest.prompts import actions, text
+from beliefnest.prompts import event_rows, text
 from beliefnest.prompts.filterset import FilterSet, filter
-from beliefnest.prompts.memory import FILTERS
-from beliefnest.prompts.view import BranchView, belief_of, believed_agent, owner_of
+from beliefnest.prompts.memory_filters import FILTERS
+from beliefnest.prompts.simulator_view import BranchView, belief_of, believed_agent, owner_of
 from beliefnest.world.values import EQUIPMENT_SLOTS, Position
 
 __all__ = ["BUILT_IN"]
@@ -237,7 +237,7 @@ def events(branch: BranchView) -> str:
     perceived = branch.state.events
     if not perceived:
         return text.NOT_OBSERVED
-    return "\n".join([_EVENT_HEADER, *map(actions.row, perceived)])
+    return "\n".join([_EVENT_HEADER, *map(event_rows.row, perceived)])
 
 
 @filter("events_and_visibilities")
@@ -253,7 +253,8 @@ def events_and_visibilities(branch: BranchView, me: str | None = None) -> str:
     owner = owner_of(state)
     others = {name: belief_of(mine, name) for name in sorted(state.agents) if name != owner}
     rows = [
-        (event.tick, f"{actions.row(event)};{_witnesses(event, others)}") for event in state.events
+        (event.tick, f"{event_rows.row(event)};{_witnesses(event, others)}")
+        for event in state.events
     ]
     rows += [
         (row_tick, f"{row_tick};{how};{name};position:{where};")

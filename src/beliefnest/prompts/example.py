@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beliefnest.belief.entries import (
+from beliefnest.belief.grounds import (
     AgentBelief,
     Basis,
     ContainerBelief,

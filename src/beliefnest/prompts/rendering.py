@@ -15,6 +15,7 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 from beliefnest.errors import BeliefNestError, TemplateError
 from beliefnest.prompts.builtin import BUILT_IN
 from beliefnest.prompts.filterset import FilterSet, installed_filters
+from beliefnest.prompts.simulator_view import BranchView
 from beliefnest.prompts.templates import (
     BUILT_IN_TEMPLATES,
     Template,
@@ -22,7 +23,6 @@ from beliefnest.prompts.templates import (
     load_template,
 )
 from beliefnest.prompts.text import nearest
-from beliefnest.prompts.view import BranchView
 from beliefnest.world.texts import visible
 
 __all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "Renderer", "instructions", "render"]

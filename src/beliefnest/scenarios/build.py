@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from beliefnest.belief.condition_form import check_condition
-from beliefnest.belief.entries import InitialBelief
+from beliefnest.belief.grounds import InitialBelief
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.unique import unique_fault, unique_items
 from beliefnest.perception.options import Perception
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
+from beliefnest.scenarios.agent_entries import build_agents
 from beliefnest.scenarios.checks import Checks, check_inside
 from beliefnest.scenarios.content import Probe, ScenarioContent
 from beliefnest.scenarios.document import Document, KeyPath, plain
@@ -28,8 +29,6 @@ from beliefnest.scenarios.format import (
     StepEntry,
 )
 from beliefnest.scenarios.inferring import build_inferring
-from beliefnest.scenarios.people import build_agents
-from beliefnest.scenarios.reading import template_text
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, rule_faults
 from beliefnest.scenarios.space import (
     UNKNOWN,
@@ -40,6 +39,7 @@ from beliefnest.scenarios.space import (
     build_signs,
     entry_mask,
 )
+from beliefnest.scenarios.yaml_reading import template_text
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.minds.model import MindModel, simplex_grid
+from beliefnest.minds.mind_model import MindModel, simplex_grid
 from beliefnest.scenarios.checks import check_inside
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import (

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from beliefnest.bodies.protocol import NO_WAY, ProgramResult
 from beliefnest.scenarios.expected import Judgement
+from beliefnest.worlds.protocol import NO_WAY, ProgramResult
 
 __all__ = ["OUTCOMES", "outcome_of"]
 

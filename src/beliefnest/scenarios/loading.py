@@ -10,9 +10,9 @@ from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.build import build_scenario
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, merged, wrapped
-from beliefnest.scenarios.form import check_form
+from beliefnest.scenarios.document_form import check_form
 from beliefnest.scenarios.parameters import text_of, with_parameters
-from beliefnest.scenarios.reading import parse_yaml, read_yaml
+from beliefnest.scenarios.yaml_reading import parse_yaml, read_yaml
 
 __all__ = [
     "Change",

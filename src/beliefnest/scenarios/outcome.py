@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from beliefnest.belief.view import State
-from beliefnest.bodies.protocol import Fault, ProgramResult
 from beliefnest.errors import InputError
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.content import Probe
@@ -15,6 +14,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.trial import Trial
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import Point, Position
+from beliefnest.worlds.protocol import Fault, ProgramResult
 
 __all__ = ["ExpectationOutcome", "Outcome", "ProbeOutcome", "Reply"]
 

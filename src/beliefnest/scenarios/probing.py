@@ -8,7 +8,6 @@ from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_p
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.face.simulator import Simulator
-from beliefnest.programs import skills
 from beliefnest.prompts import Template, built_in_template, instructions
 from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.content import Probe
@@ -18,6 +17,7 @@ from beliefnest.scenarios.judging import outcome_of
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply
 from beliefnest.scenarios.questioning import ask_question
 from beliefnest.scenarios.trial import Trial
+from beliefnest.skills import skills
 
 __all__ = ["Asking", "run_probe"]
 

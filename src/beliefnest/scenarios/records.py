@@ -3,11 +3,11 @@
 import math
 from pathlib import Path
 
-from beliefnest.bodies.protocol import Aim
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.outcome import ExpectationOutcome, ProbeOutcome, Reply
 from beliefnest.world.values import Placements, Point
+from beliefnest.worlds.protocol import Aim
 
 __all__ = ["expectation_json", "placed_json", "probe_json", "usage_json"]
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from beliefnest.belief.view import State
-from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.world.values import Event, EventKind, Point, Position
+from beliefnest.worlds.protocol import ProgramResult
 
 __all__ = ["Trial", "opened_by"]
 

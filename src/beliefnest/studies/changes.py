@@ -8,8 +8,8 @@ from typing import Any
 from jinja2 import Environment, TemplateSyntaxError
 
 from beliefnest.errors import InputError
-from beliefnest.studies.javascript import Rewriting, rewritten
-from beliefnest.studies.scene import Kind
+from beliefnest.studies.program_rewriting import Rewriting, rewritten
+from beliefnest.studies.scene_changes import Kind
 from beliefnest.studies.symmetry import Placing
 from beliefnest.world.registry import Registry
 

@@ -7,8 +7,8 @@ rows is counted. The column `copy_of` marks the others.
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
-from beliefnest.studies.plan import digest
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.cells import digest
+from beliefnest.studies.study_folder import StudyFolder
 
 __all__ = ["rows_with_copies", "text_of_copies"]
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from beliefnest.bodies.worlds import check_world
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError
 from beliefnest.llm.budget import RunLimits
 from beliefnest.prompts.templates import (
@@ -27,6 +26,7 @@ from beliefnest.studies.checking import (
     is_whole,
 )
 from beliefnest.studies.variation import CHANGES, Variation
+from beliefnest.worlds.by_name import check_world
 
 __all__ = ["Constraint", "Design", "Template", "template_named"]
 

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from beliefnest.bodies.worlds import check_world
 from beliefnest.llm.budget import RunLimits
 from beliefnest.studies.checking import (
     StudyKeyError,
@@ -13,6 +12,7 @@ from beliefnest.studies.checking import (
     checked_lists,
     is_count,
 )
+from beliefnest.worlds.by_name import check_world
 
 __all__ = [
     "EpisodeDesign",

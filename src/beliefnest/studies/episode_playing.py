@@ -4,16 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from beliefnest.bodies.worlds import Worlds
+from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies import resolve_policy
 from beliefnest.episodes.policies.model import ModelPolicy
-from beliefnest.episodes.view import Policy
 from beliefnest.errors import ModelError
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
-from beliefnest.studies.episode_plan import EpisodeCell
+from beliefnest.studies.episode_cells import EpisodeCell
 from beliefnest.studies.terms import Terms
+from beliefnest.worlds.by_name import Worlds
 
 __all__ = ["play_episode"]
 

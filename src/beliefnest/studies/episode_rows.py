@@ -4,11 +4,11 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from beliefnest.episodes.measures import Measures
+from beliefnest.studies.cells import variation_id
 from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.episode_design import policy_named
-from beliefnest.studies.plan import variation_id
 from beliefnest.studies.rows import FAILED, plain_value, variation_columns
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table
 
 __all__ = ["EPISODES"]

@@ -7,9 +7,9 @@ from typing import Any, Protocol
 from jinja2 import Environment, StrictUndefined
 
 from beliefnest.errors import UnknownNameError
+from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.counting import Pairs
-from beliefnest.studies.plot import plot_accuracy, svg_of
 from beliefnest.studies.rows import variation_columns
 from beliefnest.studies.table import Table
 from beliefnest.world.texts import visible

@@ -12,7 +12,7 @@ from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.plainframe import Typed, plain_frame, write_typed
 from beliefnest.studies.rows import PROBES, variation_columns
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table
 
 if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they are needed.
@@ -233,7 +233,7 @@ class StudyResult:
             InputError: A column does not exist.
             MissingExtraError: matplotlib is not installed.
         """
-        from beliefnest.studies.plot import plot_accuracy
+        from beliefnest.studies.accuracy_figure import plot_accuracy
 
         names = self._columns(self.table.groups[-2:] if by is None else by)
         if not names:

@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.studies.cells import variation_id
 from beliefnest.studies.copies import rows_with_copies
-from beliefnest.studies.plan import variation_id
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table
 from beliefnest.world.paths import normalised
 

@@ -10,7 +10,7 @@ from filelock import FileLock
 from beliefnest.llm.budget import RunLimits, RunSpending, tokens_of_free
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.record_forms import UsageForm, read_lines
-from beliefnest.studies.store import append_line
+from beliefnest.studies.study_folder import append_line
 
 __all__ = ["SharedBudget", "spent_in"]
 

@@ -12,6 +12,7 @@ from beliefnest.llm.resolve import check_model
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import read_document
+from beliefnest.studies.cells import C, Cell, Plan, plan_cells
 from beliefnest.studies.checking import (
     StudyKeyError,
     checked_conditions,
@@ -20,6 +21,7 @@ from beliefnest.studies.checking import (
     several,
 )
 from beliefnest.studies.design import Constraint, Design, Template, template_named
+from beliefnest.studies.episode_cells import EpisodeCell, plan_episodes
 from beliefnest.studies.episode_design import (
     EpisodeDesign,
     Order,
@@ -29,14 +31,12 @@ from beliefnest.studies.episode_design import (
     listed,
     seeds_of,
 )
-from beliefnest.studies.episode_plan import EpisodeCell, plan_episodes
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
-from beliefnest.studies.plan import C, Cell, Plan, plan_cells
+from beliefnest.studies.jobs import OnStudyProgress, StudyProgress, run_cells
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.rows import PROBES, variation_columns
-from beliefnest.studies.running import OnStudyProgress, StudyProgress, run_cells
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table
 from beliefnest.studies.terms import Terms
 

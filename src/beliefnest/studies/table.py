@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from beliefnest.studies.store import StudyFolder
+from beliefnest.studies.study_folder import StudyFolder
 
 __all__ = ["Table"]
 

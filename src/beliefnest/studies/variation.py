@@ -10,7 +10,7 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.studies.changes import MovedBySymmetry, Renamed
-from beliefnest.studies.scene import Kind, SceneChange, changed_scene
+from beliefnest.studies.scene_changes import Kind, SceneChange, changed_scene
 from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box

@@ -7,20 +7,20 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.bodies.worlds import Worlds
 from beliefnest.errors import BeliefNestError
-from beliefnest.llm.hearsay import claims_from_model
+from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.messages import Sampling
 from beliefnest.llm.resolve import is_of_provider, open_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
 from beliefnest.scenarios.records import expectation_json, probe_json
 from beliefnest.scenarios.running import Asking, run_scenario
+from beliefnest.studies.cells import Cell, Keyed
 from beliefnest.studies.ending import end_with
-from beliefnest.studies.episode_plan import EpisodeCell
+from beliefnest.studies.episode_cells import EpisodeCell
 from beliefnest.studies.episode_playing import play_episode
-from beliefnest.studies.plan import Cell, Keyed
 from beliefnest.studies.terms import Terms
+from beliefnest.worlds.by_name import Worlds
 
 __all__ = ["CellResult", "Worker", "play_in_process"]
 

@@ -21,7 +21,7 @@ from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.files import open_regular
 from beliefnest.owned import Owned
 from beliefnest.timeline.lock import WriterLock
-from beliefnest.timeline.schema import (
+from beliefnest.timeline.store_schema import (
     APPLICATION_ID,
     SCHEMA_VERSION,
     SMALL_TABLES,

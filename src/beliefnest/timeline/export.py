@@ -15,8 +15,7 @@ from typing import Any, Literal, Protocol
 import msgspec
 
 from beliefnest.errors import InputError, StoreError
-from beliefnest.timeline.journal import Journal, TimelineKey
-from beliefnest.timeline.tables import (
+from beliefnest.timeline.export_tables import (
     IF_ANY,
     TABLES,
     BeliefRow,
@@ -27,6 +26,7 @@ from beliefnest.timeline.tables import (
     snapshot_rows,
     timeline_row,
 )
+from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, checked, checksum
-from beliefnest.timeline.records import ProgramRecord
-from beliefnest.timeline.schema import BODY_STATE, STATEMENTS
+from beliefnest.timeline.run_records import ProgramRecord
+from beliefnest.timeline.store_schema import BODY_STATE, STATEMENTS
 
 __all__ = ["FORMAT_2", "convert_2"]
 

@@ -12,7 +12,7 @@ from beliefnest.timeline.journal import (
     TimelineKey,
     branch_taken,
 )
-from beliefnest.timeline.memory import MemoryJournal
+from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.world.values import AgentState
 
 __all__ = ["SideJournal"]

@@ -27,7 +27,7 @@ from beliefnest.timeline.journal import (
     check_base,
     check_place,
 )
-from beliefnest.timeline.records import Records, path_from, path_to
+from beliefnest.timeline.run_records import Records, path_from, path_to
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import AgentState
 

@@ -1,7 +1,7 @@
 """Rules for using, breaking and placing blocks by hand in the scripted world.
 
-Drops and times are the same as in the embedded world: `bodies/node/handling.js` writes its rules
-into a file when the package is built. The functions refuse acts whose result is random or
+Drops and times are the same as in the embedded world: `worlds/minecraft/node/handling.js` writes
+its rules into a file when the package is built. The functions refuse acts whose result is random or
 depends on the pose of the agent in the embedded world. They also refuse acts that would move
 other blocks.
 """

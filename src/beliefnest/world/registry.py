@@ -1,7 +1,7 @@
 """Registry of Minecraft's blocks and items: names, state ids, collision shapes.
 
-The data are from minecraft-data (MIT). `bodies/node/registry.js` writes them into one file when
-the package is built. The text of a block state is `name` or `name[a=b,c=d]`. A prefix
+The data are from minecraft-data (MIT). `worlds/minecraft/node/registry.js` writes them into one
+file when the package is built. The text of a block state is `name` or `name[a=b,c=d]`. A prefix
 `minecraft:` is accepted in input and never written.
 """
 

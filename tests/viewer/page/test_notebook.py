@@ -7,7 +7,7 @@ import nbclient
 import nbformat
 import pytest
 
-from beliefnest.cli.bench.browser import CHROMIUM, DRIVER, opened_browser
+from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, opened_browser
 
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None or DRIVER is None,

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from beliefnest.cli.bench.browser import CHROMIUM, DRIVER, Browser, opened_browser
 from beliefnest.cli.page import PageOptions, write_page
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, Browser, opened_browser
 
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None or DRIVER is None,

@@ -8,8 +8,8 @@ from tests.viewer.page.test_page import assert_accessible, assert_clean
 from tests.viewer.page.test_rounds import texts
 
 import beliefnest as bn
-from beliefnest.cli.bench.browser import CHROMIUM, DRIVER, opened_browser
 from beliefnest.viewer.page.posteriors import told_inference
+from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, opened_browser
 
 CLICK = """
 const chart = document.querySelector('.posterior figure > svg')

@@ -8,10 +8,10 @@ import pytest
 from tests.viewer.page.test_page import assert_accessible, assert_clean
 
 import beliefnest as bn
-from beliefnest.cli.bench.browser import CHROMIUM, DRIVER, Browser, opened_browser
 from beliefnest.cli.page import PageOptions, write_page
 from beliefnest.episodes.policies import Scripted
 from beliefnest.episodes.telling import told_episode
+from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, Browser, opened_browser
 
 TASK: dict[str, Any] = {
     "name": "fetch",

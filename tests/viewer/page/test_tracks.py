@@ -5,7 +5,7 @@ import random
 import pytest
 
 import beliefnest as bn
-from beliefnest.viewer.page.poses import PoseBook
+from beliefnest.viewer.page.pose_history import PoseBook
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.viewer.page.tracks import CURRENT, PLACED, STALE, UNKNOWN, Track, TrackRecorder
 from beliefnest.world.paths import paths_below

@@ -7,8 +7,8 @@ from urllib.parse import quote
 
 import pytest
 
-from beliefnest.viewer.serving.app import page_app
 from beliefnest.viewer.serving.host import Host
+from beliefnest.viewer.serving.routes import page_app
 
 ODD = ["x", "-1", "1e9", "9" * 5000, "", "\u202e", "nan", "\0"]
 PLACE = "run=0&on=0&path=/&tick=0"

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.policies.simple import Person, Program, Random, Scripted
-from beliefnest.episodes.view import Policy
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.files import read_regular_text
 

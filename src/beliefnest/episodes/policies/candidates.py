@@ -15,8 +15,8 @@ from beliefnest.belief.conditions import (
 )
 from beliefnest.episodes.policies.distance import MindFacts, name_of
 from beliefnest.nest.acting.imagination import Imagination
-from beliefnest.programs.calls import Call
 from beliefnest.scenarios.goals import Goal
+from beliefnest.skills.calls import Call
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_open
 from beliefnest.world.registry import Registry

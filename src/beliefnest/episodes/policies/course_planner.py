@@ -12,6 +12,7 @@ on beliefs down to k levels below its own belief.
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from beliefnest.episodes.agent_view import Brief
 from beliefnest.episodes.policies.candidates import (
     calls_of,
     claims_of_mind,
@@ -20,10 +21,9 @@ from beliefnest.episodes.policies.candidates import (
     said,
 )
 from beliefnest.episodes.policies.distance import distance, held, is_visible
-from beliefnest.episodes.view import Brief
 from beliefnest.nest.acting.imagination import Imagination, Performer
-from beliefnest.programs.calls import Call
 from beliefnest.scenarios.goals import Goal
+from beliefnest.skills.calls import Call
 from beliefnest.world.values import Position
 
 __all__ = ["OPEN", "REACHED", "USUAL", "VIOLATED", "Bounds", "FoundPlan", "Planner", "Score"]

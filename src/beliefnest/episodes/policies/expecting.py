@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from beliefnest.belief.conditions import ItemsIn
+from beliefnest.episodes.agent_view import AgentView, Brief
 from beliefnest.episodes.policies.candidates import items_of
 from beliefnest.episodes.policies.course_planner import (
     OPEN,
@@ -20,9 +21,8 @@ from beliefnest.episodes.policies.course_planner import (
     Planner,
     Score,
 )
-from beliefnest.episodes.view import AgentView, Brief
 from beliefnest.nest.acting.imagination import Imagination
-from beliefnest.programs.calls import Call, program_of
+from beliefnest.skills.calls import Call, program_of
 from beliefnest.world.values import Position
 
 __all__ = ["Expecting", "GoalShares", "uniform"]

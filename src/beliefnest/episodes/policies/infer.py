@@ -18,19 +18,19 @@ from beliefnest.belief.conditions import (
     ItemsWith,
     LeversHeld,
 )
-from beliefnest.belief.entries import Source
+from beliefnest.belief.grounds import Source
 from beliefnest.belief.view import State
-from beliefnest.bodies.footpaths import InReach
-from beliefnest.bodies.scripted_hand import REACH
+from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.policies.course_planner import USUAL, Bounds
 from beliefnest.episodes.policies.expecting import Expecting, GoalShares, uniform
 from beliefnest.episodes.policies.search import Search
-from beliefnest.episodes.view import AgentView
 from beliefnest.errors import InputError
-from beliefnest.minds.model import MindModel
+from beliefnest.minds.mind_model import MindModel
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.claims import ClaimKind
 from beliefnest.world.values import EventKind, Position
+from beliefnest.worlds.scripted.footpaths import InReach
+from beliefnest.worlds.scripted.hand import REACH
 
 __all__ = ["Infer", "goals_of_planner", "posterior"]
 

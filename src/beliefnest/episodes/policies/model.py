@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 from importlib.resources import files
 
 from beliefnest.belief.conditions import ItemsWith
+from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.decided import Spent
-from beliefnest.episodes.view import AgentView
 from beliefnest.llm.asking import ask_for_program
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
-from beliefnest.programs import skills
 from beliefnest.prompts import built_in_template
 from beliefnest.scenarios.goals import Goal
+from beliefnest.skills import skills
 
 __all__ = ["ModelPolicy", "OmniscientModelPolicy"]
 

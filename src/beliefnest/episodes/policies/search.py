@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 
+from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.policies.course_planner import USUAL, Bounds, Planner
 from beliefnest.episodes.policies.expecting import Expecting, uniform
-from beliefnest.episodes.view import AgentView
-from beliefnest.programs.calls import program_of
+from beliefnest.skills.calls import program_of
 
 __all__ = ["Omniscient", "Search"]
 

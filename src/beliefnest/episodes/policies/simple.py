@@ -4,8 +4,8 @@ import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from beliefnest.episodes.agent_view import GO_ON, AgentView
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
-from beliefnest.episodes.view import GO_ON, AgentView
 
 __all__ = ["Person", "Program", "Random", "Scripted"]
 

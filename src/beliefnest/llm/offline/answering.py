@@ -13,7 +13,7 @@ The rules:
 import math
 import re
 
-from beliefnest.llm.offline.naming import match_item, match_name, place_named_last, singular
+from beliefnest.llm.offline.phrases import match_item, match_name, place_named_last, singular
 from beliefnest.llm.offline.planning import believed_place
 from beliefnest.llm.offline.prompt_reading import Point, Reading, words
 

@@ -21,8 +21,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from beliefnest.llm.offline import javascript
-from beliefnest.llm.offline.naming import match_item, match_name, place_named_last, singular
+from beliefnest.llm.offline import program_texts
+from beliefnest.llm.offline.phrases import match_item, match_name, place_named_last, singular
 from beliefnest.llm.offline.prompt_reading import Point, Reading, points_in, words
 
 __all__ = ["believed_place", "plan"]
@@ -88,7 +88,7 @@ def _wanted(task: str) -> _Wanted | None:
 
 def _not_understood(reading: Reading) -> str:
     task = reading.task or "nothing"
-    return javascript.wonder(f"I do not understand the task, so I do nothing: {task}")
+    return program_texts.wonder(f"I do not understand the task, so I do nothing: {task}")
 
 
 def _count(word: str | None) -> int:
@@ -100,12 +100,12 @@ def _get(wanted: _Wanted, reading: Reading) -> str:
     chests = _nearest_first(_chests_meant(wanted.source, reading), reading.position)
     item = _item_in(chests, wanted, reading)
     if item is not None:
-        return javascript.take_items(_takings(wanted.count, item, chests, reading))
+        return program_texts.take_items(_takings(wanted.count, item, chests, reading))
     phrase = wanted.phrase
     names = list(dict.fromkeys(["_".join(words(phrase)), "_".join(singular(phrase))]))
     if not chests:
-        return javascript.wonder(f"I know of no chest that could hold {names[0]}.")
-    return javascript.search_chests(chests, names, wanted.count)
+        return program_texts.wonder(f"I know of no chest that could hold {names[0]}.")
+    return program_texts.search_chests(chests, names, wanted.count)
 
 
 def _item_in(chests: Sequence[Point], wanted: _Wanted, reading: Reading) -> str | None:
@@ -120,18 +120,18 @@ def _help(phrase: str, reading: Reading) -> str | None:
         return None
     wanted = _wish(player, reading)
     if wanted is None:
-        return javascript.wonder(f"I do not know what {player} needs.")
+        return program_texts.wonder(f"I do not know what {player} needs.")
     chests = _nearest_first(_chests_meant(wanted.source, reading), reading.position)
     item = _item_in(chests, wanted, reading)
     if item is None:
-        return javascript.wonder(f"I know of no chest that holds {wanted.phrase} for {player}.")
+        return program_texts.wonder(f"I know of no chest that holds {wanted.phrase} for {player}.")
     takings = _takings(wanted.count, item, chests, reading)
     count = sum(taken[item] for _, taken in takings)
     where = believed_place(player, reading)
     parts = [
-        javascript.take_items(takings),
-        *([] if where is None else [javascript.go_to(where)]),
-        javascript.give_item(player, item, count),
+        program_texts.take_items(takings),
+        *([] if where is None else [program_texts.go_to(where)]),
+        program_texts.give_item(player, item, count),
     ]
     return "\n".join(parts)
 
@@ -183,17 +183,17 @@ def _go(phrase: str, reading: Reading) -> str | None:
     """Return a program that goes to the place or player of a phrase; None if it is unknown."""
     given = points_in(phrase)
     if given:
-        return javascript.go_to(given[-1])
+        return program_texts.go_to(given[-1])
     player = match_name(phrase, reading.players)
     place = match_name(phrase, reading.places)
     if place is not None and (player is None or len(words(place)) > len(words(player))):
-        return javascript.go_to(reading.places[place])
+        return program_texts.go_to(reading.places[place])
     if player is None:
         return None
     where = believed_place(player, reading)
     if where is not None:
-        return javascript.go_to(where)
-    return javascript.look_for_player(player, list(reading.places.values()))
+        return program_texts.go_to(where)
+    return program_texts.look_for_player(player, list(reading.places.values()))
 
 
 def believed_place(player: str, reading: Reading) -> Point | None:

@@ -8,8 +8,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from beliefnest.bodies.protocol import Body, ProgramPast, Sense, World
-from beliefnest.bodies.worlds import hosted_of
 from beliefnest.errors import BodyError, BranchError, WorldError
 from beliefnest.nest.acting.earshot import Earshot
 from beliefnest.nest.acting.embodying import Embodying
@@ -24,6 +22,8 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.worlds.by_name import hosted_of
+from beliefnest.worlds.protocol import Body, ProgramPast, Sense, World
 
 __all__ = ["Bodies"]
 

@@ -13,19 +13,19 @@ from typing import Any
 
 import numpy as np
 
-from beliefnest.belief.entries import PerceivedEvent
-from beliefnest.bodies.engines import Engines
-from beliefnest.bodies.grounds import Grounds
-from beliefnest.bodies.protocol import Fault, RunRules
-from beliefnest.bodies.scripted_programs import RunningPrograms
+from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import InputError, WorldError
+from beliefnest.minds.alternatives import middle_of
 from beliefnest.minds.walking import Act, Changes, Draw, Open, Step, Strategy, Walker
-from beliefnest.minds.worlds import middle_of
 from beliefnest.nest.past.percepts import HANDLING, Deed, Percept, cell_in, deed_of
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
-from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.signs import plain_state
 from beliefnest.world.values import AgentState, EventKind, Items, Point, Position
+from beliefnest.worlds.protocol import Fault, RunRules
+from beliefnest.worlds.scripted.engines import Engines
+from beliefnest.worlds.scripted.ground_cache import Grounds
+from beliefnest.worlds.scripted.programs import RunningPrograms
+from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __all__ = ["Candidate", "Course", "CoursePlan", "Glimpse", "PolicyProgram", "Seeds"]
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Collection
 
-from beliefnest.bodies.hosted import HostedWorld
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Event, EventKind
+from beliefnest.worlds.servers.hosted import HostedWorld
 
 __all__ = ["Earshot"]
 

@@ -10,10 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from beliefnest.belief.node_view import NodeView
-from beliefnest.bodies.exhibits import Exhibit, Plot, Shown, display_names, origin_of
-from beliefnest.bodies.protocol import World
-from beliefnest.bodies.realtime import RealtimeWorld
-from beliefnest.bodies.worlds import realtime_of
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.placement import BodySpace
 from beliefnest.nest.past.embodiable import with_chests
@@ -22,6 +18,10 @@ from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import AIR
 from beliefnest.world.values import AgentState, Position
+from beliefnest.worlds.by_name import realtime_of
+from beliefnest.worlds.minecraft.exhibits import Exhibit, Plot, Shown, display_names, origin_of
+from beliefnest.worlds.protocol import World
+from beliefnest.worlds.servers.realtime import RealtimeWorld
 
 __all__ = ["Embodying"]
 

@@ -14,15 +14,6 @@ from typing import Concatenate, ParamSpec, Self, TypeVar
 
 import msgspec
 
-from beliefnest.bodies.protocol import (
-    KILLED,
-    Body,
-    Fault,
-    ProgramPast,
-    ProgramResult,
-    RunRules,
-    World,
-)
 from beliefnest.errors import BodyLostError, BranchError
 from beliefnest.nest.acting.bodies import Bodies
 from beliefnest.nest.acting.embodying import Embodying
@@ -33,9 +24,18 @@ from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, Edit, ForkPoint, TimelineInfo, TimelineKey
-from beliefnest.timeline.records import ProgramRecord
+from beliefnest.timeline.run_records import ProgramRecord
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Block, Items, Position
+from beliefnest.worlds.protocol import (
+    KILLED,
+    Body,
+    Fault,
+    ProgramPast,
+    ProgramResult,
+    RunRules,
+    World,
+)
 
 __all__ = ["Engine"]
 

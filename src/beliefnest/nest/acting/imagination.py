@@ -13,21 +13,21 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from beliefnest.belief.columns import Columns
-from beliefnest.belief.entries import PerceivedEvent, Source
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import PerceivedEvent, Source
 from beliefnest.belief.initial import forked_forest
 from beliefnest.belief.node_view import NodeView
-from beliefnest.bodies.footpaths import Ground, InReach
-from beliefnest.bodies.scripted_hand import REACH, Doing, Hand
-from beliefnest.bodies.scripted_skills import CALLS, SKILLS
 from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.nest.past.embodiable import embodiable, with_chests
-from beliefnest.programs.calls import Call
+from beliefnest.skills.calls import Call
 from beliefnest.world.frames import BlockGrid, Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import Registry
-from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import Event, Position
+from beliefnest.worlds.scripted.footpaths import Ground, InReach
+from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
+from beliefnest.worlds.scripted.skills import CALLS, SKILLS
+from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __all__ = ["Imagination", "Performer"]
 

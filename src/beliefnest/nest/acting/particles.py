@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from random import Random
 
 from beliefnest.minds.walking import Draw
-from beliefnest.nest.acting.agreement import Agreement
+from beliefnest.nest.acting.course_agreement import Agreement
 from beliefnest.nest.acting.courses import Candidate, Course, CoursePlan, Glimpse, Seeds
 
 __all__ = ["Drawing", "Drawn", "Lost", "Particle", "spread"]

@@ -6,7 +6,6 @@ from itertools import groupby
 
 import msgspec
 
-from beliefnest.bodies.protocol import Body, ProgramPast, RunRules, Sense, World
 from beliefnest.nest.acting.hearsay import recalled
 from beliefnest.nest.acting.sensing import Sensing
 from beliefnest.nest.acting.starting import start_of
@@ -16,9 +15,10 @@ from beliefnest.nest.past.placing import placing_frame
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import EntryDifference, first_difference
 from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, TimelineInfo, TimelineKey
-from beliefnest.timeline.records import ProgramRecord, Senses
+from beliefnest.timeline.run_records import ProgramRecord, Senses
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import path_text
+from beliefnest.worlds.protocol import Body, ProgramPast, RunRules, Sense, World
 
 __all__ = ["ReplayedTimeline", "replay"]
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Iterable
 
-from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.errors import BodyError, ProgramError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.past.setting import Step
 from beliefnest.timeline.journal import Journal, TimelineKey, lineage
-from beliefnest.timeline.records import ProgramRecord
+from beliefnest.timeline.run_records import ProgramRecord
+from beliefnest.worlds.protocol import ProgramResult
 
 __all__ = ["Progress", "play_script", "steps_played"]
 

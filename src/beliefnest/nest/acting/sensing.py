@@ -4,13 +4,13 @@ import math
 from collections.abc import Callable
 
 from beliefnest.belief.node_view import NodeView
-from beliefnest.bodies.protocol import Sensed
 from beliefnest.nest.past.embodiable import chest_places, with_chests_at
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import AgentState, EventKind, Point, Position
+from beliefnest.worlds.protocol import Sensed
 
 __all__ = ["Sensing", "believer_of"]
 

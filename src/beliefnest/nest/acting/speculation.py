@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 from threading import Event
 
-from beliefnest.bodies.protocol import AS_USUAL, Body, ProgramResult, RunRules, Sense, Sink, World
 from beliefnest.errors import BeliefNestError, BodyError, BodyLostError, WorldError
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.worlds.protocol import AS_USUAL, Body, ProgramResult, RunRules, Sense, Sink, World
 
 __all__ = ["SpeculatedBody", "Speculation", "SpeculationStart", "speculate"]
 

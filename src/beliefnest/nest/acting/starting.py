@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beliefnest.belief.entries import Source
+from beliefnest.belief.grounds import Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.acting.placement import BodySpace, moved_agents, placed, unknown_floors
 from beliefnest.nest.past.body_state import internal_state_at

@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.columns import cell_of, place_of
-from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import Basis, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
 from beliefnest.errors import InputError, PathError

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.entries import AgentBelief, ContainerBelief, Source
+from beliefnest.belief.grounds import AgentBelief, ContainerBelief, Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from beliefnest.belief.columns import cell_of
-from beliefnest.belief.entries import PerceivedEvent
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.nest.explain.parts import Contents, Element, Value
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey

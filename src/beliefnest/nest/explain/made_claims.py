@@ -184,7 +184,7 @@ class MadeClaim:
             forest = self._after(path)
             first = forest.columns.events_until(self._entry)
             count = forest.count_of_events
-            heard = forest.hearing.of(forest.node(path), count)
+            heard = forest.perceived_events.of(forest.node(path), count)
             return bool(np.asarray(heard)[first + self._row])
 
     def _is_contradicted(self, path: BeliefPath) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
 
-from beliefnest.belief.entries import Basis, PerceivedEvent
+from beliefnest.belief.grounds import Basis, PerceivedEvent
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point, Position

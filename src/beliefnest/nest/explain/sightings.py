@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beliefnest.belief.entries import AgentBelief
+from beliefnest.belief.grounds import AgentBelief
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Sighting, View
 from beliefnest.perception.sight import Geometry

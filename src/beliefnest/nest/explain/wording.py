@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from beliefnest.belief.entries import Basis, PerceivedEvent, Source
+from beliefnest.belief.grounds import Basis, PerceivedEvent, Source
 from beliefnest.nest.explain.parts import (
     Contents,
     Element,

@@ -9,7 +9,7 @@ from beliefnest.nest.face.shown import ShownNest
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import TimelineKey, lineage
-from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import parse_path
 
 if TYPE_CHECKING:  # The page lies above; see `view`.

@@ -7,14 +7,14 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 
 from beliefnest.belief.view import State
-from beliefnest.bodies.protocol import ProgramResult
 from beliefnest.errors import BranchError, InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.speculation import Speculation
 from beliefnest.nest.face.simulator import Simulator, check_senses
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
-from beliefnest.timeline.records import Senses
+from beliefnest.timeline.run_records import Senses
 from beliefnest.world.paths import BeliefPath
+from beliefnest.worlds.protocol import ProgramResult
 
 __all__ = ["Attempt", "Exploration", "ScoreFunction"]
 

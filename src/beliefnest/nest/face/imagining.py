@@ -14,16 +14,16 @@ from beliefnest.belief.condition_form import condition_entry, conditions_of
 from beliefnest.belief.conditions import GoalCondition, GoalFacts, StateFacts
 from beliefnest.belief.view import State
 from beliefnest.errors import BranchError, InputError, PathError, StoreError, TickError
-from beliefnest.minds.model import MindModel
+from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.walking import Strategy
-from beliefnest.nest.acting.agreement import Agreement, Tolerance, Witness
+from beliefnest.nest.acting.course_agreement import Agreement, Tolerance, Witness
 from beliefnest.nest.acting.courses import Candidate, Course, CoursePlan, PolicyProgram
 from beliefnest.nest.acting.particles import Drawing, Drawn, Lost, Particle, spread
 from beliefnest.nest.acting.script import Progress
 from beliefnest.nest.acting.starting import start_of
 from beliefnest.nest.face.branch_names import check_branch_name
 from beliefnest.nest.face.ticks import tick_of, whole
-from beliefnest.nest.inferring.asking import ModelStart, start_of_model
+from beliefnest.nest.inferring.node_inference import ModelStart, start_of_model
 from beliefnest.nest.past.percepts import Percept, percepts_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, ForkPoint, TimelineKey
@@ -31,9 +31,9 @@ from beliefnest.timeline.side import SideJournal
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.registry import Registry
-from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.signs import plain_state
 from beliefnest.world.values import AgentState, Block, Items, Point, Position
+from beliefnest.worlds.scripted.world import ScriptedWorld
 
 if TYPE_CHECKING:  # These take long to import, and few histories are drawn or listed.
     import pandas as pd

@@ -2,12 +2,12 @@
 
 import sys
 
-from beliefnest.bodies.realtime import RealtimeWorld
-from beliefnest.bodies.worlds import joined_of, realtime_of
 from beliefnest.errors import InputError, UnknownNameError, WorldError
 from beliefnest.nest.acting.script import Progress
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.waiting import Waiting
+from beliefnest.worlds.by_name import joined_of, realtime_of
+from beliefnest.worlds.servers.realtime import RealtimeWorld
 
 __all__ = ["Joining"]
 

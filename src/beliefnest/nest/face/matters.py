@@ -8,7 +8,7 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.comparison import are_elsewhere, are_false
 from beliefnest.nest.explain.parts import Contents

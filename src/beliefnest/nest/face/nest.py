@@ -5,11 +5,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
 
-from beliefnest.belief.entries import InitialBelief
+from beliefnest.belief.grounds import InitialBelief
 from beliefnest.belief.view import State
-from beliefnest.bodies.limits import ProcessLimits
-from beliefnest.bodies.scripted import ScriptedBodies
-from beliefnest.bodies.worlds import Worlds, is_real_time, open_world, world_name
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
@@ -27,12 +24,15 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.unique import unique_items
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
-from beliefnest.timeline.records import Senses
+from beliefnest.timeline.run_records import Senses
 from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
-from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.values import Position
+from beliefnest.worlds.by_name import Worlds, is_real_time, open_world, world_name
+from beliefnest.worlds.process_limits import ProcessLimits
+from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
+from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
@@ -79,7 +79,7 @@ class Nest(Joining, Visiting):
             initial_beliefs=tuple(initial_beliefs),
             unique=unique_items(unique),
         )
-        bodies = ScriptedBodies(world)
+        bodies = ScriptedNestWorld(world)
         self._hold(begun(BareSetting(setting), bodies, "scripted", 0, store, claims_from))
 
     @classmethod

@@ -5,11 +5,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from beliefnest.bodies.address import is_server
-from beliefnest.bodies.limits import ProcessLimits
-from beliefnest.bodies.listening import is_hosted
-from beliefnest.bodies.protocol import World
-from beliefnest.bodies.worlds import LazyWorld, Worlds, joined_of, open_world
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.face.hearing_model import reader_of
@@ -18,10 +13,15 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.prompts import Renderer
-from beliefnest.timeline.memory import MemoryJournal
-from beliefnest.timeline.records import RunJournal, RunRecord
+from beliefnest.timeline.memory_journal import MemoryJournal
+from beliefnest.timeline.run_records import RunJournal, RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.nameable import ClaimsFrom
+from beliefnest.worlds.by_name import LazyWorld, Worlds, joined_of, open_world
+from beliefnest.worlds.process_limits import ProcessLimits
+from beliefnest.worlds.protocol import World
+from beliefnest.worlds.servers.address import is_server
+from beliefnest.worlds.servers.listening import is_hosted
 
 __all__ = ["BareSetting", "HasSetting", "as_scenario", "begun", "resumed"]
 

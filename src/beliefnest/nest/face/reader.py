@@ -8,7 +8,7 @@ from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_blo
 from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
-from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Position
 

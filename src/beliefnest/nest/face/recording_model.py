@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import ModelError
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.records import PromptRecord
+from beliefnest.timeline.run_records import PromptRecord
 from beliefnest.world.paths import BeliefPath
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.

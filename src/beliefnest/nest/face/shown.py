@@ -27,7 +27,7 @@ from beliefnest.world.values import Placements, Position
 
 if TYPE_CHECKING:  # What draws or infers takes long to import, and few nests are asked to.
     from beliefnest.minds.inference import Inference
-    from beliefnest.minds.model import MindModel
+    from beliefnest.minds.mind_model import MindModel
     from beliefnest.nest.face.imagining import Imagined
     from beliefnest.pictures.figure import Figure
     from beliefnest.pictures.scene import Scene
@@ -143,7 +143,7 @@ class ShownSimulator(ABC):
             PathError: There is no such agent.
             TickError: A tick is in the future or before the start.
         """
-        from beliefnest.nest.inferring.asking import infer_in
+        from beliefnest.nest.inferring.node_inference import infer_in
 
         last = self._tick if until is None else tick_of(until)
         recording, path = self._recording, self._path
@@ -246,8 +246,8 @@ class ShownSimulator(ABC):
         Raises:
             InputError, PathError, TickError: As for `infer`.
         """
-        from beliefnest.minds.model import MindModel
-        from beliefnest.nest.inferring.asking import credence_in
+        from beliefnest.minds.mind_model import MindModel
+        from beliefnest.nest.inferring.node_inference import credence_in
 
         rows: Any = None if initial is None else [initial]
         model = MindModel(

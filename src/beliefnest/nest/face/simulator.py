@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
-from beliefnest.bodies.protocol import ProgramPast, ProgramResult
-from beliefnest.bodies.scripted import ScriptedBodies, ScriptedBody
 from beliefnest.errors import BranchError, InputError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.imagination import Imagination
@@ -17,10 +15,12 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.world.paths import BeliefPath, paths_below
-from beliefnest.world.scripted import ScriptedWorld
 from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import is_well_formed
 from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
+from beliefnest.worlds.protocol import ProgramPast, ProgramResult
+from beliefnest.worlds.scripted.nest_world import ScriptedBody, ScriptedNestWorld
+from beliefnest.worlds.scripted.world import ScriptedWorld
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Model
@@ -298,7 +298,7 @@ class Simulator(ShownSimulator):
             embodying.end(self._path)
 
     def _live_on(self, recording: Recording) -> "Simulator":
-        return Simulator(Engine(recording, ScriptedBodies()), self._path)
+        return Simulator(Engine(recording, ScriptedNestWorld()), self._path)
 
     @in_turn
     def imagination(self, depth: int = 1, pace: int = 1) -> Imagination:

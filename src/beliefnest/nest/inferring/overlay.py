@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beliefnest.belief.entries import AgentBelief, ContainerBelief, PerceivedEvent
+from beliefnest.belief.grounds import AgentBelief, ContainerBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError
-from beliefnest.minds.model import Alternative
-from beliefnest.minds.worlds import Pose, World
+from beliefnest.minds.alternatives import Pose, World
+from beliefnest.minds.mind_model import Alternative
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry, parse_state

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from beliefnest.belief.columns import Columns
-from beliefnest.belief.entries import PerceivedEvent
+from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.entries import Basis, PerceivedEvent
 from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import Basis, PerceivedEvent
 from beliefnest.belief.initial import forked_forest, initial_forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace

@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.columns import cell_of
-from beliefnest.belief.entries import AgentBelief, PerceivedEvent
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint

@@ -19,7 +19,7 @@ from beliefnest.nest.past.turn import Turn
 from beliefnest.nest.past.views import LiveState
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
-from beliefnest.timeline.records import Records, RunJournal
+from beliefnest.timeline.run_records import Records, RunJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Box

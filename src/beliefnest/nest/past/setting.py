@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from beliefnest.belief.entries import InitialBelief
+from beliefnest.belief.grounds import InitialBelief
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.past.unique import unique_fault
 from beliefnest.perception.options import Perception
-from beliefnest.timeline.records import Senses
+from beliefnest.timeline.run_records import Senses
 from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import (

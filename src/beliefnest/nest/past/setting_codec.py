@@ -4,7 +4,7 @@ from typing import Literal
 
 import msgspec
 
-from beliefnest.belief.entries import InitialBelief
+from beliefnest.belief.grounds import InitialBelief
 from beliefnest.errors import StoreError
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.perception.options import ContainerMode, Perception, Radius, Testimony

@@ -8,7 +8,7 @@ from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.records import RunRecord
+from beliefnest.timeline.run_records import RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.trace import Trace, record_trace
 

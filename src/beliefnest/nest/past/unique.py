@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from beliefnest.belief.entries import InitialBelief
+from beliefnest.belief.grounds import InitialBelief
 from beliefnest.belief.priors import merged_belief
 from beliefnest.errors import InputError
 from beliefnest.world.frames import Snapshot

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from beliefnest.belief.columns import cell_of
-from beliefnest.belief.entries import AgentBelief, Basis, ContainerBelief, PerceivedEvent
+from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.history import History
 from beliefnest.pictures.words import state_words

@@ -7,10 +7,10 @@ from typing import Any
 from beliefnest.nest.face.reader import Reader
 from beliefnest.pictures.palette import MARKS, agent_looks
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
-from beliefnest.timeline.records import ProgramRecord, PromptRecord
+from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.viewer.page.blocks import BlockPalette
-from beliefnest.viewer.page.poses import PoseBook
-from beliefnest.viewer.page.rows import StandRows, TrackRows, fresh_rows
+from beliefnest.viewer.page.pose_history import PoseBook
+from beliefnest.viewer.page.track_rows import StandRows, TrackRows, fresh_rows
 from beliefnest.viewer.page.tracks import Onlooker, TrackRecorder
 from beliefnest.viewer.page.words import event_text
 from beliefnest.world.frames import Frame

@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.entries import Basis
 from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import Basis
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
 from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.viewer.page.claims import claims_at, kind_of
-from beliefnest.viewer.page.poses import Pose, PoseBook
+from beliefnest.viewer.page.pose_history import Pose, PoseBook
 from beliefnest.viewer.page.wrong import WrongThings
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath
@@ -174,7 +174,7 @@ class TrackRecorder:
         count = forest.count_of_events
         if count > self._events:
             for at, number in enumerate(self._numbers):
-                heard = np.flatnonzero(forest.hearing.of(number, count)[self._events :])
+                heard = np.flatnonzero(forest.perceived_events.of(number, count)[self._events :])
                 self.tracks[at].heard += (heard + self._events).tolist()
             self._note_claims()
             self._events = count

@@ -1,7 +1,7 @@
 import { createRequire } from 'node:module'
 
 const require = createRequire(import.meta.url)
-const [, { rules }] = require('../../../bodies/node/eslint.config.js')
+const [, { rules }] = require('../../../worlds/minecraft/node/eslint.config.js')
 
 const BROWSER = ['Blob', 'CSS', 'DecompressionStream', 'EventSource', 'ResizeObserver', 'Response', 'URLSearchParams', 'addEventListener', 'atob',
   'clearTimeout', 'devicePixelRatio', 'document', 'fetch', 'history', 'innerWidth', 'location', 'matchMedia', 'navigator', 'performance',

@@ -3,7 +3,7 @@
 import { PerspectiveCamera, Vector3 } from 'three'
 import { believesText } from './detail.js'
 import { element, refill } from './elements.js'
-import { Plan } from './plan.js'
+import { Plan } from './floorPlan.js'
 import { Space, hasWebGL } from './space.js'
 import { thingsOf } from './things.js'
 

@@ -1,0 +1,117 @@
+"""Benchmarks of episodes: rounds against real time, branches of planners, solved tasks."""
+
+import time
+
+from beliefnest.belief.conditions import StateFacts
+from beliefnest.episodes.episode import Episode
+from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
+from beliefnest.episodes.policies.course_planner import Bounds, Planner
+from beliefnest.episodes.task import Task
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.values import TICKS_PER_SECOND
+from beliefnest.worlds.by_name import Worlds
+from beliefnest_benchmarks.figures import Metric
+
+__all__ = ["measure"]
+
+_TICKS = 100
+_TRIED = 40
+_PROCESSES = 2
+_WALK = """
+for (let n = 0; n < 4; n++) {
+  await goToPosition(bot, new Vec3(%d, 1, 1), 0)
+  await goToPosition(bot, new Vec3(%d, 1, 14), 0)
+}
+await waitTicks(bot, 200)
+"""
+
+
+def measure() -> list[Metric]:
+    """Return figures of a round of four agents, of an order-1 search, and of each task."""
+    return [
+        _round(),
+        _branches(),
+        _branches_in_minecraft(),
+        *(_solved(name) for name in Task.names()),
+    ]
+
+
+def _round() -> Metric:
+    """Time a round: four agents run programs of 100 ticks on percepts; then read all beliefs."""
+    hall = {
+        "name": "round",
+        "box": [[0, 0, 0], [15, 3, 15]],
+        "blocks": [{"block": "stone", "fill": [[0, 0, 0], [15, 0, 15]]}],
+        "static_blocks": ["stone"],
+        "agents": {name: {"position": [x + 0.5, 1, 1.5]} for x, name in enumerate("abcd", 3)},
+    }
+    with (
+        Worlds(0) as worlds,
+        Nest.open(Scenario.from_mapping(hall), world="scripted", worlds=worlds) as nest,
+    ):
+        programs = {name: _WALK % (x, x) for x, name in enumerate("abcd", 3)}
+        nest["/"].run_all(programs, 10, senses="percepts")
+        started = time.perf_counter()
+        nest["/"].run_all(programs, _TICKS, senses="percepts")
+        beliefs = [nest[f"/{name}"].state.agents for name in "abcd"]
+        seconds = time.perf_counter() - started
+        assert len(beliefs) == 4
+    faster = _TICKS / TICKS_PER_SECOND / seconds
+    return Metric("round of 4 agents, 100 ticks, scripted", faster, "x", 100.0, at_least=True)
+
+
+def _branches() -> Metric:
+    task = Task.load("tell-what-is-needed", agents=3)
+    with Episode(task) as episode:
+        view = episode.view("nora")
+        planner = Planner(view.brief)
+        planner.plan(view.imagine(1), "nora", 1, view.ticks_left, Bounds())
+        planner = Planner(view.brief)
+        started = time.perf_counter()
+        planner.plan(view.imagine(1), "nora", 1, view.ticks_left, Bounds())
+        seconds = time.perf_counter() - started
+    rate = planner.tried / seconds
+    return Metric("branches, order 1, 3 agents", rate, "1/s", 200.0, at_least=True)
+
+
+def _branches_in_minecraft() -> Metric:
+    """Time the candidates of an order-1 planner, each on an embodied branch of its belief.
+
+    Only programs of the agent itself run there. The planner itself uses scripted worlds.
+    """
+    task = Task.load("tell-what-is-needed", agents=3)
+    with Episode(task, world="embedded") as episode:
+        view = episode.view("nora")
+        mind, goals = view.imagine(1), list(view.brief.goals.values())
+        told = claims_of_mind(mind, goals, lies=False)
+        calls = [*calls_of(mind, "nora", [view.goal]), *map(said, told)]
+        wanted = view.goal.reach[0].fact
+        programs = [calls[number % len(calls)].program for number in range(_TRIED)]
+
+        def tried(name: str) -> float:
+            started = time.perf_counter()
+            attempts = episode.nest.explore(
+                "/nora",
+                "nora",
+                programs,
+                lambda simulator, _: float(wanted.holds(StateFacts(simulator.state))),
+                timeout_ticks=view.brief.round_ticks,
+                name=name,
+                processes=_PROCESSES,
+            )
+            return len(attempts) / (time.perf_counter() - started)
+
+        tried("first")
+        rate = tried("again")
+    return Metric("branches in Minecraft, order 1, 3 agents", rate, "1/s", 20.0, at_least=True)
+
+
+def _solved(name: str) -> Metric:
+    task = Task.load(name)
+    started = time.perf_counter()
+    with Episode(task) as episode:
+        solved = episode.play().success
+    seconds = time.perf_counter() - started
+    unit = "s" if solved else "s, not solved"
+    return Metric(f"{name} at order {task.order}", seconds, unit, 60.0)

@@ -1,0 +1,1 @@
+"""Adapters: scenarios, runs and studies in the forms of other libraries."""

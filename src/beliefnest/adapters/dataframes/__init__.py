@@ -1,0 +1,1 @@
+"""Runs and studies as pandas data frames (extra `study`)."""

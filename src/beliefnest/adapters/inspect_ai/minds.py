@@ -1,0 +1,225 @@
+"""Tasks about minds: a course in words, ratings of desires and beliefs, exact inference."""
+
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from anyio.to_thread import run_sync
+from inspect_ai import Task
+from inspect_ai.dataset import Sample
+from inspect_ai.model import ChatMessageUser
+from inspect_ai.scorer import (
+    Metric,
+    SampleScore,
+    Score,
+    Scorer,
+    Target,
+    mean,
+    metric,
+    scorer,
+    stderr,
+)
+from inspect_ai.solver import Generate, Solver, TaskState, solver
+
+from beliefnest.adapters.inspect_ai.task_parts import task_of
+from beliefnest.errors import InputError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.inferring import Inferred, Inferring
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.suites.films.film import About, Film, FilmParameters
+from beliefnest.suites.films.film_files import read_films
+from beliefnest.suites.films.film_inference import model_of, staged
+from beliefnest.suites.films.rating import Comparison, compared, rating_prompt, ratings_in
+from beliefnest.worlds.by_name import Worlds
+
+__all__ = ["course_in_words", "films_task", "like_inference", "minds_task"]
+
+
+def minds_task(scenario: str, *, conditions: int | list[int] | None, world: str, seed: int) -> Task:
+    """Return the task of a scenario's probes that infer; each is a sample.
+
+    Args:
+        scenario: Name of a built-in scenario, or path of a file.
+        conditions: Numbers of conditions; None for all.
+        world: Name of the world.
+        seed: Seed of the world.
+
+    Raises:
+        BeliefNestError: There is no such scenario, or no probe infers.
+    """
+    if conditions is None:
+        loaded: tuple[Scenario, ...] = Scenario.load_all(scenario)
+    else:
+        numbers = [conditions] if isinstance(conditions, int) else conditions
+        loaded = tuple(Scenario.load(scenario, number) for number in numbers)
+    samples = [
+        Sample(
+            input=probe.asked,
+            target="",
+            id=f"{scenario}-{each.condition or 0}-{number}",
+            metadata={
+                "scenario": scenario,
+                "condition": each.condition,
+                "probe": number,
+                "world": world,
+                "seed": seed,
+                "label": probe.label,
+                "path": probe.path,
+            },
+        )
+        for each in loaded
+        for number, probe in enumerate(each.probes)
+        if not probe.asks_model
+    ]
+    if not samples:
+        raise InputError(f"{scenario} has no probes with infer; give a scenario that infers")
+    return task_of(f"minds of {loaded[0].name}", samples, like_inference(), course_in_words())
+
+
+def films_task(file: str, limit: int | None) -> Task:
+    """Return the task of a file of films; each is a sample.
+
+    Args:
+        file: File of films, as `beliefnest suite food-trucks` takes it.
+        limit: Greatest number of films; None for all.
+
+    Raises:
+        InputError: There is no such file, or it is of another form.
+    """
+    films, _ = read_films(file)
+    samples = [
+        Sample(
+            input=f"film {film.name}",
+            target="",
+            id=film.name,
+            metadata={"file": str(Path(file).absolute()), "film": film.name, "group": film.group},
+        )
+        for film in films[:limit]
+    ]
+    return task_of("films", samples, like_inference(), course_in_words())
+
+
+class _Courses:
+    """Plays the courses of samples, one at a time, in worlds that stay open."""
+
+    def __init__(self) -> None:
+        self._turn = threading.Lock()
+        self._worlds = Worlds(0)
+        self._films: dict[str, tuple[dict[str, Film], FilmParameters]] = {}
+
+    def prompt(self, sample: Mapping[str, Any]) -> str:
+        """Return the course of a sample in words, with the questions."""
+        with self._played(sample) as (nest, path, infer):
+            return rating_prompt(nest, path, infer)
+
+    def compared(self, sample: Mapping[str, Any], answer: str) -> Comparison:
+        """Return the ratings in an answer beside exact inference."""
+        with self._played(sample) as (nest, path, infer):
+            inference = nest[path].infer(
+                infer.model,
+                since=infer.since,
+                until=infer.until,
+                ended=infer.ended,
+                smooth=infer.smooth,
+            )
+            ratings = ratings_in(answer, infer.model)
+            return compared(ratings, infer.model, Inferred.of(inference))
+
+    @contextmanager
+    def _played(self, sample: Mapping[str, Any]) -> Iterator[tuple[Nest, str, Inferring]]:
+        with self._turn:
+            if "film" in sample:
+                film, parameters = self._film(sample["file"], sample["film"])
+                model = model_of(film, parameters)
+                with staged(film) as nest:
+                    where = f"film {film.name}"
+                    yield nest, "/", Inferring(model, 0, None, film.ended, False, where)
+                return
+            scenario = Scenario.load(sample["scenario"], sample["condition"])
+            probe = scenario.probes[sample["probe"]]
+            assert probe.infer is not None
+            world, seed = sample["world"], sample["seed"]
+            with Nest.open(scenario, world, None, seed, self._worlds) as nest:
+                nest.play()
+                yield nest, probe.path, probe.infer
+
+    def _film(self, file: str, name: str) -> tuple[Film, FilmParameters]:
+        if file not in self._films:
+            films, parameters = read_films(file)
+            self._films[file] = {film.name: film for film in films}, parameters
+        by_name, parameters = self._films[file]
+        return by_name[name], parameters
+
+
+@solver
+def course_in_words() -> Solver:
+    """Replace the messages by the course as the observer saw it, and the questions."""
+    courses = _Courses()
+
+    async def solve(state: TaskState, generate: Generate) -> TaskState:
+        state.messages = [ChatMessageUser(content=await run_sync(courses.prompt, state.metadata))]
+        return state
+
+    return solve
+
+
+def _correlation(scores: list[SampleScore], about: About) -> float:
+    """Return Pearson's coefficient over all samples; nan where one side does not vary."""
+    told = [each.score.metadata or {} for each in scores]
+    pairs = np.array([pair for each in told for pair in each.get(about, [])]).reshape(-1, 2)
+    if not len(pairs) or (np.ptp(pairs, axis=0) < 1e-12).any():
+        return float("nan")
+    return float(np.corrcoef(pairs[:, 0], pairs[:, 1])[0, 1])
+
+
+@metric
+def desires_r() -> Metric:
+    """Correlate rated with inferred desires, over all samples."""
+
+    # Inspect reads the annotation, and passes scores with their metadata.
+    def value(scores: list[SampleScore]) -> float:
+        return _correlation(scores, "desires")
+
+    return value
+
+
+@metric
+def beliefs_r() -> Metric:
+    """Correlate rated with inferred initial beliefs, over all samples."""
+
+    def value(scores: list[SampleScore]) -> float:
+        return _correlation(scores, "beliefs")
+
+    return value
+
+
+@scorer(metrics=[mean(), stderr(), desires_r(), beliefs_r()])
+def like_inference() -> Scorer:
+    """Score 1 less the mean absolute error of the ratings against exact inference."""
+    courses = _Courses()
+
+    async def score(state: TaskState, target: Target) -> Score:
+        answer = state.output.completion
+        found = await run_sync(courses.compared, state.metadata, answer)
+        lines = [f"{about}: {_pairs_text(pairs)}" for about, pairs in found.pairs.items()]
+        if found.missing:
+            lines = [f"no rating from 1 to 7 for {', '.join(found.missing)}"]
+        return Score(
+            value=1 - found.error,
+            answer=answer,
+            explanation="\n".join(lines),
+            metadata={
+                "outcome": "no_answer" if found.missing else "rated",
+                "error": found.error,
+                **{about: [list(pair) for pair in pairs] for about, pairs in found.pairs.items()},
+            },
+        )
+
+    return score
+
+
+def _pairs_text(pairs: Any) -> str:
+    return ", ".join(f"{rated:.2f} (inferred {inferred:.2f})" for inferred, rated in pairs)

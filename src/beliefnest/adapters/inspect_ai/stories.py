@@ -1,0 +1,105 @@
+"""Tasks of suites: stories in words with questions; the answer is a container."""
+
+from pathlib import Path
+
+from anyio.to_thread import run_sync
+from inspect_ai import Task
+from inspect_ai.dataset import Sample
+from inspect_ai.scorer import Score, Scorer, Target, scorer
+from inspect_ai.solver import TaskState
+
+from beliefnest.adapters.inspect_ai.task_parts import metrics_by, score_of, task_of
+from beliefnest.errors import InputError
+from beliefnest.scenarios.questioning import parse_answer
+from beliefnest.suites.stories.data import Item, StoryItems, read_items
+from beliefnest.suites.stories.explaining import explain_answer
+from beliefnest.suites.stories.own import read_own
+from beliefnest.suites.stories.played_story import PlayedStory
+
+__all__ = ["NOWHERE", "story_answer", "suite_task"]
+
+NOWHERE = "in none of them"
+"""Answer option for a thing that is in no container."""
+
+_READERS = {"hi-tom": read_items, "stories": read_own}
+
+
+def suite_task(suite: str, file: str, limit: int | None) -> Task:
+    """Return the task of a suite; each question is a sample.
+
+    Args:
+        suite: `hi-tom` or `stories`.
+        file: File of stories, questions and answers, as for `beliefnest suite`.
+        limit: Greatest number of stories; None for all.
+
+    Raises:
+        InputError: The file is missing or has another form.
+    """
+    stories = _READERS[suite](Path(file))[:limit]
+    samples = [
+        _sample(suite, file, place, number, asked, item)
+        for place, asked in enumerate(stories)
+        for number, item in enumerate(asked.items)
+    ]
+    if not samples:
+        raise InputError(f"{file} has no questions")
+    return task_of(suite, samples, story_answer())
+
+
+def _options(asked: StoryItems) -> list[str]:
+    return [*dict.fromkeys(place.container for place in asked.story.places), NOWHERE]
+
+
+def _sample(
+    suite: str, file: str, place: int, number: int, asked: StoryItems, item: Item
+) -> Sample:
+    lines = [line.text for line in asked.story.lines]
+    options = _options(asked)
+    prompt = "\n".join(
+        [
+            "Read the story and answer the question about it.",
+            "",
+            *lines,
+            "",
+            f"Question: {item.question.text}",
+            f"Options: {', '.join(options)}",
+            "",
+            "End with a line of its own: `Answer:` and one of the options.",
+        ]
+    )
+    return Sample(
+        input=prompt,
+        target=item.expected or NOWHERE,
+        choices=None,
+        id=f"{place + 1}-{number + 1}",
+        metadata={
+            "suite": suite,
+            "file": str(Path(file).absolute()),
+            "story": place,
+            "item": number,
+            "order": item.question.order,
+            "options": options,
+        },
+    )
+
+
+@scorer(metrics=metrics_by("order"))
+def story_answer() -> Scorer:
+    """Score an answer by the expected container; explain the belief of the nest."""
+
+    async def score(state: TaskState, target: Target) -> Score:
+        answer, _ = parse_answer(state.output.completion, state.metadata["options"])
+        lines = await run_sync(_explanation, dict(state.metadata))
+        return score_of(ok=answer == target.text, answer=answer, lines=lines)
+
+    return score
+
+
+def _explanation(sample: dict[str, object]) -> tuple[str, ...]:
+    """Return the nest's answer to a question and the reasons for it, in lines."""
+    stories = _READERS[str(sample["suite"])](Path(str(sample["file"])))
+    asked = stories[int(str(sample["story"]))]
+    item = asked.items[int(str(sample["item"]))]
+    with PlayedStory.play(asked.story, asked=[item.question], knowing=asked.knowing) as played:
+        answer = played.answer(item.question)
+        return explain_answer(played, item.question, answer, item.expected or NOWHERE)

@@ -1,0 +1,124 @@
+"""Tasks of scenarios: their samples, prompts and scores."""
+
+import json
+from typing import Any
+
+from anyio.to_thread import run_sync
+from inspect_ai import Task
+from inspect_ai.dataset import Sample
+from inspect_ai.scorer import Score, Scorer, Target, scorer
+from inspect_ai.solver import Generate, Solver, TaskState, solver
+
+from beliefnest.adapters.inspect_ai.conversation import messages_of
+from beliefnest.adapters.inspect_ai.samples import Stage, requests_of
+from beliefnest.adapters.inspect_ai.task_parts import metrics_by, score_of, task_of
+from beliefnest.errors import InputError
+from beliefnest.scenarios.expected import expected_json
+from beliefnest.scenarios.loading import read_document
+from beliefnest.scenarios.records import probe_json
+from beliefnest.studies.cells import Cell, plan_cells
+from beliefnest.studies.design import Design
+
+__all__ = ["belief_prompt", "in_the_belief", "scenario_task"]
+
+_KEPT = ("intended", "opened", "arrived", "program", "ticks", "error", "log", "replies", "checks")
+
+
+def scenario_task(
+    scenario: str,
+    *,
+    conditions: int | list[int] | None,
+    variations: int | None,
+    world: str,
+    seed: int,
+) -> Task:
+    """Return the task of a scenario; each request of each probe of each cell is a sample.
+
+    Args:
+        scenario: Name of a built-in scenario, or path of a file.
+        conditions: Numbers of conditions; None for all.
+        variations: Number of variations to draw; None for the scenario as written.
+        world: Name of the world.
+        seed: Seed that selects the variations and, together with a cell, determines its seed.
+
+    Raises:
+        BeliefNestError: There is no such scenario, or an argument is invalid.
+    """
+    design = Design(
+        scenarios=(scenario,),
+        variations={} if variations is None else variations,
+        conditions=(conditions,) if isinstance(conditions, int) else _several(conditions),
+        world=world,
+        seed=seed,
+    )
+    plan = plan_cells(design, {scenario: read_document(scenario)})
+    samples = [sample for cell in plan.cells for sample in _samples(cell, scenario)]
+    if not samples:
+        why = plan.invalid[0].why if plan.invalid else "it has no probes with expectations"
+        raise InputError(f"{scenario} gives no samples: {why}")
+    return task_of(scenario, samples, in_the_belief(), belief_prompt())
+
+
+def _several(numbers: list[int] | None) -> tuple[int, ...] | None:
+    return None if numbers is None else tuple(numbers)
+
+
+def _samples(cell: Cell, scenario: str) -> list[Sample]:
+    key = cell.key
+    found = []
+    for number, probe in enumerate(requests_of(cell.scenario), start=1):
+        expected = expected_json(probe.expect)
+        asks = probe.task if probe.asks_for_program else probe.questions[0].question
+        about: dict[str, Any] = {
+            "scenario": scenario,
+            "condition": key.condition,
+            "case": "as written" if key.condition is None else f"condition {key.condition}",
+            "variation": dict(key.variation),
+            "world": key.setting["world"],
+            "seed": key.seed,
+            "request": number,
+            "label": probe.label,
+            "path": probe.path,
+            "acts_in": probe.acts_in,
+            "agent": probe.agent,
+            "expected": expected,
+        }
+        target = json.dumps(expected, sort_keys=True)
+        name = f"{key.name}-{number}"
+        found.append(Sample(input=asks, target=target, id=name, metadata=about))
+    return found
+
+
+@solver
+def belief_prompt() -> Solver:
+    """Replace the messages by the prompt that is rendered from the probe's belief."""
+    stage = Stage()
+
+    async def solve(state: TaskState, generate: Generate) -> TaskState:
+        messages = await run_sync(stage.prompt, state.metadata)
+        state.messages = messages_of(messages)
+        return state
+
+    return solve
+
+
+@scorer(metrics=metrics_by("case"))
+def in_the_belief() -> Scorer:
+    """Score an answer: run its program in the belief it is meant for, or judge its words."""
+    stage = Stage()
+
+    async def score(state: TaskState, target: Target) -> Score:
+        judged = await run_sync(stage.judged, state.metadata, state.output.completion)
+        outcome = judged.outcome
+        told = probe_json(outcome, "")
+        lines = [f"{outcome.outcome}: {outcome.why_not}" if outcome.why_not else outcome.outcome]
+        if judged.grounds:
+            lines += ["", f"What {outcome.probe.path} holds, and why:", *judged.grounds]
+        return score_of(
+            ok=outcome.ok,
+            answer=outcome.program or state.output.completion,
+            lines=lines,
+            metadata={"outcome": outcome.outcome, **{key: told[key] for key in _KEPT}},
+        )
+
+    return score

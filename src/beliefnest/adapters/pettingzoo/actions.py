@@ -1,0 +1,170 @@
+"""Actions in a structured space, which stand for calls of skills."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from beliefnest.adapters.pettingzoo.layout import ObservationLayout, Phrases
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.skills.calls import Call
+from beliefnest.world.values import Position
+
+__all__ = ["MOST_ITEMS", "Call", "Calls"]
+
+_LONGEST = 200
+"""Greatest number of characters of an action in a message."""
+
+MOST_ITEMS = 64
+"""Greatest number of items of one kind that one call moves."""
+
+_NEEDS: Mapping[str, tuple[str, ...]] = {
+    "doNothing": (),
+    "goToPosition": ("position",),
+    "openContainer": ("container",),
+    "getItemFromChest": ("container", "item", "count"),
+    "depositItemIntoChest": ("container", "item", "count"),
+    "openDoor": ("door",),
+    "closeDoor": ("door",),
+    "writeSign": ("sign", "phrase"),
+    "giveItemToOther": ("agent", "item", "count"),
+    "say": ("phrase",),
+    "whisper": ("agent", "phrase"),
+}
+"""Parts of an action that each skill reads; it ignores the others."""
+
+_KINDS = {
+    "container": "containers",
+    "door": "doors",
+    "sign": "signs",
+    "item": "items",
+    "agent": "agents",
+    "phrase": "phrases",
+}
+"""List of the layout that each part of an action indexes."""
+
+
+class Calls:
+    """Conversion of actions to calls and of names to actions.
+
+    Args:
+        layout: Order of agents, items and other things.
+        phrases: Utterances with their claims.
+
+    Attributes:
+        skills: Names of the skills that are possible here; an action's `skill` is an index into
+            them.
+        parts: Number of values of each part of an action; `position` has three numbers instead.
+    """
+
+    def __init__(self, layout: ObservationLayout, phrases: Phrases) -> None:
+        self._layout = layout
+        self._phrases = phrases
+        sizes: dict[str, int] = {part: len(getattr(layout, kind)) for part, kind in _KINDS.items()}
+        sizes |= {"position": 1, "count": MOST_ITEMS}
+        # An agent cannot give or whisper to itself.
+        sizes["agent"] = len(layout.agents) if len(layout.agents) > 1 else 0
+        self.skills = tuple(
+            name for name, needs in _NEEDS.items() if all(sizes[part] for part in needs)
+        )
+        used = {part for name in self.skills for part in _NEEDS[name]}
+        self.parts = {part: size for part, size in sizes.items() if part in used}
+
+    def action(self, skill: str, given: Mapping[str, object]) -> dict[str, Any]:
+        """Return an action of the space from names and positions.
+
+        Args:
+            skill: Name of the skill.
+            given: `position`, `container`, `door` and `sign` as block positions; `item`, `agent`
+                and `phrase` as names or texts; `count` (default 1).
+
+        Raises:
+            UnknownNameError: There is no such skill, or no such thing.
+            InputError: A part is missing, invalid or not used by the skill.
+        """
+        if skill not in self.skills:
+            raise UnknownNameError(
+                f"there is no skill {skill!r} here; skills are {', '.join(self.skills)}"
+            )
+        needs = _NEEDS[skill]
+        parts = {"count": 1, **given} if "count" in needs else dict(given)
+        if parts.keys() != set(needs):
+            raise InputError(f"{skill} takes {', '.join(needs) or 'nothing'}; got {sorted(parts)}")
+        action: dict[str, Any] = {
+            part: np.zeros(3, np.int64) if part == "position" else np.int64(part == "count")
+            for part in self.parts
+        }
+        for part, value in parts.items():
+            action[part] = self._numbered(part, value)
+        return {"skill": np.int64(self.skills.index(skill)), **action}
+
+    def _numbered(self, part: str, value: Any) -> Any:
+        if part == "position":
+            try:
+                x, y, z = map(int, value)
+            except (TypeError, ValueError, OverflowError):
+                raise InputError(f"position is {value!r}; give three whole numbers") from None
+            place = (x, y, z)
+            if place not in self._layout.box:
+                box = self._layout.box
+                raise InputError(f"{place} lies outside the box {box.low}..{box.high}")
+            return np.array(self._layout.box.index(place), dtype=np.int64)
+        if part == "count":
+            if not isinstance(value, int | np.integer) or not 1 <= value <= MOST_ITEMS:
+                raise InputError(f"count is {value!r}; give 1 to {MOST_ITEMS}")
+            return np.int64(value)
+        return np.int64(self._layout.number(_KINDS[part], value))
+
+    def read(self, action: Mapping[str, Any]) -> Call:
+        """Return the call that an action stands for.
+
+        Raises:
+            InputError: The action is not in the space.
+        """
+        try:
+            skill = self.skills[_index(action["skill"])]
+            return Call(skill, self._args(skill, action))
+        except (KeyError, IndexError, TypeError, ValueError, OverflowError) as error:
+            raise InputError(
+                f"{repr(action)[:_LONGEST]} is not in the action space ({error!r}); "
+                "sample action_space() or use action()"
+            ) from None
+
+    def _args(self, skill: str, action: Mapping[str, Any]) -> tuple[Any, ...]:
+        def named(part: str) -> Any:
+            return getattr(self._layout, _KINDS[part])[_index(action[part])]
+
+        args: tuple[Any, ...] = ()
+        match skill:
+            case "goToPosition":
+                args = (self._position(action["position"]), 0)
+            case "openContainer":
+                args = (named("container"),)
+            case "getItemFromChest" | "depositItemIntoChest":
+                args = (named("container"), {named("item"): _index(action["count"])})
+            case "openDoor" | "closeDoor":
+                args = (named("door"),)
+            case "writeSign":
+                args = (named("sign"), named("phrase"))
+            case "giveItemToOther":
+                args = (named("agent"), named("item"), _index(action["count"]))
+            case "say" | "whisper":
+                phrase = named("phrase")
+                claims = [claim.plain() for claim in self._phrases[phrase]]
+                whom = (named("agent"),) if skill == "whisper" else ()
+                args = (*whom, phrase, *([claims] if claims else []))
+        return args
+
+    def _position(self, index: Any) -> Position:
+        low, shape = self._layout.box.low, self._layout.box.shape
+        x, y, z = (int(value) for value in index)
+        if not all(0 <= value < size for value, size in zip((x, y, z), shape, strict=True)):
+            raise IndexError(f"position {(x, y, z)} of {shape}")
+        return (low[0] + x, low[1] + y, low[2] + z)
+
+
+def _index(value: Any) -> int:
+    number = int(value)
+    if number < 0:
+        raise IndexError(f"{number} is below 0")
+    return number

@@ -1,0 +1,348 @@
+"""Scenario as a multi-agent environment with PettingZoo's parallel interface."""
+
+import functools
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, cast
+
+import numpy as np
+from gymnasium import spaces
+from pettingzoo import ParallelEnv
+
+from beliefnest.adapters.pettingzoo.acting import Acting, Deed, ProgramActing, SkillActing
+from beliefnest.adapters.pettingzoo.actions import MOST_ITEMS, Call, Calls
+from beliefnest.adapters.pettingzoo.layout import ObservationLayout, Phrases
+from beliefnest.belief.plain import belief_json
+from beliefnest.belief.view import State
+from beliefnest.errors import InputError, PathError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.setting import Senses
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.limits import checked_seed
+from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
+from beliefnest.worlds.by_name import Worlds, check_world
+
+__all__ = ["BeliefEnv", "BeliefSpace", "Options"]
+
+_LONGEST_PROGRAM = 10_000
+_LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
+
+Told = dict[str, Any]
+"""Info dictionary of one agent."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options of an environment; the arguments of `parallel_env`, with the same names."""
+
+    world: str = "scripted"
+    actions: Literal["skills", "programs"] = "skills"
+    observations: Literal["arrays", "dict"] = "arrays"
+    agents: tuple[str, ...] | None = None
+    nested: int | tuple[str, ...] = ()
+    phrases: Phrases | Sequence[str] = ()
+    items: tuple[str, ...] = ()
+    reward: Callable[[Nest, str], float] | None = None
+    ends: Callable[[Nest], bool] | None = None
+    max_steps: int = 100
+    step_ticks: int | None = None
+    timeout_ticks: int = 1200
+    plays_script: bool = False
+    senses: Senses = "world"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        check_world(self.world, servers=False)
+        if self.senses not in ("world", "percepts"):
+            raise InputError(f"senses is {self.senses!r}; it is 'world' or 'percepts'")
+        if self.actions not in ("skills", "programs"):
+            raise InputError(f"actions is {self.actions!r}; it is 'skills' or 'programs'")
+        if self.observations not in ("arrays", "dict"):
+            raise InputError(f"observations is {self.observations!r}; it is 'arrays' or 'dict'")
+        checked_seed(self.seed)
+        for name, number in (("max_steps", self.max_steps), ("timeout_ticks", self.timeout_ticks)):
+            _check_count(name, number, "at least 1")
+        for name, function in (("reward", self.reward), ("ends", self.ends)):
+            if function is not None and not callable(function):
+                raise InputError(f"{name} is {function!r}; give a function, or None")
+        if self.step_ticks is not None:
+            _check_count("step_ticks", self.step_ticks, "at least 1, or None")
+            if self.actions == "programs" or self.world != "scripted":
+                raise InputError(
+                    "step_ticks is for calls of skills in the scripted world; elsewhere a step "
+                    "ends with the last program: leave it out"
+                )
+
+    @property
+    def said(self) -> Phrases:
+        """Utterances with their claims."""
+        if isinstance(self.phrases, Mapping):
+            return self.phrases
+        return dict.fromkeys(self.phrases, ())
+
+
+def _check_count(name: str, number: object, wanted: str) -> None:
+    if not isinstance(number, int) or number < 1:
+        raise InputError(f"{name} is {number!r}; it must be {wanted}")
+
+
+class BeliefSpace(spaces.Space[dict[str, Any]]):
+    """Space of beliefs as plain data: the objects of `beliefnest show --json`, with their bases."""
+
+    def contains(self, x: Any) -> bool:
+        """Return True if a value is such an object."""
+        return isinstance(x, dict) and {"containers", "agents", "chat"} <= x.keys()
+
+    def sample(self, mask: Any = None, probability: Any = None) -> dict[str, Any]:
+        """Return the belief of an agent that knows nothing."""
+        return {"containers": {}, "agents": {}, "chat": [], "addressees": [], "thoughts": []}
+
+    @property
+    def is_np_flattenable(self) -> bool:
+        """False: the space has no fixed size."""
+        return False
+
+
+class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no type information
+    """A scenario in which agents act and get their own beliefs as observations.
+
+    Create one with `beliefnest.adapters.pettingzoo.parallel_env`, which explains the arguments.
+
+    Attributes:
+        possible_agents: Agents that can act, sorted.
+        agents: Agents that still act in this episode.
+        layout: Meaning of the indices in arrays and actions.
+        skills: Names of the skills; an action's `skill` is an index into them.
+        nest: Nest of this episode, for any further query.
+    """
+
+    metadata = {"name": "beliefnest_v0", "render_modes": [], "is_parallelizable": True}  # noqa: RUF012 - as PettingZoo declares it
+    render_mode = None
+
+    def __init__(self, scenario: Scenario, options: Options) -> None:
+        self._scenario, self._options = scenario, options
+        self.layout = ObservationLayout.of(scenario.setting, options.said, options.items)
+        self._calls = Calls(self.layout, options.said)
+        self.skills = self._calls.skills
+        self.possible_agents = sorted(options.agents or self.layout.agents)
+        for name in self.possible_agents:
+            if name not in scenario.setting.snapshot.agents:
+                there = ", ".join(sorted(scenario.setting.snapshot.agents))
+                raise PathError(f"no agent {name!r} at the start; agents are {there}")
+        self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
+        self.agents: list[str] = []
+        self._seed = options.seed - 1
+        self._worlds: Worlds | None = None
+        self._nest: Nest | None = None
+        self._acting: Acting | None = None
+        self._steps = 0
+        self._heard: dict[str, int] = {}
+
+    @property
+    def nest(self) -> Nest:
+        """Nest of this episode.
+
+        Raises:
+            InputError: No episode has begun.
+        """
+        if self._nest is None:
+            raise InputError("no episode has begun; call reset() first")
+        return self._nest
+
+    @property
+    def unwrapped(self) -> "BeliefEnv":
+        """The environment itself."""
+        return self
+
+    @functools.cache  # noqa: B019 - the interface wants the same space for an agent each time
+    def observation_space(self, agent: str) -> spaces.Space[Any]:
+        """Return the space of an agent's observations; the same object on each call."""
+        if self._options.observations == "dict":
+            return BeliefSpace()
+        return spaces.Dict(
+            {
+                name: spaces.Box(low, high, shape, cast(Any, dtype))
+                for name, (shape, dtype, low, high) in self.layout.shapes().items()
+            }
+        )
+
+    @functools.cache  # noqa: B019 - as above
+    def action_space(self, agent: str) -> spaces.Space[Any]:
+        """Return the space of an agent's actions; the same object on each call."""
+        if self._options.actions == "programs":
+            return spaces.Text(_LONGEST_PROGRAM, min_length=0, charset=_LETTERS)
+        parts: dict[str, spaces.Space[Any]] = {"skill": spaces.Discrete(len(self.skills))}
+        for part, size in self._calls.parts.items():
+            if part == "position":
+                parts[part] = spaces.MultiDiscrete(np.array(self.layout.box.shape))
+            elif part == "count":
+                parts[part] = spaces.Discrete(MOST_ITEMS, start=1)
+            else:
+                parts[part] = spaces.Discrete(size)
+        return spaces.Dict(parts)
+
+    def action(self, skill: str, **parts: object) -> dict[str, Any]:
+        """Return an action of the structured space from names and positions.
+
+        Args:
+            skill: Name of a skill.
+            parts: Its arguments: `position`, `container`, `door` and `sign` as block positions;
+                `item`, `agent` and `phrase` as names or texts; `count`.
+
+        Raises:
+            UnknownNameError: There is no such skill, or no such thing.
+            InputError: A part is missing, invalid or not used by the skill.
+        """
+        return self._calls.action(skill, parts)
+
+    def reset(
+        self, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[dict[str, Any], dict[str, Told]]:
+        """Begin an episode.
+
+        Args:
+            seed: Seed of every random number; None for the last seed plus one.
+            options: Ignored.
+
+        Raises:
+            InputError: The seed is not a whole number of 64 bits; the current episode continues.
+            BodyError: The world could not be started.
+            ProgramError: The script cannot be played.
+        """
+        self._seed = self._seed + 1 if seed is None else checked_seed(seed)
+        self._end_episode()
+        if self._worlds is None:
+            self._worlds = Worlds(0)
+        chosen = self._options
+        nest = Nest.open(self._scenario, chosen.world, None, self._seed, self._worlds)
+        self._nest = nest
+        if chosen.plays_script:
+            nest.play()
+        if chosen.actions == "skills" and chosen.world == "scripted":
+            self._acting = SkillActing(nest, chosen.step_ticks, chosen.timeout_ticks, chosen.senses)
+        else:
+            self._acting = ProgramActing(nest, chosen.timeout_ticks, chosen.senses)
+        self.agents = list(self.possible_agents)
+        self._steps = 0
+        self._heard = {}
+        return self._told({agent: Deed() for agent in self.agents}, spoken=True)
+
+    def step(
+        self, actions: Mapping[str, Any]
+    ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Told]]:
+        """Let agents act together; agents without an action begin nothing.
+
+        Raises:
+            InputError: An action is not in the space, or its agent does not act; nothing was
+                done.
+            BodyError: The Minecraft side failed.
+        """
+        if self._acting is None:
+            raise InputError("no episode has begun; call reset() first")
+        if not isinstance(actions, Mapping):
+            raise InputError(
+                f"actions are {type(actions).__name__}; give a dict of agents' names and actions"
+            )
+        for agent in actions:
+            if agent not in self.agents:
+                raise InputError(f"{agent!r} does not act now; agents are {self.agents}")
+        if not self.agents:
+            return {}, {}, {}, {}, {}
+        nothing = "" if self._options.actions == "programs" else Call("doNothing")
+        read = {agent: self._read(actions.get(agent, nothing)) for agent in self.agents}
+        step = self._acting.act(read)
+        self._steps += 1
+        observations, infos = self._told(step.deeds, spoken=step.spoken)
+        nest, reward, ends = self.nest, self._options.reward, self._options.ends
+        rewards = {
+            agent: 0.0 if reward is None else float(reward(nest, agent)) for agent in self.agents
+        }
+        ended = ends is not None and bool(ends(nest))
+        terminations = dict.fromkeys(self.agents, ended)
+        truncations = dict.fromkeys(self.agents, self._steps >= self._options.max_steps)
+        if ended or self._steps >= self._options.max_steps:
+            self.agents = []
+        return observations, rewards, terminations, truncations, infos
+
+    def render(self) -> None:
+        """Do nothing; `nest.figure()` draws any belief."""
+
+    def state(self) -> Any:
+        """Return the real world in the form of an observation."""
+        return self._form(self.nest["/"].state, ())
+
+    def close(self) -> None:
+        """End the episode and close the world."""
+        self._end_episode()
+        if self._worlds is not None:
+            self._worlds.__exit__(None, None, None)
+            self._worlds = None
+
+    def _end_episode(self) -> None:
+        if self._nest is not None:
+            self._nest.close()
+        self._nest = self._acting = None
+        self.agents = []
+
+    def _read(self, action: Any) -> Call | str:
+        if isinstance(action, Call):
+            return action
+        if self._options.actions == "programs":
+            if not isinstance(action, str):
+                raise InputError(f"a program is a text, not {type(action).__name__}")
+            return action
+        return self._calls.read(action)
+
+    def _told(
+        self, deeds: Mapping[str, Deed], *, spoken: bool
+    ) -> tuple[dict[str, Any], dict[str, Told]]:
+        """Return the observations and infos of all agents."""
+        infos: dict[str, Told] = {
+            agent: {"error": deeds[agent].error, "busy": deeds[agent].busy} for agent in self.agents
+        }
+        # Deepest paths first: computing a belief also computes those above it.
+        for path in self._nested:
+            agent = path[0]
+            if agent in infos:
+                beliefs = infos[agent].setdefault("beliefs", {})
+                beliefs[path_text(path)] = self._belief(path, spoken=spoken)
+        return {agent: self._belief((agent,), spoken=spoken) for agent in self.agents}, infos
+
+    def _belief(self, path: BeliefPath, *, spoken: bool) -> Any:
+        text = path_text(path)
+        state = self.nest[text].state
+        lines: Sequence[tuple[int, str, str]] = ()
+        if spoken:
+            known = self._heard.get(text, 0)
+            self._heard[text] = len(state.chat)
+            lines = state.chat[known:]
+        return self._form(state, lines)
+
+    def _form(self, state: State, lines: Sequence[tuple[int, str, str]]) -> Any:
+        if self._options.observations == "dict":
+            return {"tick": state.tick, **belief_json(state)}
+        return self.layout.arrays(state, lines)
+
+
+def _nested(
+    nested: int | Sequence[str], acting: Sequence[str], agents: Sequence[str]
+) -> tuple[tuple[str, ...], ...]:
+    """Return the paths of the beliefs for the infos, the deepest first."""
+    if isinstance(nested, int):
+        found = {
+            (first, *rest)
+            for first in acting
+            for depth in range(1, nested)
+            for rest in itertools.product(agents, repeat=depth)
+            if normalised((first, *rest)) == (first, *rest)
+        }
+    else:
+        found = {parse_path(path, agents) for path in nested}
+        for path in found:
+            if len(path) < 2 or path[0] not in acting:
+                raise PathError(
+                    f"{path_text(path)!r} is not a belief of an acting agent about another's; "
+                    f"name one such as /{acting[0]}/{agents[-1]}"
+                )
+    return tuple(sorted(found, key=lambda path: (-len(path), path)))

@@ -1,0 +1,46 @@
+"""Record of the events of a timeline that each node perceived."""
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["PerceivedEventTable"]
+
+
+class PerceivedEventTable:
+    """Bit table of perceived events: one row for each event, one bit for each node of a forest."""
+
+    def __init__(self) -> None:
+        self._bits = np.zeros((64, 1), dtype=np.uint8)
+
+    def note(self, first: int, perceived: npt.NDArray[np.bool_]) -> None:
+        """Store `perceived`, bool (events, nodes), for the events from number `first` on."""
+        count, nodes = perceived.shape
+        self._widen(first + count, nodes)
+        packed = np.packbits(perceived, axis=1)
+        self._bits[first : first + count, : packed.shape[1]] = packed
+
+    def set(self, node: int, first: int, perceived: npt.NDArray[np.bool_]) -> None:
+        """Store for one node which events it perceived, from number `first` on."""
+        self._widen(first + len(perceived), node + 1)
+        column = self._bits[first : first + len(perceived), node >> 3]
+        bit = np.uint8(128 >> (node & 7))
+        column &= ~bit
+        column |= perceived.astype(np.uint8) * bit
+
+    def of(self, node: int, count: int) -> npt.NDArray[np.bool_]:
+        """Return bool (count,): which of the first `count` events a node perceived."""
+        if node >> 3 >= self._bits.shape[1]:
+            return np.zeros(count, dtype=np.bool_)
+        perceived: npt.NDArray[np.bool_] = (
+            self._bits[:count, node >> 3] & np.uint8(128 >> (node & 7))
+        ) > 0
+        return np.concatenate([perceived, np.zeros(count - len(perceived), dtype=np.bool_)])
+
+    def _widen(self, events: int, nodes: int) -> None:
+        height, width = self._bits.shape
+        needed = -(-nodes // 8)
+        if events > height or needed > width:
+            size = (max(height, 2 * events if events > height else 0), max(width, needed))
+            grown = np.zeros(size, dtype=np.uint8)
+            grown[:height, :width] = self._bits
+            self._bits = grown

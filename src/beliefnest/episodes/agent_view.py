@@ -1,0 +1,331 @@
+"""View of a policy: its agent's own belief, the beliefs below it, and the task."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Protocol
+
+from beliefnest.belief.view import State
+from beliefnest.episodes.decided import Ended
+from beliefnest.errors import PathError
+from beliefnest.nest.acting.imagination import Imagination
+from beliefnest.nest.face.shown import ShownSimulator
+from beliefnest.scenarios.goals import Goal
+from beliefnest.world.claims import Claim
+from beliefnest.world.values import Position
+
+if TYPE_CHECKING:  # Importing models and tasks takes long.
+    from beliefnest.episodes.task import Task
+    from beliefnest.llm.messages import Model
+    from beliefnest.minds.inference import Inference
+    from beliefnest.minds.mind_model import MindModel
+
+__all__ = ["GO_ON", "AgentView", "Brief", "Policy", "RoundFacts"]
+
+GO_ON = "go on"
+"""Text that a policy returns instead of a program to continue its last one, which was cut."""
+
+
+@dataclass(frozen=True, slots=True)
+class Brief:
+    """Knowledge of one agent about a task; the task's description is not part of it.
+
+    Attributes:
+        task: Name of the task.
+        agents: Names of all agents, sorted.
+        goals: Goals that the agent knows: of all agents, or of itself alone.
+        possible_goals: Goals that other agents may have, by agent and name; empty where all goals
+            are known. Nothing is known of the goal of an agent that is in neither.
+        talk: Agents that may speak.
+        rounds: Number of rounds.
+        round_ticks: Ticks after which programs are cut.
+        turns: True if agents act in turn in a round, each for `round_ticks`.
+        pace: Ticks per block on foot.
+        places: Named places.
+        seed: Seed of the random numbers of policies.
+    """
+
+    task: str
+    agents: tuple[str, ...]
+    goals: Mapping[str, Goal]
+    possible_goals: Mapping[str, Mapping[str, Goal]]
+    talk: tuple[str, ...]
+    rounds: int
+    round_ticks: int
+    turns: bool
+    pace: int
+    places: Mapping[str, Position]
+    seed: int
+
+    @classmethod
+    def of(cls, task: "Task", seed: int, agent: str | None = None) -> "Brief":
+        """Return the knowledge of an agent about a task that is played with a seed.
+
+        Args:
+            task: The task.
+            seed: Seed of the random numbers of policies.
+            agent: Name of the agent; None: one that knows all goals.
+        """
+        if agent is None or task.form.goals_known:
+            goals = {name: task.goal_of(name) for name in task.agents}
+            possible: Mapping[str, Mapping[str, Goal]] = {}
+        else:
+            goals = {agent: task.told_goal(agent)}
+            possible = {name: goals for name, goals in task.possible_goals.items() if name != agent}
+        return cls(
+            task=task.name,
+            agents=task.agents,
+            goals=goals,
+            possible_goals=possible,
+            talk=tuple(task.form.talk),
+            rounds=task.form.rounds,
+            round_ticks=task.form.round_ticks,
+            turns=task.form.play == "turns",
+            pace=task.form.pace,
+            places=task.scenario.setting.places,
+            seed=seed,
+        )
+
+    @property
+    def whole_round(self) -> int:
+        """Return the number of ticks from one round to the next."""
+        return self.round_ticks * (len(self.agents) if self.turns else 1)
+
+    @property
+    def hides_goals(self) -> bool:
+        """True if the agent does not know all goals."""
+        return len(self.goals) < len(self.agents)
+
+    @property
+    def considered(self) -> Sequence[Goal]:
+        """Return all goals that agents have or may have, as far as the agent knows."""
+        possible = [goal for goals in self.possible_goals.values() for goal in goals.values()]
+        return [*self.goals.values(), *possible]
+
+    def words(self, agent: str) -> str:
+        """Return the goal of an agent in words, or those that it may have."""
+        if agent in self.goals:
+            return str(self.goals[agent])
+        possible = self.possible_goals.get(agent, {})
+        told = " or ".join(f"({goal})" for goal in possible.values())
+        return f"one of these, it is not known which: {told}" if told else "it is not known what"
+
+    def supposing(self, goals: Mapping[str, Goal]) -> "Brief":
+        """Return the brief for supposed goals of others that everybody knows.
+
+        Args:
+            goals: Supposed goals by agent. An agent whose goal is neither known nor supposed is
+                assumed to have none.
+        """
+        known = {name: goals.get(name, Goal()) for name in self.agents} | dict(self.goals)
+        helped = {
+            name: goal if goal.helps is None else known[goal.helps] for name, goal in known.items()
+        }
+        return replace(self, goals=helped, possible_goals={})
+
+
+class AgentView:
+    """Knowledge of an agent at the beginning of a round: its own belief and the beliefs below.
+
+    Args:
+        agent: Name of the agent.
+        brief: Common knowledge about the task.
+        round: Number of the round that begins, from 0.
+        last: End of the agent's latest program.
+        own: Simulator of the agent's belief.
+        imagine: Function that returns the belief as a separate world, down to a depth.
+        noting: Function that wraps a model so that the run records its requests.
+        before: The agent's programs of earlier rounds.
+
+    Attributes:
+        agent: Name of the agent.
+        brief: Common knowledge about the task.
+        round: Number of the round that begins, from 0.
+        last: End of the agent's latest program.
+        before: The agent's programs of earlier rounds, of any policy; an empty text: no program.
+    """
+
+    def __init__(
+        self,
+        agent: str,
+        brief: Brief,
+        round: int,
+        last: Ended,
+        own: ShownSimulator,
+        imagine: Callable[[int], Imagination],
+        noting: "Callable[[Model], Model]",
+        before: Sequence[str],
+    ) -> None:
+        self.agent = agent
+        self.brief = brief
+        self.round = round
+        self.last = last
+        self._own = own
+        self._imagine = imagine
+        self._noting = noting
+        self.before = before
+
+    @property
+    def tick(self) -> int:
+        """Tick at which the round begins."""
+        return self._own.tick
+
+    @property
+    def ticks_left(self) -> int:
+        """Return the ticks until the end of the last round or the deadline of the goal."""
+        return self.ticks_left_for(self.goal)
+
+    def ticks_left_for(self, goal: Goal) -> int:
+        """Return the ticks until the end of the last round or the deadline of a goal."""
+        rounds, length = self.brief.rounds, self.brief.whole_round
+        last = min(rounds * length, goal.ticks or rounds * length)
+        return max(0, last - self.round * length)
+
+    @property
+    def goal(self) -> Goal:
+        """Goal of the agent."""
+        return self.brief.goals[self.agent]
+
+    @property
+    def may_speak(self) -> bool:
+        """True if others can hear what the agent says."""
+        return self.agent in self.brief.talk
+
+    @property
+    def state(self) -> State:
+        """Return the belief of the agent."""
+        return self._own.state
+
+    @property
+    def heard(self) -> Sequence[tuple[int, str, str]]:
+        """Return utterances of others since the agent's last decision: (tick, speaker, text)."""
+        since = self.tick - self.brief.whole_round if self.round else -1
+        return [
+            (tick, speaker, text)
+            for tick, speaker, text in self.state.chat
+            if tick > since and speaker != self.agent
+        ]
+
+    @property
+    def claims(self) -> Sequence[tuple[int, str, Claim]]:
+        """Claims that others made in its hearing, oldest first: tick, speaker, claim."""
+        return [each for each in self._own.heard_claims if each[1] != self.agent]
+
+    def infer(self, model: "MindModel", *agents: str) -> "Inference":
+        """Infer what an agent wants from what the agent of the view perceived of its course.
+
+        Args:
+            model: The hypotheses.
+            agents: Whose belief is read in place of its own: `infer(model, "bob")` plans as one
+                does who believes what Bob is believed to believe.
+
+        Raises:
+            InputError: The model does not fit what it perceived.
+            PathError: There is no such agent.
+        """
+        return self._below(agents).infer(model)
+
+    def about(self, *agents: str) -> State:
+        """Return a belief below the agent's own, such as `about("bob", "anne")`.
+
+        Raises:
+            PathError: An agent does not exist.
+        """
+        return self._below(agents).state
+
+    def _below(self, agents: Sequence[str]) -> ShownSimulator:
+        simulator = self._own
+        for agent in agents:
+            if agent not in self._own.state.agents:
+                raise PathError(f"there is no agent {agent!r} in {sorted(self._own.state.agents)}")
+            simulator = simulator.child(agent)
+        return simulator
+
+    def imagine(self, depth: int = 1) -> Imagination:
+        """Return the agent's belief as a separate world for trying plans; it is not recorded.
+
+        Args:
+            depth: Depth down to which beliefs are tracked in it.
+        """
+        return self._imagine(depth)
+
+    def render(self, template: str, depth: int = 0, **variables: object) -> str:
+        """Return the text of a prompt template, filled from its belief.
+
+        Args:
+            template: Text of the template. `branch` is the belief, `view` the other facts
+                (`RoundFacts`). `about` maps texts such as `bob` or `bob/anne` to the beliefs of
+                others as the agent believes them; filters accept these like `branch`.
+            depth: Greatest depth of `about`.
+            variables: Further variables.
+
+        Raises:
+            TemplateError: The template is wrong.
+        """
+        about: dict[str, ShownSimulator] = {}
+        level: list[tuple[tuple[str, ...], ShownSimulator]] = [((), self._own)]
+        for _ in range(depth):
+            level = [
+                ((*path, name), simulator.child(name))
+                for path, simulator in level
+                for name in self.brief.agents
+                if name != (path[-1] if path else self._own.owner)
+            ]
+            about |= {"/".join(path): simulator for path, simulator in level}
+        return self._own.render(template, view=RoundFacts.of(self), about=about, **variables)
+
+    def noting(self, model: "Model") -> "Model":
+        """Return a model whose conversation the run records."""
+        return self._noting(model)
+
+
+@dataclass(frozen=True, slots=True)
+class RoundFacts:
+    """Facts for templates besides the belief.
+
+    Attributes:
+        agent: Name of the agent.
+        goal: Goal of the agent, in words.
+        goals: Goals of all agents, known or possible, in words.
+        may_speak: True if others can hear what the agent says.
+        round: Number of the round, from 1.
+        rounds: Number of rounds.
+        round_ticks: Ticks after which programs are cut.
+        last: End of the agent's latest program.
+    """
+
+    agent: str
+    goal: str
+    goals: Mapping[str, str]
+    may_speak: bool
+    round: int
+    rounds: int
+    round_ticks: int
+    last: Ended
+
+    @classmethod
+    def of(cls, view: AgentView) -> "RoundFacts":
+        """Return the facts of a view."""
+        brief = view.brief
+        return cls(
+            view.agent,
+            str(view.goal),
+            {name: brief.words(name) for name in brief.agents},
+            view.may_speak,
+            view.round + 1,
+            brief.rounds,
+            brief.round_ticks,
+            view.last,
+        )
+
+
+class Policy(Protocol):
+    """Protocol of policies, which decide what an agent does."""
+
+    def act(self, view: AgentView) -> str:
+        """Return the agent's program for the round.
+
+        An empty text means that the agent does nothing; `GO_ON` continues its last program.
+
+        Args:
+            view: Knowledge of the agent.
+        """

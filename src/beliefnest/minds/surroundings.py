@@ -1,0 +1,199 @@
+"""Scenes: what surrounds a modelled agent at one moment, from which stages are made."""
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Mapping, Sequence
+from functools import cached_property, lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.minds.alternatives import Worlds, middle_of
+from beliefnest.minds.mind_model import Goal
+from beliefnest.minds.stage import Stage
+from beliefnest.minds.ways import Ways, walkable, ways_from
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Items, Position
+
+__all__ = ["Scene"]
+
+_MOST_STAGES = 64
+
+
+class Scene:
+    """All alternatives at one moment, with what an agent may want in them.
+
+    Args:
+        registry: Names and shapes of blocks.
+        worlds: The alternatives.
+        goals: Goals by name.
+        doubted: Containers whose contents the alternatives set.
+        diagonal: Whether steps lead to diagonal neighbours too.
+        key: Digest of all of these and of what the look of agents depends on.
+    """
+
+    def __init__(
+        self,
+        registry: Registry,
+        worlds: Worlds,
+        goals: Mapping[str, Goal],
+        doubted: Sequence[Position],
+        *,
+        diagonal: bool,
+        key: bytes,
+    ) -> None:
+        self.worlds, self._registry, self._goals = worlds, registry, goals
+        self._doubted, self._diagonal, self._key = tuple(doubted), diagonal, key
+        self._stages: dict[Position, Stage] = {}
+
+    def with_worlds(self, worlds: Worlds, key: bytes) -> "Scene":
+        """Return a scene of other alternatives, with a digest of how they differ from these."""
+        return Scene(
+            self._registry,
+            worlds,
+            self._goals,
+            self._doubted,
+            diagonal=self._diagonal,
+            key=self._key + key,
+        )
+
+    def stage(self, *cells: Position) -> Stage:
+        """Return the stage of all cells that can be got to from some."""
+        for known in self._stages.values():
+            if all(cell in known.index for cell in cells):
+                return known
+        ways = ways_from(self.worlds.box, self._walks, cells, diagonal=self._diagonal)
+        digest = hashlib.blake2b(self._key)
+        digest.update(repr(ways.cells).encode())
+        digest.update(ways.moves.tobytes())
+        made = _stages().get(digest.digest())
+        if made is None:
+            made = self._made(ways)
+            _stages().put(digest.digest(), made)
+        self._stages[cells[0]] = made
+        return made
+
+    def can_stand(self, cell: Position) -> bool:
+        """Return whether an agent can stand in a cell in any alternative."""
+        box = self.worlds.box
+        return cell in box and any(bool(walk[box.index(cell)]) for walk in self._walks)
+
+    def has_unknown_floor(self, cell: Position) -> bool:
+        """Return whether the block below a cell is unknown in all alternatives."""
+        box, below = self.worlds.box, (cell[0], cell[1] - 1, cell[2])
+        return below in box and all(
+            int(world.blocks[box.index(below)]) < 0 for world in self.worlds.worlds
+        )
+
+    @cached_property
+    def _walks(self) -> list[npt.NDArray[np.bool_]]:
+        """By alternative where an agent can stand; where blocks are equal the same array."""
+        made: dict[int, npt.NDArray[np.bool_]] = {}
+        return [
+            made.setdefault(id(world.blocks), walkable(self._registry, world.blocks))
+            if id(world.blocks) not in made
+            else made[id(world.blocks)]
+            for world in self.worlds.worlds
+        ]
+
+    def _made(self, ways: Ways) -> Stage:
+        worlds = self.worlds
+        count = len(worlds.worlds)
+        if worlds.can_differ:
+            looks = [worlds.alike(middle_of(cell), 0.0, 0.0, all_round=True) for cell in ways.cells]
+            same = np.array(looks, dtype=np.int64).T.copy()
+        else:
+            same = np.full((count, len(ways.cells)), (1 << count) - 1, dtype=np.int64)
+        boxes = tuple(
+            place
+            for place in self._doubted
+            if len({_known(world.contents.get(place)) for world in worlds.worlds}) > 1
+        )
+        contents = [
+            [_known(world.contents.get(place)) for world in worlds.worlds] for place in boxes
+        ]
+        content = [
+            [sum(1 << b for b, other in enumerate(row) if other == mine) for mine in row]
+            for row in contents
+        ]
+        return Stage(
+            ways.cells,
+            ways.moves,
+            same,
+            self._acts(ways.cells),
+            np.array([goal.item is not None for goal in self._goals.values()], dtype=np.bool_),
+            boxes,
+            np.array(
+                [self._in_reach(ways.cells, [place]) for place in boxes], dtype=np.bool_
+            ).reshape(len(boxes), len(ways.cells)),
+            np.array(content, dtype=np.int64).reshape(len(boxes), count),
+        )
+
+    def _acts(self, cells: Sequence[Position]) -> npt.NDArray[np.bool_]:
+        worlds = self.worlds.worlds
+        acts = np.zeros((len(worlds), len(self._goals), len(cells)), dtype=np.bool_)
+        below = np.array(cells, dtype=np.int64) - np.array(self.worlds.box.low) - (0, 1, 0)
+        shape = np.array(self.worlds.box.shape)
+        inside = np.flatnonzero(((below >= 0) & (below < shape)).all(axis=1))
+        for number, goal in enumerate(self._goals.values()):
+            if goal.at is not None:
+                acts[:, number] = [cell == goal.at for cell in cells]
+            elif goal.block is not None:
+                ids = self._registry.state_ids(goal.block)
+                for a, world in enumerate(worlds):
+                    states = world.blocks[tuple(below[inside].T)]
+                    acts[a, number, inside] = (states >= ids.start) & (states < ids.stop)
+            else:
+                dropped = [
+                    _cell_of(item.position)
+                    for item in self.worlds.items.values()
+                    if item.name == goal.item
+                ]
+                for a, world in enumerate(worlds):
+                    held = [p for p, items in world.contents.items() if items.get(goal.item or "")]
+                    acts[a, number] = self._in_reach(cells, [*held, *dropped])
+        return acts
+
+    def _in_reach(
+        self, cells: Sequence[Position], places: Sequence[Position]
+    ) -> npt.NDArray[np.bool_]:
+        """Mark the cells that are, or neighbour, one of some places."""
+        reached = np.zeros(len(cells), dtype=np.bool_)
+        for place in places:
+            away = np.abs(np.array(cells, dtype=np.int64) - np.array(place))
+            aside = (
+                np.maximum(away[:, 0], away[:, 2]) if self._diagonal else away[:, 0] + away[:, 2]
+            )
+            reached |= (aside <= 1) & (away[:, 1] <= 1)
+        return reached
+
+
+class _Stages:
+    """Stages by content, the oldest dropped."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[bytes, Stage] = OrderedDict()
+
+    def get(self, key: bytes) -> Stage | None:
+        found = self._kept.get(key)
+        if found is not None:
+            self._kept.move_to_end(key)
+        return found
+
+    def put(self, key: bytes, stage: Stage) -> None:
+        self._kept[key] = stage
+        while len(self._kept) > _MOST_STAGES:
+            self._kept.popitem(last=False)
+
+
+@lru_cache(maxsize=1)
+def _stages() -> _Stages:
+    return _Stages()
+
+
+def _known(items: Items | None) -> object:
+    return None if items is None else tuple(sorted(items.items()))
+
+
+def _cell_of(place: Sequence[float]) -> Position:
+    return (int(np.floor(place[0])), int(np.floor(place[1])), int(np.floor(place[2])))

@@ -1,0 +1,266 @@
+"""Inference on one node: reads its timeline, filters, and gives the result."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from beliefnest.errors import InputError, TickError
+from beliefnest.minds.evidence import Moment
+from beliefnest.minds.hypotheses import Hypotheses
+from beliefnest.minds.inference import Inference, reported_credence
+from beliefnest.minds.mind_model import MindModel
+from beliefnest.minds.planner import count_values
+from beliefnest.minds.surroundings import Scene
+from beliefnest.minds.tracking import Tracker, known_after
+from beliefnest.nest.inferring.perceived_course import Question, Reading
+from beliefnest.nest.past.recording import Recording
+from beliefnest.world.paths import BeliefPath, path_text
+
+__all__ = ["ModelStart", "credence_in", "infer_in", "start_of_model"]
+
+_ROOM = 2**27
+"""Bytes that values may take in one chunk of utilities."""
+
+_MOST_READINGS, _MOST_FILTERS = 8, 4
+
+_STEP_TICKS = {"scripted": 1}
+_MINECRAFT_STEP = 5
+
+
+def infer_in(
+    recording: Recording,
+    path: BeliefPath,
+    model: MindModel,
+    since: int,
+    until: int | None,
+    *,
+    ended: bool,
+    smooth: bool,
+) -> Inference:
+    """Infer what an agent wants and believes from what a node holds of its course.
+
+    Raises:
+        InputError: The model does not fit the node.
+        PathError: There is no such agent.
+        TickError: A tick lies in the future or before the start.
+    """
+    work = _work_on(recording, path, model, since, until)
+    if not work.reading.has_seen:
+        raise InputError(
+            f"{path_text(path)} has not seen {model.agent} from tick {since} to "
+            f"{work.reading.latest}; infer from a node and a tick at which it sees the agent"
+        )
+    step_ticks = model.step_ticks or _STEP_TICKS.get(recording.world, _MINECRAFT_STEP)
+    _check_goals(model, work.reading.moments)
+    return work.inferred(model, since, step_ticks, ended=ended, smooth=smooth)
+
+
+@dataclass(frozen=True, eq=False)
+class ModelStart:
+    """Start of a model at one tick of a node.
+
+    Attributes:
+        model: The model.
+        scene: All alternatives then.
+        agrees: The alternatives that agree with what the node holds from then on.
+        step_ticks: Ticks that an action takes.
+    """
+
+    model: MindModel
+    scene: Scene
+    agrees: int
+    step_ticks: int
+
+
+def start_of_model(
+    recording: Recording, path: BeliefPath, model: MindModel, since: int, until: int
+) -> ModelStart:
+    """Return what a model begins with at a tick, known up to another one what agrees.
+
+    Raises:
+        InputError, PathError, TickError: As for `infer_in`.
+    """
+    reading = _work_on(recording, path, model, since, until).reading
+    step_ticks = model.step_ticks or _STEP_TICKS.get(recording.world, _MINECRAFT_STEP)
+    return ModelStart(model, reading.moments[0].scene, reading.agrees, step_ticks)
+
+
+@dataclass
+class _Work:
+    """A reading of a node, and the filters that have followed it so far, by model.
+
+    An inference at a later tick goes on with them.
+    """
+
+    reading: Reading
+    generation: int
+    filters: dict[bytes, tuple[int, list[Tracker]]] = field(default_factory=dict)
+
+    def goes_on(self, recording: Recording, until: int) -> bool:
+        """Return whether the timeline has no new entries at ticks that were read."""
+        same = recording.history.generation == self.generation
+        return same and self.reading.latest <= until and self.reading.is_whole
+
+    def inferred(
+        self, model: MindModel, since: int, step_ticks: int, *, ended: bool, smooth: bool
+    ) -> Inference:
+        """Return the posterior at the last tick that was read."""
+        moments, until = self.reading.moments, self.reading.latest
+        key = _digest(model, step_ticks)
+        count, trackers = self.filters.get(key) or (0, _trackers(model, moments, step_ticks))
+        for tracker in trackers:
+            tracker.follow(moments[count:], until)
+        self.filters = {**self.filters, key: (len(moments), trackers)}
+        while len(self.filters) > _MOST_FILTERS:
+            del self.filters[next(iter(self.filters))]
+        return _told(model, tuple(moments), since, until, step_ticks, trackers, ended, smooth)
+
+
+def _work_on(
+    recording: Recording, path: BeliefPath, model: MindModel, since: int, until: int | None
+) -> _Work:
+    """Return the reading of a node up to a tick, gone on with where there is one."""
+    moment = recording.moment(path, until)
+    question = _question(recording, path, model, since)
+    if question.since > moment.tick:
+        raise TickError(
+            f"since is {since}, after the last tick, {moment.tick}; give an earlier one"
+        )
+    key = ("inference", moment.timeline, repr(question))
+    known = recording.remembered.pop(key, None)
+    if isinstance(known, _Work) and known.goes_on(recording, moment.tick):
+        work = known
+    else:
+        work = _Work(Reading(recording, question), recording.history.generation)
+    work.reading.read(until)
+    work.generation = recording.history.generation
+    if not isinstance(known, _Work) or work is known or work.reading.latest >= known.reading.latest:
+        recording.remembered[key] = work
+    else:
+        recording.remembered[key] = known
+    kept = [other for other in recording.remembered if isinstance(other, tuple)]
+    for other in kept[:-_MOST_READINGS]:
+        del recording.remembered[other]
+    return work
+
+
+def _question(recording: Recording, path: BeliefPath, model: MindModel, since: int) -> Question:
+    first = recording.stretches(recording.moment(path))[0]
+    begin = recording.journal.info(first.timeline).start
+    if since != 0 and since < begin:
+        raise TickError(f"since is {since}, before the start, which is tick {begin}")
+    return Question(
+        path,
+        model.agent,
+        dict(model.goal_values),
+        model.alternatives,
+        model.actual is not None,
+        model.diagonal,
+        begin if since == 0 else since,
+    )
+
+
+def _check_goals(model: MindModel, moments: Sequence[Moment]) -> None:
+    """Refuse goals of which none can be reached in any alternative."""
+    cells = [moment for moment in moments if moment.cell is not None]
+    for moment in cells:
+        assert moment.cell is not None
+        if moment.scene.stage(moment.cell).acts.any():
+            return
+    raise InputError(
+        f"none of the goals {', '.join(model.goals)} can be reached by {model.agent} from "
+        f"{cells[0].cell} in any alternative; check their places and the floor that is known"
+    )
+
+
+def _digest(model: MindModel, step_ticks: int) -> bytes:
+    """Digest of what a filter depends on besides what was read."""
+    rules = Hypotheses.of(model, step_ticks).rules
+    digest = hashlib.blake2b(repr((rules, model.rationalities, step_ticks, model.stays)).encode())
+    for table in (model.utility_rows, model.credence_rows, model.prior_weights):
+        digest.update(repr(table.shape).encode())
+        digest.update(np.ascontiguousarray(table).tobytes())
+    return digest.digest()
+
+
+def _trackers(
+    model: MindModel, moments: Sequence[Moment], step_ticks: int, *, keeps: bool = False
+) -> list[Tracker]:
+    """Return filters at the beginning, one for each chunk of utilities."""
+    trackers = []
+    for part in _chunks(model, moments):
+        with np.errstate(divide="ignore"):
+            prior = np.log(model.prior_weights[part]) - np.log(len(model.rationalities))
+        trackers.append(Tracker(Hypotheses.of(model, step_ticks, part), prior, keeps=keeps))
+    return trackers
+
+
+def _told(
+    model: MindModel,
+    moments: Sequence[Moment],
+    since: int,
+    until: int,
+    step_ticks: int,
+    trackers: Sequence[Tracker],
+    ended: bool,
+    smooth: bool,
+) -> Inference:
+    def rerun(tick: int) -> Inference:
+        again = _trackers(model, moments, step_ticks)
+        for tracker in again:
+            tracker.follow([moment for moment in moments if moment.tick <= tick], tick)
+        return _told(model, moments, since, tick, step_ticks, again, False, False)
+
+    def kept() -> list[Tracker]:
+        again = _trackers(model, moments, step_ticks, keeps=True)
+        for tracker in again:
+            tracker.follow([moment for moment in moments if moment.tick <= until], until)
+        return [tracker.finished(until, ended=ended) for tracker in again]
+
+    finished = [tracker.finished(until, ended=ended) for tracker in trackers]
+    return Inference(model, since, until, finished, rerun, kept, smooth=smooth)
+
+
+def _chunks(model: MindModel, moments: Sequence[Moment]) -> list[slice]:
+    """Parts of the utilities whose values fit into memory."""
+    first = next(moment for moment in moments if moment.cell is not None)
+    assert first.cell is not None
+    values = count_values(first.scene.stage(first.cell), len(model.credence_rows))
+    size = max(1, _ROOM // (8 * values))
+    count = len(model.utility_rows)
+    return [slice(start, min(start + size, count)) for start in range(0, count, size)]
+
+
+def credence_in(
+    recording: Recording,
+    path: BeliefPath,
+    model: MindModel,
+    since: int,
+    tick: int | None,
+) -> dict[str, float]:
+    """Return the credence of an agent in alternatives, by its percepts alone, without a planner.
+
+    Args:
+        recording: Where the node is.
+        path: The node that attributes the credence.
+        model: Its doubt, its first credence, `actual` and `lapse` count.
+        since: The tick just before whose percept the initial credence stands.
+        tick: When; None: now.
+
+    Raises:
+        InputError, PathError, TickError: As for `infer_in`.
+    """
+    reading = _work_on(recording, path, model, since, tick).reading
+    names = model.alternative_names
+    weights = model.actual_weights
+    agrees = reading.agrees
+    shares = [
+        float(agrees >> a & 1) if weights is None else weights[name] for a, name in enumerate(names)
+    ]
+    total = np.zeros(len(names))
+    known = known_after(reading.moments, len(names))
+    for share, (possible, believed) in zip(shares, known, strict=True):
+        total += share * reported_credence(model.credence_rows[0], possible, believed, model.lapse)
+    return dict(zip(names, (total / sum(shares)).tolist(), strict=True))

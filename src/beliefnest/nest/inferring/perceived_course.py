@@ -1,0 +1,293 @@
+"""Course of an agent as an observer perceived it, read from one node and its timeline."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
+from beliefnest.belief.node_view import NodeView
+from beliefnest.errors import InputError, PathError
+from beliefnest.minds.alternatives import Pose, Worlds
+from beliefnest.minds.evidence import Moment
+from beliefnest.minds.mind_model import Alternative, Goal
+from beliefnest.minds.surroundings import Scene
+from beliefnest.nest.inferring.overlay import Overlay
+from beliefnest.nest.past.recording import Recording
+from beliefnest.timeline.journal import Edit, Entry, TimelineKey
+from beliefnest.world.claims import Claim, claims_of
+from beliefnest.world.paths import BeliefPath, normalised, path_text
+from beliefnest.world.values import EventKind, Position
+
+__all__ = ["Question", "Reading"]
+
+_MOVES = (EventKind.GET_ITEM_FROM_CHEST, EventKind.DEPOSIT_ITEM_INTO_CHEST)
+_NO_DEEDS = (EventKind.MOVE_TO, EventKind.BLOCK_UPDATE)
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """Request to read one agent's course from one node.
+
+    Attributes:
+        path: The observer's node.
+        agent: The modelled agent.
+        goals: What it may want.
+        alternatives: What it may be in doubt about.
+        ignores: Whether the node's own values of the doubted elements are ignored.
+        diagonal: Whether steps lead to diagonal neighbours too.
+        since: The tick from which on evidence counts.
+    """
+
+    path: BeliefPath
+    agent: str
+    goals: "dict[str, Goal]"
+    alternatives: tuple[Alternative, ...]
+    ignores: bool
+    diagonal: bool
+    since: int
+
+
+@dataclass
+class Reading:
+    """Moments that have been read of one timeline; it can be gone on with.
+
+    Attributes:
+        moments: What was read, oldest first.
+        latest: The last tick that was read.
+    """
+
+    recording: Recording
+    question: Question
+    moments: list[Moment] = field(default_factory=list)
+    latest: int = -1
+    _overlay: Overlay | None = None
+    _agrees: int = -1
+    _forest: Forest | None = None
+    _key: TimelineKey | None = None
+    _position: int = 0
+    _events: int = 0
+    _scene: tuple[bytes, Scene] | None = None
+
+    def read(self, until: int | None) -> None:
+        """Read on, up to a tick; None: to the latest.
+
+        Raises:
+            TickError: The tick is in the future, or before the start.
+            InputError: No alternative agrees with what the node holds.
+        """
+        recording, question = self.recording, self.question
+        agent = question.agent
+        if agent not in recording.agents:
+            raise PathError(f"no agent {agent!r}; there are {', '.join(recording.agents)}")
+        if self._overlay is None:
+            context = recording.context
+            self._overlay = Overlay(
+                question.alternatives, context.registry, context.box, recording.agents, agent
+            )
+        moment = recording.moment(question.path, until)
+        for stretch in recording.stretches(moment):
+            key = stretch.timeline
+            if self._key is not None and key != self._key and stretch.tick <= self.latest:
+                continue
+            info = recording.journal.info(key)
+            if self._key != key:
+                if stretch.tick < question.since:
+                    continue
+                start = recording.journal.entries_until(key, max(question.since, info.start))
+                self._enter(key, start, max(question.since, info.start))
+            self._go_on(key, stretch.entries)
+        self.latest = moment.tick
+
+    @property
+    def is_whole(self) -> bool:
+        """True if all entries of the ticks that were read are in it."""
+        if self._key is None:
+            return False
+        return self.recording.journal.entries_until(self._key, self.latest) == self._position
+
+    @property
+    def agrees(self) -> int:
+        """The alternatives that have agreed with what the node holds."""
+        return self._agrees
+
+    @property
+    def has_seen(self) -> bool:
+        """True if the agent was current at any tick."""
+        return any(moment.cell is not None for moment in self.moments)
+
+    def _enter(self, key: TimelineKey, start: int, tick: int) -> None:
+        recording, question = self.recording, self.question
+        paths = [question.path]
+        if recording.context.options.testimony != "none":
+            paths.append(self._agent_path)
+        self._forest = recording.history.walk(key, paths)
+        recording.history.advance(key, self._forest, start)
+        self._key, self._position = key, start
+        claims = self._claims(key, start) if start else []
+        first = recording.journal.entries_until(key, tick - 1) if start else 0
+        before = recording.journal.events_until(key, first) if start else 0
+        self._take(tick, claims, before)
+
+    @property
+    def _agent_path(self) -> BeliefPath:
+        return normalised((*self.question.path, self.question.agent))
+
+    def _go_on(self, key: TimelineKey, stop: int) -> None:
+        assert self._forest is not None
+        recording = self.recording
+        entries = list(recording.journal.entries(key, self._position, stop))
+        claims: list[Claim] = []
+        for number, entry in enumerate(entries):
+            self._position += 1
+            recording.history.advance(key, self._forest, self._position)
+            claims += self._taken_up(entry)
+            following = entries[number + 1] if number + 1 < len(entries) else None
+            if following is None or following.tick > entry.tick:
+                self._take(entry.tick, claims, self._events)
+                claims = []
+
+    def _claims(self, key: TimelineKey, position: int) -> list[Claim]:
+        """Return claims that the agent took up in the last of some entries."""
+        entry = next(self.recording.journal.entries(key, position - 1, position))
+        return list(self._taken_up(entry)) if entry.tick == self.question.since else []
+
+    def _taken_up(self, entry: Entry) -> Iterator[Claim]:
+        forest, path = self._forest, self._agent_path
+        assert forest is not None
+        if isinstance(entry, Edit) or path not in forest:
+            return
+        node = forest.node(path)
+        for row, event in enumerate(entry.events):
+            for index, claim in enumerate(claims_of(event)):
+                verdicts = forest.verdicts.get((row, index))
+                if verdicts is not None and verdicts[node].believed:
+                    yield claim
+
+    def _take(self, tick: int, claims: Sequence[Claim], before: int) -> None:
+        """Read the node as it is after a tick."""
+        forest, overlay, question = self._forest, self._overlay, self.question
+        assert forest is not None and overlay is not None
+        view = NodeView(forest, question.path)
+        events = [event for event in view.events_since(before) if event.tick == tick]
+        self._events = view.count_of_events
+        learnt = self._learnt(events)
+        truths = tuple(mask for mask in map(overlay.truth, claims) if mask >= 0)
+        overlay.follow(view, events)
+        if not question.ignores:
+            self._agrees &= overlay.agreeing()
+            if self._agrees == 0:
+                raise InputError(
+                    f"no alternative agrees with what {path_text(question.path)} holds at tick "
+                    f"{tick}; change the doubt, or give actual='unknown'"
+                )
+        scene = self._scene_of(view)
+        agent = view.agents[question.agent]
+        pose = _pose(agent)
+        seen = agent.current and pose is not None
+        alike: tuple[int, ...] = ()
+        cell = None
+        if seen and pose is not None:
+            cell = self._cell(scene, pose, on_ground=agent.on_ground)
+            alike = tuple(scene.worlds.alike(*pose, all_round=False))
+        owner = question.path[-1] if question.path else None
+        watching = None if owner in (None, question.agent) else view.agents[owner or ""]
+        watch = None if watching is None or not watching.current else _pose(watching)
+        opened, act, deed = self._done(events)
+        self.moments.append(
+            Moment(tick, scene, cell, alike, truths, learnt, opened, act, deed, self._agrees, watch)
+        )
+
+    def _learnt(self, events: Sequence[PerceivedEvent]) -> tuple[tuple[int, ...], ...]:
+        """Return what the agent learns of the containers in doubt that it uses."""
+        assert self._overlay is not None
+        used = {
+            _place(event)
+            for event in events
+            if event.actor == self.question.agent
+            and event.kind in (EventKind.OPEN_CONTAINER, *_MOVES)
+        }
+        return tuple(
+            self._overlay.content_masks(place)
+            for place in self._overlay.containers
+            if place in used
+        )
+
+    def _done(self, events: Sequence[PerceivedEvent]) -> tuple[Position | None, int | None, bool]:
+        """Return what the agent opens, the goal it acts on, and whether it does more."""
+        assert self._overlay is not None
+        opened, act, deed = None, None, False
+        for event in events:
+            if event.actor != self.question.agent or event.kind in _NO_DEEDS:
+                continue
+            if event.kind is EventKind.GET_ITEM_FROM_CHEST:
+                goals = [
+                    number
+                    for number, goal in enumerate(self.question.goals.values())
+                    if goal.item in event.detail.get("items", {})
+                ]
+                if goals:
+                    act = goals[0]
+                    continue
+            if event.kind is EventKind.OPEN_CONTAINER and _place(event) in self._overlay.containers:
+                opened = _place(event)
+                continue
+            deed = True
+        return opened, act, deed
+
+    def _scene_of(self, view: NodeView) -> Scene:
+        overlay, question, context = self._overlay, self.question, self.recording.context
+        assert overlay is not None
+        digest = overlay.digest(view)
+        if self._scene is not None and self._scene[0] == digest:
+            return self._scene[1]
+        worlds = Worlds(
+            context.sight,
+            context.box,
+            overlay.worlds(view),
+            dict(view.items),
+            question.agent,
+            transparent=context.options.containers == "transparent",
+        )
+        options = context.options
+        key = repr(
+            (
+                options.max_visible_distance,
+                options.transparent_blocks,
+                options.containers,
+                question.agent,
+                list(question.goals.items()),
+                overlay.containers,
+                question.diagonal,
+            )
+        )
+        scene = Scene(
+            context.registry,
+            worlds,
+            question.goals,
+            overlay.containers,
+            diagonal=question.diagonal,
+            key=digest + key.encode(),
+        )
+        self._scene = (digest, scene)
+        return scene
+
+    def _cell(self, scene: Scene, pose: Pose, *, on_ground: bool) -> Position:
+        """Return the cell of an agent: in a jump or over an edge, the cell that it comes from."""
+        x, y, z = (math.floor(part) for part in pose[0])
+        for cell in ((x, y, z), (x, y - 1, z)):
+            if scene.can_stand(cell):
+                return cell
+        at = (x, y, z)
+        if on_ground and scene.has_unknown_floor(at):
+            return at
+        return next((m.cell for m in reversed(self.moments) if m.cell is not None), at)
+
+
+def _pose(agent: AgentBelief) -> Pose | None:
+    return None if agent.position is None else (agent.position, agent.yaw, agent.pitch)
+
+
+def _place(event: PerceivedEvent) -> Position | None:
+    place = event.detail.get("position")
+    return None if place is None else (int(place[0]), int(place[1]), int(place[2]))

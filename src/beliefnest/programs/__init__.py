@@ -1,5 +1,0 @@
-"""Skills of agent programs: their descriptions, and calls of them."""
-
-from beliefnest.programs.manifests import Parameter, Skill, skills
-
-__all__ = ["Parameter", "Skill", "skills"]

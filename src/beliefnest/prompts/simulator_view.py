@@ -1,0 +1,64 @@
+"""Read-only view of simulators for prompts: states, and beliefs of agents."""
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from beliefnest.belief.grounds import AgentBelief
+from beliefnest.belief.view import State
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.prompts.text import nearest
+from beliefnest.world.values import Position
+
+__all__ = ["BranchView", "belief_of", "believed_agent", "owner_of"]
+
+
+class BranchView(Protocol):
+    """A simulator as prompts see it: `branch` in a template."""
+
+    @property
+    def state(self) -> State:
+        """State of the simulator."""
+
+    @property
+    def labels(self) -> Mapping[Position, str]:
+        """Labels of containers (name and appearance), if prompts may show them."""
+
+    def child(self, agent: str) -> "BranchView":
+        """Return the simulator of an agent's belief; for the owner, this simulator itself."""
+
+
+def owner_of(state: State) -> str:
+    """Return the agent that holds a belief.
+
+    Raises:
+        InputError: The state is that of the real world.
+    """
+    if state.owner is None:
+        raise InputError(
+            "the real world is nobody's belief, so there is no 'me' in it: "
+            "name an agent in the filter, or render a belief such as /sally"
+        )
+    return state.owner
+
+
+def believed_agent(state: State, agent: str | None) -> AgentBelief:
+    """Return the entry of an agent in a state; without a name, that of the owner.
+
+    Raises:
+        InputError: No name was given in the real world.
+        UnknownNameError: The scenario has no such agent.
+    """
+    name = owner_of(state) if agent is None else agent
+    if name not in state.agents:
+        raise UnknownNameError(f"no agent {name!r} in the scenario{nearest(name, state.agents)}")
+    return state.agents[name]
+
+
+def belief_of(branch: BranchView, agent: str) -> State:
+    """Return the state of an agent's belief in a simulator.
+
+    Raises:
+        UnknownNameError: The scenario has no such agent.
+    """
+    believed_agent(branch.state, agent)
+    return branch.child(agent).state

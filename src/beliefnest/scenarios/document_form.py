@@ -1,0 +1,141 @@
+"""Check of a document's form: known keys, and values of the right kind."""
+
+import difflib
+import re
+
+import msgspec
+
+from beliefnest.errors import ScenarioError
+from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain
+from beliefnest.scenarios.format import ScenarioFile
+from beliefnest.scenarios.json_schema import allowed_keys, allowed_values
+from beliefnest.world.texts import is_well_formed
+
+__all__ = ["check_form"]
+
+_FAULT = re.compile(r"(?P<what>.*?)(?: - at (?P<key>`key` in )?`(?P<path>\$.*)`)?", re.DOTALL)
+_FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\])")
+_UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
+_MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
+
+_MOST_BITS = 64
+"""Bits of whole numbers that messages repeat; Python refuses to format very long ones."""
+
+
+def check_form(document: Document) -> ScenarioFile:
+    """Return the content of a document as typed values.
+
+    Raises:
+        ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
+    """
+    _check_texts(document, document.root, ())
+    error = _error_of(document.root)
+    if error:
+        raise _fault(document, error)
+    return msgspec.convert(plain(document.root), ScenarioFile)
+
+
+def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
+    """Refuse texts that cannot be stored, as they contain lone surrogates."""
+    if isinstance(node.value, dict):
+        for key, child in node.value.items():
+            if isinstance(key, str) and not is_well_formed(key):
+                raise document.fault(path, "has a key with half a character in it")
+            _check_texts(document, child, (*path, key))
+    elif isinstance(node.value, list):
+        for index, child in enumerate(node.value):
+            _check_texts(document, child, (*path, index))
+    elif isinstance(node.value, str) and not is_well_formed(node.value):
+        raise document.fault(path, "has half a character in it; write whole ones")
+
+
+def _error_of(root: YamlNode) -> str:
+    try:
+        msgspec.convert(plain(root), ScenarioFile)
+    except msgspec.ValidationError as error:
+        return str(error)
+    return ""
+
+
+def _fault(document: Document, error: str) -> ScenarioError:
+    match = _FAULT.fullmatch(error)
+    if match is None:
+        return document.fault((), error)
+    what = match["what"]
+    steps = [step.groupdict() for step in _FAULT_STEP.finditer(match["path"] or "$")]
+    path = _locate(document.root, steps, error)
+    if unknown := _UNKNOWN_FIELD.fullmatch(what):
+        name = unknown["name"]
+        return document.fault((*path, name), f"unknown key{_hint(name, path)}")
+    if missing := _MISSING_FIELD.fullmatch(what):
+        return document.fault(path, f"the key {missing['name']!r} is missing")
+    what = what[:1].lower() + what[1:].replace("`", "'")
+    if match["key"]:
+        return document.fault(path, f"a key in it: {what}")
+    return document.fault(path, what + _found(document.root, path, what) + _allowed(path, what))
+
+
+def _found(root: YamlNode, path: KeyPath, what: str) -> str:
+    """Return the value at a place for a message, if the error does not already say it."""
+    value = _node_at(root, list(path)).value
+    is_short = isinstance(value, float | None) or (
+        isinstance(value, int) and value.bit_length() <= _MOST_BITS
+    )
+    told = not what.startswith("expected") or ", got" in what
+    return f", got {value!r}" if is_short and not told else ""
+
+
+def _allowed(path: KeyPath, what: str) -> str:
+    """Return what is allowed at a place, for a message."""
+    if values := allowed_values(path):
+        forms = [f"{{{key}: ...}}" for key in allowed_keys(path)]
+        return f"; allowed are {', '.join([*values, *forms])}"
+    is_text = what.startswith("expected 'str', got") and not what.endswith(("'array'", "'object'"))
+    return "; put it into quotes" if is_text else ""
+
+
+def _hint(name: str, path: KeyPath) -> str:
+    allowed = allowed_keys(path)
+    inner = [key for key in allowed if name in allowed_keys((*path, key))]
+    if inner:
+        return f"; it stands under {inner[0]!r}"
+    close = difflib.get_close_matches(name, allowed, n=1)
+    return f"; did you mean {close[0]!r}?" if close else f"; keys are {', '.join(allowed)}"
+
+
+def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str) -> KeyPath:
+    """Return the place of an error, for which msgspec writes `[...]` instead of mapping keys.
+
+    For each `[...]`, try the mapping with only one entry at a time. The entry that still causes
+    the error is the wrong one.
+    """
+    path: list[str | int] = []
+    for step in steps:
+        if step["name"] is not None:
+            path.append(step["name"])
+        elif step["index"] is not None:
+            path.append(int(step["index"]))
+        else:
+            cuts = {key: _with_only(root, path, key) for key in _node_at(root, path).value}
+            key = next((key for key, cut in cuts.items() if _error_of(cut) == error), None)
+            if key is None:
+                break
+            root = cuts[key]
+            path.append(key)
+    return tuple(path)
+
+
+def _node_at(root: YamlNode, path: list[str | int]) -> YamlNode:
+    for key in path:
+        root = root.value[key]
+    return root
+
+
+def _with_only(node: YamlNode, path: list[str | int], key: str | int) -> YamlNode:
+    """Return the document with the mapping at a path cut down to one key."""
+    if not path:
+        return YamlNode({key: node.value[key]}, node.line)
+    head, *rest = path
+    value = node.value.copy()
+    value[head] = _with_only(value[head], rest, key)
+    return YamlNode(value, node.line)

@@ -1,0 +1,361 @@
+"""Plan of a study: one cell for each combination, with a unique name and a seed."""
+
+import hashlib
+import json
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Generic, Protocol, TypeVar
+
+from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.expected import expected_json
+from beliefnest.scenarios.loading import condition_numbers
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.chance import scenario_draws
+from beliefnest.studies.design import Design, Template
+from beliefnest.studies.random_variations import drawn_variations
+from beliefnest.studies.variation import Variation, listed_variations
+
+__all__ = [
+    "SEEDS",
+    "C",
+    "Cell",
+    "CellKey",
+    "Invalid",
+    "Key",
+    "Keyed",
+    "Plan",
+    "alike",
+    "cell_seed",
+    "check_called",
+    "digest",
+    "plan_cells",
+    "variation_id",
+]
+
+SEEDS = 2**32
+"""Number of possible seeds of cells."""
+
+
+class Key(Protocol):
+    """Identity of a cell."""
+
+    @property
+    def name(self) -> str:
+        """Sixteen letters and digits, the same for the same cell on every machine."""
+
+    @property
+    def seed(self) -> int:
+        """Return the seed of all random numbers of the cell."""
+
+    def content_json(self) -> dict[str, Any]:
+        """Return all of it as plain values."""
+
+
+class Keyed(Protocol):
+    """Cell of any kind of study."""
+
+    @property
+    def key(self) -> Key:
+        """Return the identity of the cell."""
+
+    def plain(self) -> dict[str, Any]:
+        """Return the cell as plain values for the study's plan."""
+
+
+C = TypeVar("C", bound=Keyed)
+
+
+@dataclass(frozen=True, slots=True)
+class CellKey:
+    """Identity of a cell in a study of scenarios.
+
+    Attributes:
+        scenario: Name of the scenario.
+        content: Hash of the scenario's file and of the template.
+        condition: Number of the condition; None: the scenario has no conditions.
+        variation: Values of parameters and of further changes.
+        model: Name of the model.
+        template: Name of the prompt template; empty: that of the scenario.
+        repeat: Number of the repeat, from 1.
+        setting: Further settings that affect results: seed, world, attempts, temperature, and so
+            on.
+    """
+
+    scenario: str
+    content: str
+    condition: int | None
+    variation: Mapping[str, Any]
+    model: str
+    template: str
+    repeat: int
+    setting: Mapping[str, Any]
+
+    @property
+    def name(self) -> str:
+        """Sixteen letters and digits, the same for the same cell on every machine."""
+        return digest(self.content_json())[:16]
+
+    def content_json(self) -> dict[str, Any]:
+        """Return all of it as plain values."""
+        return {
+            "scenario": self.scenario,
+            "content": self.content,
+            "condition": self.condition,
+            "variation": dict(self.variation),
+            "model": self.model,
+            "template": self.template,
+            "repeat": self.repeat,
+            "setting": dict(self.setting),
+        }
+
+    @property
+    def seed(self) -> int:
+        """Return the seed of all random numbers of the cell.
+
+        The seed depends on variation and repeat, but not on condition, model and template, so that
+        comparisons between these have the same random numbers.
+        """
+        return cell_seed(self.scenario, dict(self.variation), self.repeat, self.setting["seed"])
+
+    @property
+    def title(self) -> str:
+        """Return a title of the cell for progress lines and messages."""
+        parts = [self.scenario]
+        if self.condition is not None:
+            parts.append(f"condition {self.condition}")
+        return ", ".join([*parts, Variation(self.variation).text, self.model])
+
+
+def digest(value: object) -> str:
+    """Return a hash of plain values, the same on every machine."""
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+def cell_seed(*parts: object) -> int:
+    """Derive the seed of a cell from plain values, the same on every machine."""
+    return int(digest(list(parts)), 16) % SEEDS
+
+
+def variation_id(*parts: object) -> str:
+    """Return a name for an independent variation, from the plain values that identify it.
+
+    The name is the same on every machine and in every shard. It begins with a letter, so that no
+    reader of tables parses it as a number.
+    """
+    return f"v{digest(list(parts))[:10]}"
+
+
+def alike(key: Key, seeds: Collection[str]) -> str:
+    """Return a hash that is the same for cells that differ only by their seed.
+
+    Args:
+        key: Identity of a cell.
+        seeds: Keys of `content_json` that affect nothing but the seed.
+    """
+    return digest({k: v for k, v in key.content_json().items() if k not in seeds})[:16]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """Variation of a scenario under one condition, to be played once with one model."""
+
+    key: CellKey
+    scenario: Scenario
+
+    def plain(self) -> dict[str, Any]:
+        """Return the cell as plain values for the study's plan."""
+        key = self.key
+        models = [key.model, *filter(None, [key.setting.get("claims_from")])]
+        draws = scenario_draws(self.scenario, models)
+        return {
+            "name": key.name,
+            "key": key.content_json(),
+            "seed": key.seed,
+            "variation": variation_id(key.scenario, dict(key.variation)),
+            "alike": None if draws else alike(key, ("repeat",)),
+            "probes": [
+                {
+                    "label": probe.label,
+                    "path": probe.path,
+                    "acts_in": probe.acts_in,
+                    "agent": probe.agent,
+                    "task": probe.task,
+                    "expected": expected_json(probe.expect),
+                }
+                for probe in self.scenario.probes
+            ],
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Invalid:
+    """Combination that makes no valid scenario or episode.
+
+    Attributes:
+        scenario: Name, or path, of the scenario.
+        condition: Number of the condition; None: the scenario has no conditions.
+        variation: Values of parameters and of further changes.
+        why: Reason.
+    """
+
+    scenario: str
+    condition: int | None
+    variation: Mapping[str, Any]
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Plan(Generic[C]):
+    """Cells of a study in the order of its table, and its invalid combinations."""
+
+    cells: tuple[C, ...]
+    invalid: tuple[Invalid, ...]
+
+    def shard(self, number: int, count: int) -> "Plan[C]":
+        """Return one of several disjoint parts of the plan; each cell is always in the same part.
+
+        Args:
+            number: Number of the part, from 1.
+            count: Number of parts.
+        """
+        own = [cell for cell in self.cells if int(cell.key.name, 16) % count == number - 1]
+        return replace(self, cells=tuple(own))
+
+
+def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
+    """Return the plan of a study.
+
+    Args:
+        design: Design of the study.
+        documents: Documents of its scenarios, by name or path.
+
+    Raises:
+        ScenarioError: A scenario is wrong even without any variation.
+        InputError: Two scenarios have the same name.
+    """
+    cells: list[Cell] = []
+    invalid: list[Invalid] = []
+    called: dict[str, str] = {}
+    for name in design.scenarios:
+        document = documents[name]
+        conditions = _conditions(design, document)
+        invalid += _unknown_conditions(design, name, document)
+        for variation in _variations(design, document):
+            for condition in conditions:
+                try:
+                    scenario = _scenario(design, document, condition, variation)
+                    asked = _by_template(design, document, scenario, variation)
+                except MissingExtraError:
+                    raise
+                except BeliefNestError as error:
+                    invalid.append(Invalid(name, condition, variation.values, str(error)))
+                    continue
+                check_called(called, scenario.name, name)
+                cells += _cells(design, document, asked, variation)
+    order = {model: number for number, model in enumerate(design.models)}
+    # Order cells in rounds, so that the cells played first form a smaller study of this design.
+    cells.sort(key=lambda cell: (cell.key.repeat, order[cell.key.model]))
+    return Plan(tuple(cells), tuple(invalid))
+
+
+def check_called(called: dict[str, str], name: str, source: str) -> None:
+    """Note the name of the scenario or task in a file; raise InputError if the name is taken."""
+    other = called.setdefault(name, source)
+    if other != source:
+        raise InputError(
+            f"{other} and {source} are both called {name!r}, so that their rows would be "
+            "indistinguishable; give one another name"
+        )
+
+
+def _variations(design: Design, document: Document) -> Sequence[Variation]:
+    # An error without any variation is an error of the file, not an invalid combination.
+    for condition in _conditions(design, document):
+        Scenario.varied(document, condition)
+    if isinstance(design.variations, int):
+        conditions = _conditions(design, document)
+
+        def keeps(variation: Variation) -> bool:
+            broken = (design.broken_constraint(document, each, variation) for each in conditions)
+            return any(fault is None for fault in broken)
+
+        seed = f"{design.seed} {document.source}"
+        return drawn_variations(document, design.variations, seed, keeps)
+    return listed_variations(design.variations)
+
+
+def _conditions(design: Design, document: Document) -> Sequence[int | None]:
+    numbers = condition_numbers(document)
+    if design.conditions is None or numbers == (None,):
+        return numbers
+    return [number for number in numbers if number in design.conditions]
+
+
+def _unknown_conditions(design: Design, name: str, document: Document) -> Iterator[Invalid]:
+    """Yield the wanted conditions that a scenario with conditions does not have."""
+    numbers = condition_numbers(document)
+    for number in design.conditions or () if numbers != (None,) else ():
+        if number not in numbers:
+            there = ", ".join(map(str, numbers))
+            why = f"{document.source}: there is no condition {number}; conditions are {there}"
+            yield Invalid(name, number, {}, why)
+
+
+def _scenario(
+    design: Design, document: Document, condition: int | None, variation: Variation
+) -> Scenario:
+    broken = design.broken_constraint(document, condition, variation)
+    if broken is not None:
+        raise broken
+    return Scenario.varied(
+        document,
+        condition,
+        variation.parameters,
+        variation.scene if variation.changes_scene else None,
+    )
+
+
+def _by_template(
+    design: Design, document: Document, scenario: Scenario, variation: Variation
+) -> list[tuple[Template | None, Scenario]]:
+    """Return the scenario once for each template of the study, in place of its own template."""
+    if not design.templates:
+        return [(None, scenario)]
+    return [
+        (each, _with_template(scenario, each, variation, document)) for each in design.templates
+    ]
+
+
+def _with_template(
+    scenario: Scenario, template: Template, variation: Variation, document: Document
+) -> Scenario:
+    text = template.text
+    if template.name not in BUILT_IN_TEMPLATES:
+        text = variation.template(text, document)
+    probes = tuple(replace(probe, template=text) for probe in scenario.probes)
+    return replace(scenario, probes=probes)
+
+
+def _cells(
+    design: Design,
+    document: Document,
+    asked: Sequence[tuple[Template | None, Scenario]],
+    variation: Variation,
+) -> Iterator[Cell]:
+    for template, scenario in asked:
+        content = digest([document.text, dict(scenario.templates), template and template.text])
+        for model in design.models:
+            for repeat in range(1, design.repeats + 1):
+                key = CellKey(
+                    scenario=scenario.name,
+                    content=content[:16],
+                    condition=scenario.condition,
+                    variation=variation.values,
+                    model=model,
+                    template="" if template is None else template.name,
+                    repeat=repeat,
+                    setting=design.setting,
+                )
+                yield Cell(key, scenario)

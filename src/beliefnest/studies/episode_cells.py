@@ -1,0 +1,239 @@
+"""Plan of a study of episodes: its cells."""
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from beliefnest.episodes.policies import resolve_policy, text_of_policy
+from beliefnest.episodes.task import Task
+from beliefnest.errors import BeliefNestError, MissingExtraError, ModelError
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.loading import condition_numbers
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.cells import (
+    Invalid,
+    Plan,
+    alike,
+    cell_seed,
+    check_called,
+    digest,
+    variation_id,
+)
+from beliefnest.studies.chance import episode_draws
+from beliefnest.studies.episode_design import EpisodeDesign, Player
+from beliefnest.studies.variation import Variation, listed_variations
+
+__all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeKey:
+    """Identity of a cell.
+
+    Attributes:
+        task: Name of the task.
+        content: Hash of the instance and of the files that define policies.
+        condition: Number of a scenario's condition; None: the scenario as written.
+        variation: Values of parameters.
+        player: Name of the player in the table.
+        order: The player's order of Theory of Mind, as text; empty: part of `player`.
+        policies: Names of the policies that the study gives, by agent.
+        instance: Number of the instance of a built-in task.
+        repeat: Number of the repeat, from 1.
+        setting: Further settings that affect results.
+    """
+
+    task: str
+    content: str
+    condition: int | None
+    variation: Mapping[str, Any]
+    player: str
+    order: str
+    policies: Mapping[str, str]
+    instance: int
+    repeat: int
+    setting: Mapping[str, Any]
+
+    @property
+    def name(self) -> str:
+        """Return sixteen letters and digits, the same for the same cell on every machine."""
+        return digest(self.content_json())[:16]
+
+    def content_json(self) -> dict[str, Any]:
+        """Return the key as plain values."""
+        return {
+            "task": self.task,
+            "content": self.content,
+            "condition": self.condition,
+            "variation": dict(self.variation),
+            "player": self.player,
+            "order": self.order,
+            "policies": dict(self.policies),
+            "instance": self.instance,
+            "repeat": self.repeat,
+            "setting": dict(self.setting),
+        }
+
+    @property
+    def seed(self) -> int:
+        """Return the seed of all random numbers of the cell.
+
+        The seed depends on variation, instance and repeat, but not on player and condition. The
+        first repeat of an instance without variation has the instance's number as seed, as with
+        `beliefnest play --seed`.
+        """
+        if self.variation:
+            return cell_seed(self.task, dict(self.variation), self.instance, self.repeat)
+        return self.instance if self.repeat == 1 else cell_seed(self.instance, self.repeat)
+
+
+@dataclass(frozen=True)
+class EpisodeCell:
+    """Instance of a task, to be played once by a player.
+
+    Attributes:
+        key: Identity of the cell.
+        task: The instance.
+        draws: True if the episode draws random numbers from its seed.
+    """
+
+    key: EpisodeKey
+    task: Task
+    draws: bool
+
+    def plain(self) -> dict[str, Any]:
+        """Return the cell as plain values for the study's plan."""
+        key = self.key
+        # A task from a file has no instances: all seeds give the same task.
+        from_file = self.task.seed is None
+        seeds = ("repeat", "instance") if from_file else ("repeat",)
+        instance = None if from_file else key.instance
+        return {
+            "name": key.name,
+            "key": key.content_json(),
+            "seed": key.seed,
+            "variation": variation_id(key.task, dict(key.variation), instance),
+            "alike": None if self.draws else alike(key, seeds),
+        }
+
+
+def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
+    """Return the plan of a study of episodes.
+
+    Cells are in rounds, so that the cells played first form a smaller study of the same design.
+
+    Raises:
+        UnknownNameError: A task or policy does not exist.
+        ScenarioError: A task's file is wrong.
+        InputError: A policy's file cannot be read.
+    """
+    texts = {player.text: _texts(player) for player in design.players}
+    found: list[EpisodeCell | Invalid] = []
+    called: dict[str, str] = {}
+    for name in design.tasks:
+        document = Task.scenario_document(name)
+        there = (None,) if document is None else condition_numbers(document)
+        chosen = there if there == (None,) else design.conditions or there
+        for condition, variation in itertools.product(chosen, listed_variations(design.variations)):
+            place = _Place(name, document, condition, variation)
+            if condition in there:
+                # An error without any variation is an error of the file, not an invalid cell.
+                replace(place, variation=Variation()).task(design.seeds[0])
+            try:
+                tasks = {seed: place.task(seed) for seed in design.seeds}
+            except MissingExtraError:
+                raise
+            except BeliefNestError as error:
+                found.append(place.invalid(str(error)))
+                continue
+            check_called(called, tasks[design.seeds[0]].name, name)
+            found += _cells(design, place, tasks, texts)
+    cells = [each for each in found if isinstance(each, EpisodeCell)]
+    seeds = {seed: number for number, seed in enumerate(design.seeds)}
+    cells.sort(key=lambda cell: (cell.key.repeat, seeds[cell.key.instance]))
+    return Plan(tuple(cells), tuple(each for each in found if isinstance(each, Invalid)))
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Place of cells in a study, without player, instance and repeat.
+
+    Attributes:
+        name: Name, or path, of a task or scenario.
+        document: Document of the scenario; None: a task.
+        condition: Number of the scenario's condition; None: the scenario as written.
+        variation: Values of parameters.
+    """
+
+    name: str
+    document: Document | None
+    condition: int | None
+    variation: Variation
+
+    def task(self, seed: int) -> Task:
+        """Return an instance."""
+        if self.document is None:
+            return Task.load(self.name, seed, **self.variation.values)
+        varied = self.variation
+        scene = varied.scene if varied.changes_scene else None
+        return Task.of(Scenario.varied(self.document, self.condition, varied.parameters, scene))
+
+    def invalid(self, why: str) -> Invalid:
+        """Return an entry that says why this place makes no episode."""
+        return Invalid(self.name, self.condition, self.variation.values, why)
+
+
+def _cells(
+    design: EpisodeDesign, place: _Place, tasks: Mapping[int, Task], texts: Mapping[str, list[str]]
+) -> Iterator[EpisodeCell | Invalid]:
+    instances = {seed: digest(task.plain()) for seed, task in tasks.items()}
+    for player in design.players:
+        policies = _policies(tasks[design.seeds[0]], player)
+        strange = sorted(policies.keys() - set(tasks[design.seeds[0]].agents))
+        if strange:
+            why = f"{place.name} has no agent {strange[0]!r} for the policies {player.text}"
+            yield place.invalid(why)
+            continue
+        if place.document is not None and place.variation.changes_scene and any(texts[player.text]):
+            why = f"programs of files are not moved or renamed with the scene: {player.text}"
+            yield place.invalid(why)
+            continue
+        for seed, repeat in itertools.product(design.seeds, range(1, design.repeats + 1)):
+            key = EpisodeKey(
+                task=tasks[seed].name,
+                content=digest([instances[seed], texts[player.text]])[:16],
+                condition=place.condition,
+                variation=place.variation.values,
+                player=player.name,
+                order="" if player.order is None else str(player.order),
+                policies=policies,
+                instance=seed,
+                repeat=repeat,
+                setting=design.setting,
+            )
+            draws = episode_draws(tasks[seed], policies, texts[player.text])
+            yield EpisodeCell(key, tasks[seed], draws)
+
+
+def _policies(task: Task, player: Player) -> dict[str, str]:
+    if isinstance(player.policies, str):
+        return dict.fromkeys(task.players, player.policies)
+    return dict(player.policies)
+
+
+def _texts(player: Player) -> list[str]:
+    """Return the texts of the files that define a player's policies.
+
+    Raises:
+        UnknownNameError: A policy does not exist.
+    """
+    policies = player.policies
+    names = [policies] if isinstance(policies, str) else list(policies.values())
+    for name in names:
+        try:
+            resolve_policy(name)
+        except ModelError:
+            # Machines of a cluster may have keys that this machine does not have.
+            continue
+    return [text_of_policy(name) for name in names]

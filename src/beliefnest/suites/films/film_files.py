@@ -1,0 +1,543 @@
+"""Files of films in the form of the food trucks, and the checks that they pass."""
+
+import itertools
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.files import decode_json, read_regular
+from beliefnest.scenarios.inferring import MOST_HYPOTHESES
+from beliefnest.suites.films.film import (
+    NOTHING,
+    About,
+    Cell,
+    Film,
+    FilmParameters,
+    event_name,
+    grid_for,
+)
+
+__all__ = ["films_from", "parameters_from", "read_films"]
+
+_UNKNOWN = "unknown"
+_PLACE = re.compile(r"spot[A-Za-z0-9]+")
+_JUDGED = re.compile(
+    r"(?P<about>desire|belief|location|world|actual)s?_(?:(?P<place>spot[A-Za-z0-9]+)_)?"
+    r"(?P<names>.+)_mean(?:_(?P<scale>\w+))?"
+)
+_KINDS: Mapping[str, About] = {
+    "desire": "desires",
+    "belief": "beliefs",
+    "location": "locations",
+    "world": "locations",
+    "actual": "locations",
+}
+_RATINGS = "1to7"
+_MOST_CELLS = 128 * 128
+
+
+def read_films(path: str | Path) -> tuple[list[Film], FilmParameters]:
+    """Read a file of films, with the parameters that it names.
+
+    Raises:
+        InputError: The file is missing or not of the form; the message names the film.
+    """
+    try:
+        content = decode_json(read_regular(Path(path)), dict[str, Any])
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from None
+    except msgspec.DecodeError as error:
+        raise InputError(f"{path} holds no films in JSON: {error}") from None
+    try:
+        parameters = parameters_from(content)
+        films = films_from(content)
+        for film in films:
+            _check_size(film, parameters)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return films, parameters
+
+
+def films_from(content: Mapping[str, Any]) -> list[Film]:
+    """Return the films of a decoded file.
+
+    Raises:
+        InputError: The content is not of the form.
+    """
+    worlds = _list(content.get("worlds"), "the file", "worlds")
+    entries = _list(content.get("scenarios"), "the file", "scenarios")
+    groups = _groups(content.get("groups", {}))
+    films = []
+    for number, entry in enumerate(entries, 1):
+        owner = _owner(entry, number)
+        index = entry.get("world_set", 1 if len(worlds) == 1 else None)
+        if not _is_whole(index) or not 1 <= index <= len(worlds):
+            raise InputError(
+                f"{owner}: world_set is {index!r}; give the number of a world, 1 to {len(worlds)}"
+            )
+        world = worlds[index - 1]
+        if not isinstance(world, Mapping):
+            raise InputError(f"world {index} is {world!r}; give a mapping with size, wall, spot1")
+        # A key that the film lacks is read from its world, and then from the file.
+        said = {**content, **world, **entry}
+        films.append(_Reader(owner, world, entry, said).film(groups))
+    names = [film.name for film in films]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"two films have the id {name}; give each its own")
+    return films
+
+
+def parameters_from(content: Mapping[str, Any]) -> FilmParameters:
+    """Return the parameters that a decoded file names; published ones where it names none.
+
+    Raises:
+        InputError: One of them is not of the form.
+    """
+    given = content.get("parameters", {})
+    if not isinstance(given, Mapping):
+        raise InputError(f"parameters are {given!r}; give numbers by name")
+    usual = FilmParameters()
+    levels = given.get("reward_levels", list(usual.rewards))
+    by_goal = {}
+    if isinstance(levels, Mapping):
+        by_goal = {str(goal): _levels(values) for goal, values in levels.items()}
+        levels = list(usual.rewards)
+    grid, smoothing = _grid(given.get("agent_prior_grid"), usual)
+    return FilmParameters(
+        rewards=_levels(levels),
+        rewards_by_goal=by_goal,
+        discount=_number(given, "discount", usual.discount),
+        step_cost=_number(given, "move_or_eat_cost", usual.step_cost),
+        stay_cost=_number(given, "stay_cost", usual.stay_cost),
+        rationality=_number(given, "beta", usual.rationality),
+        grid=grid,
+        smoothing=smoothing,
+    )
+
+
+def _levels(given: object) -> tuple[float, ...]:
+    values = [given] if _is_number(given) else given
+    if not isinstance(values, list) or not values or not all(map(_is_number, values)):
+        raise InputError(f"parameters: reward_levels are {given!r}; give numbers, or them by goal")
+    return tuple(map(float, values))
+
+
+def _grid(text: object, usual: FilmParameters) -> tuple[int, float]:
+    """Return steps and smoothing of a text such as `simplex of step 1/6, b*(1-.075)+.075/3`."""
+    if text is None:
+        return usual.grid, usual.smoothing
+    steps = re.search(r"step 1/(\d{1,3})\b", str(text))
+    if steps is None or int(steps[1]) < 1:
+        raise InputError(
+            f"parameters: agent_prior_grid is {text!r}; write it as "
+            "'simplex of step 1/6, shrunk: b*(1-.075)+.075/3'"
+        )
+    shrunk = re.search(r"\(1-(0?\.\d+)\)", str(text).replace(" ", ""))
+    return int(steps[1]), float(shrunk[1]) if shrunk else 0.0
+
+
+def _number(given: Mapping[str, Any], name: str, usual: float) -> float:
+    value = given.get(name, usual)
+    if not _is_number(value):
+        raise InputError(f"parameters: {name} is {value!r}; give a number")
+    return float(value)
+
+
+class _Reader:
+    """Reader of one film.
+
+    Args:
+        owner: The film, in messages.
+        world: The world that it is set in.
+        entry: What the film says.
+        said: What film, world and file say together.
+    """
+
+    def __init__(
+        self,
+        owner: str,
+        world: Mapping[str, Any],
+        entry: Mapping[str, Any],
+        said: Mapping[str, Any],
+    ) -> None:
+        self.owner = owner
+        self.world = world
+        self.entry = entry
+        self.said = said
+        human = entry.get("human") or {}
+        if not isinstance(human, Mapping):
+            raise self.fault(f"human is {human!r}; give judgments by name")
+        self.human = human
+
+    def fault(self, text: str) -> InputError:
+        """Return an error that names the film."""
+        return InputError(f"{self.owner}: {text}")
+
+    def film(self, groups: Mapping[str, str]) -> Film:
+        """Return the film, checked."""
+        places = {
+            key: self.cell(self.world[key], key) for key in self.world if _PLACE.fullmatch(key)
+        }
+        if not places:
+            raise self.fault("its world names no places; give spot1: [x, y] and so on")
+        alternatives = self.alternatives(places)
+        doubted = tuple(next(iter(alternatives.values())))
+        named = {goal for held in alternatives.values() for goal in held.values() if goal}
+        goals = self.goals(named)
+        known = self.known([place for place in places if place not in doubted], goals, named)
+        present = (goal for goal in known.values() if goal)
+        goals = tuple(dict.fromkeys([*goals, *present])) if goals else ()
+        goals = goals or tuple(dict.fromkeys([*(g for g in known.values() if g), *sorted(named)]))
+        if not goals:
+            raise self.fault("no goal stands anywhere; name one at a place")
+        name = str(self.entry["id"])
+        draft = Film(
+            name=name,
+            size=self.size(),
+            walls=frozenset(self.cells("wall", self.world.get("wall", []))),
+            places=places,
+            known=known,
+            alternatives=alternatives,
+            actual=self.actual(alternatives, doubted),
+            goals=goals,
+            path=tuple(self.cells("path_xy", self.entry.get("path_xy"))),
+            ended=self.flag("ends_with_eat"),
+            scored=not self.flag("excluded"),
+            group=str(self.entry.get("group") or groups.get(name, "")),
+        )
+        self.check(draft)
+        people, errors = self.judgments(draft)
+        return replace(draft, people=people, errors=errors)
+
+    def alternatives(self, places: Mapping[str, Cell]) -> dict[str, dict[str, str | None]]:
+        """Return what may stand at the places in doubt: listed, or every combination."""
+        listed = self.said.get("alternatives")
+        if listed is not None:
+            return self.listed(listed, places)
+        doubted = [place for place in places if f"possible_{place}" in self.said]
+        if not doubted:
+            raise self.fault(
+                'nothing is in doubt; give possible_spot2: ["L", "M", null] in its world'
+            )
+        options = []
+        for place in doubted:
+            given = self.said[f"possible_{place}"]
+            if not isinstance(given, list) or not given:
+                raise self.fault(f"possible_{place} is {given!r}; list goals, null for nothing")
+            options.append([self.goal(each, f"possible_{place}") for each in given])
+        combined = [dict(zip(doubted, each, strict=True)) for each in itertools.product(*options)]
+        return {_joined(held.values()): held for held in combined}
+
+    def listed(
+        self, listed: object, places: Mapping[str, Cell]
+    ) -> dict[str, dict[str, str | None]]:
+        """Return alternatives that are listed: goals by place, with or without names."""
+        each_held = list(listed.values()) if isinstance(listed, Mapping) else listed
+        if (
+            not isinstance(each_held, list)
+            or not each_held
+            or not all(isinstance(held, Mapping) and held for held in each_held)
+            or any(set(held) != set(each_held[0]) or set(held) - set(places) for held in each_held)
+        ):
+            raise self.fault(
+                "alternatives do not all name goals for the same places of its world; give "
+                '[{"spot1": "K", "spot2": "L"}, {"spot1": "L", "spot2": "K"}]'
+            )
+        order = [place for place in places if place in each_held[0]]
+        read = [
+            {place: self.goal(held[place], "alternatives") for place in order} for held in each_held
+        ]
+        names = [_joined(held.values()) for held in read]
+        if isinstance(listed, Mapping):
+            names = [str(name) for name in listed]
+        return dict(zip(names, read, strict=True))
+
+    def goals(self, named: Iterable[str]) -> tuple[str, ...]:
+        """Return the goals that are named in order, by `goals` or by a key of judgments."""
+        given = self.said.get("goals")
+        if given is not None:
+            if not isinstance(given, list) or not given or not all(map(_is_name, given)):
+                raise self.fault(f"goals are {given!r}; list their names")
+            return tuple(dict.fromkeys(given))
+        for key in self.human:
+            found = _JUDGED.fullmatch(key)
+            if found and found["about"] == "desire":
+                words = found["names"].split("_")
+                if len(words) == 1 and words[0] not in named and words[0].isupper():
+                    words = list(words[0])
+                return tuple(dict.fromkeys(words))
+        return ()
+
+    def known(
+        self, places: Sequence[str], goals: Sequence[str], named: Iterable[str]
+    ) -> dict[str, str | None]:
+        """Return what the places hold that are not in doubt.
+
+        Goals that nothing else places stand there in order; without such goals each place holds
+        one of its own, named after it.
+        """
+        known: dict[str, str | None] = {}
+        silent = []
+        for place in places:
+            for key in (f"true_{place}", f"{place}_holds"):
+                if key in self.said:
+                    known[place] = self.goal(self.said[key], key)
+                    break
+            else:
+                silent.append(place)
+        used = {*named, *known.values()}
+        left = [goal for goal in goals if goal not in used]
+        if left and len(left) < len(silent):
+            raise self.fault(
+                f"{' and '.join(silent)} hold {', '.join(left)} in an order that nothing tells; "
+                f"say true_{silent[0]}"
+            )
+        if len(left) > len(silent) > 0:
+            raise self.fault(f"{', '.join(left)} may each be at {silent[0]}; say true_{silent[0]}")
+        known.update(zip(silent, left or silent, strict=False))
+        return {place: known[place] for place in places}
+
+    def actual(
+        self, alternatives: Mapping[str, Mapping[str, str | None]], doubted: Sequence[str]
+    ) -> tuple[str, ...]:
+        """Return the alternatives that the observer holds possible."""
+        given = self.said.get("actual")
+        if given is not None and given != _UNKNOWN:
+            if given not in alternatives:
+                names = ", ".join(alternatives)
+                raise self.fault(f"actual is {given!r}; give {_UNKNOWN!r} or one of {names}")
+            return (str(given),)
+        possible = list(alternatives)
+        for place in doubted:
+            key = f"true_{place}"
+            if key not in self.said:
+                if given is None and not self.asks_for_locations:
+                    raise self.fault(f'{key} is missing; give a goal, null or "{_UNKNOWN}"')
+                continue
+            value = self.said[key]
+            if value == _UNKNOWN:
+                continue
+            true = self.goal(value, key)
+            options = {held[place] for held in alternatives.values()}
+            if true not in options:
+                told = ", ".join(sorted(goal or "null" for goal in options))
+                raise self.fault(f"{key} is {value!r}, which is none of the possible: {told}")
+            possible = [name for name in possible if alternatives[name][place] == true]
+        if not possible:
+            raise self.fault("no alternative has what its true_spot keys say; correct one of them")
+        return tuple(possible)
+
+    @property
+    def asks_for_locations(self) -> bool:
+        """Return True if people judged locations."""
+        matches = filter(None, map(_JUDGED.fullmatch, self.human))
+        return any(_KINDS[found["about"]] == "locations" for found in matches)
+
+    def judgments(
+        self, film: Film
+    ) -> tuple[dict[About, dict[str, float]], dict[About, dict[str, float]]]:
+        """Return judgments of people and their standard errors."""
+        people: dict[About, dict[str, float]] = {}
+        errors: dict[About, dict[str, float]] = {}
+        for key, values in self.human.items():
+            found = _JUDGED.fullmatch(key)
+            if found is None:
+                if "_mean" in key:
+                    raise self.fault(
+                        f"human.{key} is not understood; name desire, belief or location, then "
+                        "goals or alternatives, as in belief_LMnone_mean_norm"
+                    )
+                continue
+            about = _KINDS[found["about"]]
+            names = self.judged(film, key, found, about)
+            means = self.numbers(key, values, len(names))
+            if about != "desires" and found["scale"] == _RATINGS:
+                means = self.normalised(key, means)
+            rated = {n: value for n, value in zip(names, means, strict=True) if value is not None}
+            if set(rated) & set(people.get(about, {})):
+                raise self.fault(f"human.{key} judges again what another key judges; keep one")
+            people[about] = {**people.get(about, {}), **rated}
+            spread = self.human.get(f"{found['about']}_se")
+            if spread is not None and isinstance(spread, list) and len(spread) == len(names):
+                spreads = self.numbers(f"{found['about']}_se", spread, len(names))
+                told = zip(names, spreads, strict=True)
+                errors[about] = {name: value for name, value in told if value is not None}
+        return people, errors
+
+    def judged(self, film: Film, key: str, found: re.Match[str], about: About) -> list[str]:
+        """Return what the values of a key are about: goals, alternatives, or places' contents."""
+        words, place = found["names"].split("_"), found["place"]
+        if about == "desires":
+            names: list[str] | None = self.spelled(words, film.goals)
+            known: Iterable[str] = film.goals
+        elif all(word in film.alternatives for word in words):
+            names, known = words, film.alternatives
+        else:
+            names = self.contents(film, words, place)
+            known = film.events
+        if names is None or len(set(names)) < len(names) or not set(names) <= set(known):
+            raise self.fault(
+                f"human.{key} is not understood: {found['names']!r} does not spell different "
+                f"names of {', '.join(known)}"
+            )
+        return names
+
+    def contents(self, film: Film, words: Sequence[str], place: str | None) -> list[str] | None:
+        """Return names of events that words spell; None: they spell none."""
+        doubted = tuple(next(iter(film.alternatives.values())))
+        if place is not None and place not in doubted:
+            return None
+        spelled = self.spelled(words, (*film.goals, NOTHING))
+        if spelled is None:
+            return None
+        if place is not None and len(doubted) > 1:
+            return [event_name(place, goal) for goal in spelled]
+        by_contents = {_joined(held.values()): name for name, held in film.alternatives.items()}
+        if len(spelled) % len(doubted):
+            return None
+        chunks = [
+            "+".join(spelled[start : start + len(doubted)])
+            for start in range(0, len(spelled), len(doubted))
+        ]
+        return [by_contents.get(chunk, chunk) for chunk in chunks]
+
+    def spelled(self, words: Iterable[str], names: Iterable[str]) -> list[str] | None:
+        """Return the names that words are made of; None: they are not."""
+        longest_first = sorted(names, key=len, reverse=True)
+        pattern = re.compile("|".join(map(re.escape, longest_first)))
+        found: list[str] = []
+        for word in words:
+            parts = pattern.findall(word)
+            if "".join(parts) != word:
+                return None
+            found += parts
+        return found
+
+    def numbers(self, key: str, values: object, count: int) -> list[float | None]:
+        """Return numbers, None where one is missing."""
+        if (
+            not isinstance(values, list)
+            or len(values) != count
+            or not all(value is None or _is_number(value) for value in values)
+        ):
+            raise self.fault(f"human.{key} is {values!r}; give {count} numbers, null for missing")
+        return [None if value is None else float(value) for value in values]
+
+    def normalised(self, key: str, ratings: Sequence[float | None]) -> list[float | None]:
+        """Return ratings from 1 to 7 as the published ones: less 1, and summing to 1."""
+        shares = [0.0 if rating is None else rating - 1 for rating in ratings]
+        if min(shares) < 0 or sum(shares) <= 0:
+            raise self.fault(f"human.{key} has no ratings from 1 to 7; let one be above 1")
+        return [
+            None if rating is None else share / sum(shares)
+            for rating, share in zip(ratings, shares, strict=True)
+        ]
+
+    def check(self, film: Film) -> None:
+        """Refuse places, walls and steps that are not on the floor."""
+        free = {
+            (x, y) for x in range(1, film.size[0] + 1) for y in range(1, film.size[1] + 1)
+        } - film.walls
+        for place, cell in film.places.items():
+            if cell not in free:
+                raise self.fault(f"{place} at {list(cell)} is off the floor or in a wall")
+        if len(set(film.places.values())) < len(film.places):
+            raise self.fault("two places are in one cell; move one")
+        for number, cell in enumerate(film.path, 1):
+            if cell not in free:
+                raise self.fault(
+                    f"step {number} of path_xy, {list(cell)}, is off the floor or in a wall"
+                )
+        if not film.path:
+            raise self.fault("path_xy is empty; give the cells of the agent, one for each tick")
+
+    def size(self) -> tuple[int, int]:
+        """Return the size of the floor."""
+        given = self.world.get("size")
+        width, height = self.cell(given, "size")
+        if min(width, height) < 1 or width * height > _MOST_CELLS:
+            raise self.fault(
+                f"size is {given!r}; give two numbers from 1, whose product is at "
+                f"most {_MOST_CELLS}"
+            )
+        return width, height
+
+    def flag(self, key: str) -> bool:
+        """Return a truth value; a missing one is false."""
+        value = self.entry.get(key, False)
+        if not isinstance(value, bool):
+            raise self.fault(f"{key} is {value!r}; give true or false")
+        return value
+
+    def goal(self, value: object, key: str) -> str | None:
+        """Return a goal's name, None for nothing."""
+        if value is None or value == NOTHING:
+            return None
+        if not _is_name(value):
+            raise self.fault(f"{key} names the goal {value!r}; give a name or null")
+        return str(value)
+
+    def cells(self, key: str, given: object) -> list[Cell]:
+        """Return a list of cells."""
+        if not isinstance(given, list):
+            raise self.fault(f"{key} is {given!r}; list cells as [x, y]")
+        return [self.cell(each, key) for each in given]
+
+    def cell(self, given: object, key: str) -> Cell:
+        """Return two whole numbers."""
+        if not isinstance(given, list) or len(given) != 2 or not all(map(_is_whole, given)):
+            raise self.fault(f"{key} has {given!r}; give two whole numbers [x, y]")
+        return int(given[0]), int(given[1])
+
+
+def _check_size(film: Film, parameters: FilmParameters) -> None:
+    """Refuse more hypotheses than fit into memory."""
+    if grid_for(film, parameters) is None:
+        raise InputError(
+            f"film {film.name} has more hypotheses than fit into memory, at most "
+            f"{MOST_HYPOTHESES:,}; name fewer reward_levels, or fewer alternatives"
+        )
+
+
+def _owner(entry: object, number: int) -> str:
+    if not isinstance(entry, Mapping) or not isinstance(entry.get("id"), int | str):
+        raise InputError(f"film {number} of scenarios has no id; give it a number")
+    return f"film {entry['id']}"
+
+
+def _groups(given: object) -> dict[str, str]:
+    """Return the group of each film by id."""
+    if not isinstance(given, Mapping) or not all(isinstance(ids, list) for ids in given.values()):
+        raise InputError(f"groups are {given!r}; give lists of film ids by name")
+    return {str(film): str(name) for name, films in given.items() for film in films}
+
+
+def _list(given: object, owner: str, key: str) -> list[Any]:
+    if not isinstance(given, list) or not given:
+        raise InputError(
+            f"{owner} has no list of {key}, as files of films in the form of the food trucks have"
+        )
+    return given
+
+
+def _joined(goals: Iterable[str | None]) -> str:
+    return "+".join(goal or NOTHING for goal in goals)
+
+
+def _is_name(value: object) -> bool:
+    return isinstance(value, str) and value not in ("", _UNKNOWN, NOTHING) and "." not in value
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)

@@ -1,0 +1,106 @@
+"""Acts of a story in a world: calls of the scripted world, or programs for bots."""
+
+import json
+from collections.abc import Sequence
+
+from beliefnest.suites.stories.floor_plan import FloorPlan, feet
+from beliefnest.suites.stories.story import Act, Come, Go, Look, Move, Tell, UseDoor, Write
+from beliefnest.world.claims import Claim
+from beliefnest.world.values import Position
+from beliefnest.worlds.scripted.world import ScriptedWorld
+
+__all__ = ["programs_of", "tell"]
+
+
+def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
+    """Do one act in one tick."""
+    with world.tick():
+        match act:
+            case Come(agents, room):
+                for agent in agents:
+                    world.place_agent(agent, feet(plan.stands[room, agent]))
+            case Go(agents):
+                for agent in agents:
+                    world.place_agent(agent, feet(plan.apart[agent]))
+            case Move(agent, thing, source, target):
+                item = {plan.items[thing]: 1}
+                world.withdraw(agent, plan.places[source], item)
+                world.deposit(agent, plan.places[target], item)
+            case UseDoor(agent, room, opens):
+                world.use_door(agent, plan.doors[room], open=opens)
+            case Write(agent, room, text):
+                world.write_sign(agent, plan.signs[room], text)
+            case Look(agent, place):
+                world.open(agent, plan.places[place])
+            case Tell(agent, None):
+                world.say(agent, act.text, _claims(act, plan))
+            case Tell(agent, str(hearer)):
+                world.whisper(agent, hearer, act.text, _claims(act, plan))
+            case _:
+                pass
+
+
+def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
+    """Return the programs with which bots perform an act, by agent; empty: no bot acts."""
+    match act:
+        case Come(agents, room):
+            return {agent: _walk(plan.stands[room, agent], act.shuts) for agent in agents}
+        case Go(agents):
+            return {agent: _walk(plan.apart[agent], act.shuts) for agent in agents}
+        case Move() | UseDoor() | Write() | Look() | Tell():
+            return {act.agent: _program(act, plan)}
+        case _:
+            return {}
+
+
+def _program(act: Move | UseDoor | Write | Look | Tell, plan: FloorPlan) -> str:
+    """Return the program of one agent, which ends at the agent's stand, out of the others' way."""
+    match act:
+        case Move(agent, thing, source, target):
+            items = f"{{{plan.items[thing]}: 1}}"
+            taking = f"await getItemFromChest(bot, {_vec3(plan.places[source])}, {items})\n"
+            putting = f"await depositItemIntoChest(bot, {_vec3(plan.places[target])}, {items})\n"
+            return taking + putting + _walk(plan.stands[source.room, agent])
+        case UseDoor(agent, room, opens):
+            skill = "openDoor" if opens else "closeDoor"
+            return f"await {skill}(bot, {_vec3(plan.doors[room])})\n" + _walk(
+                plan.stands[room, agent]
+            )
+        case Write(agent, room, text):
+            sign = f"await writeSign(bot, {_vec3(plan.signs[room])}, {json.dumps(text)})\n"
+            return sign + _walk(plan.stands[room, agent])
+        case Look(agent, place):
+            where = _vec3(plan.places[place])
+            return (
+                f"await goToPosition(bot, {where}, 2)\n"
+                f"const inside = await bot.openContainer(bot.blockAt({where}))\n"
+                "await bot.closeWindow(inside)\n" + _walk(plan.stands[place.room, agent])
+            )
+        case Tell():
+            return _telling(act, plan)
+
+
+def _claims(told: Tell, plan: FloorPlan) -> list[Claim]:
+    if not told.is_claimed:
+        return []
+    make = Claim.located if told.is_there else Claim.absent
+    return [make(plan.items[told.thing], plan.places[told.place])]
+
+
+def _telling(told: Tell, plan: FloorPlan) -> str:
+    make = "located" if told.is_there else "absent"
+    item, place = json.dumps(plan.items[told.thing]), _vec3(plan.places[told.place])
+    claims = f", [{make}({item}, {place})]" if told.is_claimed else ""
+    said = f"{json.dumps(told.text)}{claims}"
+    if told.hearer is None:
+        return f"await say(bot, {said})"
+    return f"await whisper(bot, {json.dumps(told.hearer)}, {said})"
+
+
+def _walk(block: Position, shuts: Sequence[str] = ()) -> str:
+    doors = ", {closeDoors: true}" if shuts else ""
+    return f"await goToPosition(bot, {_vec3(block)}, 0{doors})"
+
+
+def _vec3(position: Position) -> str:
+    return f"new Vec3({', '.join(map(str, position))})"

@@ -1,0 +1,61 @@
+"""Check of expected answers against their story, to find errors in data files.
+
+The check is independent of the nest, and uses only real events. In a story without testimony,
+agents learn the place of a thing only when they are in a room with it. If all believers of a
+question are in that room together, each also knows that the others know the place.
+"""
+
+from collections.abc import Iterator
+
+from beliefnest.suites.stories.questions import Question
+from beliefnest.suites.stories.story import Come, Go, Move, Place, Story
+
+__all__ = ["data_fault"]
+
+
+def data_fault(story: Story, question: Question, expected: str | None) -> str | None:
+    """Return how an expected answer contradicts the story; None: no contradiction is found.
+
+    Args:
+        story: The story.
+        question: The question.
+        expected: Name of the container in the expected answer.
+    """
+    if story.tells or question.at_beginning or question.thing not in story.things:
+        return None
+    thing = question.thing
+    last: tuple[int, Place] | None = None
+    shown = False
+    for number, rooms, place in _states(story, thing):
+        if all(rooms.get(name) == place.room for name in question.believers):
+            if last is None or last[1] != place:
+                last = (number, place)
+            shown = shown or place.container == expected
+    if last is None or last[1].container == expected:
+        return None
+    line = story.lines[last[0]]
+    who = " and ".join(dict.fromkeys(question.believers))
+    there = f" while {who} {'are' if ' and ' in who else 'is'} there" if who else ""
+    never = "" if shown else f"; it is never in the {expected}{there}"
+    return (
+        f"wrong in the data: from {line.place} ({line.text}) on the {thing} is in the "
+        f"{last[1].container} of the {last[1].room}{there}, and nothing after that is known to "
+        f"them{never}"
+    )
+
+
+def _states(story: Story, thing: str) -> Iterator[tuple[int, dict[str, str | None], Place]]:
+    """Yield after every line: its index, the room of each agent, and the place of the thing."""
+    rooms: dict[str, str | None] = {}
+    place = story.things[thing]
+    for number, act in enumerate(story.acts):
+        match act:
+            case Come(agents, room):
+                rooms |= dict.fromkeys(agents, room)
+            case Go(agents):
+                rooms |= dict.fromkeys(agents)
+            case Move(_, moved, _, target) if moved == thing:
+                place = target
+            case _:
+                pass
+        yield number, rooms, place

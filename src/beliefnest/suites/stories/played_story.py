@@ -1,0 +1,324 @@
+"""Playing of stories in a world, with a nest that tracks the beliefs."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+from beliefnest.belief.grounds import Basis
+from beliefnest.errors import InputError, ProgramError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.face.shown import PastSimulator
+from beliefnest.nest.face.simulator import Simulator
+from beliefnest.nest.past.setting import Setting
+from beliefnest.perception.options import ContainerMode, Perception, Testimony
+from beliefnest.suites.stories.acting import programs_of, tell
+from beliefnest.suites.stories.claim_reading import StoryReader, in_words_alone
+from beliefnest.suites.stories.floor_plan import WALL, FloorPlan, lay_out
+from beliefnest.suites.stories.questions import Question
+from beliefnest.suites.stories.story import (
+    Come,
+    Go,
+    Place,
+    Story,
+)
+
+if TYPE_CHECKING:  # Importing models takes long, and few stories need one.
+    from beliefnest.llm.claim_reader import ClaimsFromModel
+
+__all__ = ["Knowing", "PlayedStory", "StoryAnswer"]
+
+_TIMEOUT_TICKS = 2400
+_TICKS_PER_BLOCK = 8
+"""Ticks allowed per block of a walk; more than walking takes."""
+
+
+@dataclass(frozen=True, slots=True)
+class StoryAnswer:
+    """Answer of a simulator to a question about a thing, a door or a sign.
+
+    Attributes:
+        path: Path of the simulator.
+        tick: Tick of the answer.
+        thing: The thing in question.
+        place: Container that holds the thing there; None: no known container.
+        basis: Basis of the belief; None: none.
+        is_open: True if the door is open; None: unknown, or the question is about no door.
+        says: Text of the sign; None: unknown, or the question is about no sign.
+    """
+
+    path: str
+    tick: int
+    thing: str
+    place: Place | None
+    basis: Basis | None
+    is_open: bool | None = None
+    says: str | None = None
+
+    @property
+    def text(self) -> str | None:
+        """Return the name of the container, `open` or `shut`, or the text of the sign.
+
+        None: the answer is unknown, or no container holds the thing.
+        """
+        if self.says is not None:
+            return self.says
+        if self.is_open is not None:
+            return "open" if self.is_open else "shut"
+        return None if self.place is None else self.place.container
+
+
+@dataclass(frozen=True, slots=True)
+class Knowing:
+    """Rules by which agents of a story learn of events that they do not see.
+
+    Attributes:
+        containers: `transparent`: agents in a room know the contents of its containers.
+            `opaque`: agents know contents after they opened a container or saw a transfer.
+        testimony: Effect of claims on hearers (semantics, section 8).
+        sincere: True if hearers assume that speakers believe what they say.
+        claims_from: Model that extracts claims from utterances; None: use the claims that the
+            story states beside the words.
+    """
+
+    containers: ContainerMode = "transparent"
+    testimony: Testimony = "informed"
+    sincere: bool = False
+    claims_from: "ClaimsFromModel | None" = None
+
+
+_KNOWING = Knowing()
+
+
+class PlayedStory:
+    """Played story and its nest; use it in a `with` block, or close it.
+
+    Attributes:
+        story: The story.
+        plan: Floor plan of the story.
+        nest: Nest at the end of the story, open until this object is closed.
+        line_ends: Last tick of each line, in order of `story.lines`.
+    """
+
+    def __init__(self, story: Story, plan: FloorPlan, nest: Nest, line_ends: Sequence[int]) -> None:
+        self.story = story
+        self.plan = plan
+        self.nest = nest
+        self.line_ends = tuple(line_ends)
+
+    @classmethod
+    def play(
+        cls,
+        story: Story,
+        world: str = "scripted",
+        seed: int = 0,
+        asked: Iterable[Question] = (),
+        knowing: Knowing = _KNOWING,
+    ) -> Self:
+        """Open a nest in a world and play the story there.
+
+        Args:
+            story: The story.
+            world: `scripted`, where a line takes one tick, or `embedded`, where bots act.
+            seed: Seed of every random number.
+            asked: Questions that will be asked. Beliefs that are tracked from the start cost
+                less than those computed late. Other questions are possible as well.
+            knowing: Rules by which agents learn of events that they do not see.
+
+        Raises:
+            BodyError: The world could not be started, or died.
+            InputError: A question names an agent or thing that is not in the story.
+            ProgramError: A bot could not do what a line says.
+            UnknownNameError: The world does not exist.
+        """
+        plan = lay_out(story)
+        asked = tuple(asked)
+        for question in asked:
+            check_question(story, question)
+        grace = _grace(story, plan, world)
+        reader = knowing.claims_from
+        setting = story_setting(plan, grace, knowing)
+        claims_from = None if reader is None else StoryReader(reader, plan)
+        nest = Nest.open(setting, world=world, seed=seed, claims_from=claims_from)
+        try:
+            for path in sorted({question.path for question in asked}, key=_deepest_first):
+                _ = nest[path].state
+            told = story if reader is None else in_words_alone(story)
+            ends = _play(told, plan, nest, world, grace)
+        except BaseException:
+            nest.close()
+            raise
+        return cls(story, plan, nest, ends)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.nest.close()
+
+    def answer(self, question: Question) -> StoryAnswer:
+        """Answer a question from the nest.
+
+        Raises:
+            InputError: The question names an agent or a thing that is not in the story.
+        """
+        if question.door is not None:
+            return self._door(self.asked(question), question.door)
+        if question.sign is not None:
+            return self._sign(self.asked(question), question.sign)
+        return self._find(self.asked(question), question.thing)
+
+    def asked(self, question: Question) -> Simulator | PastSimulator:
+        """Return the simulator that a question is about.
+
+        Raises:
+            InputError: The question names an agent or a thing that is not in the story.
+        """
+        check_question(self.story, question)
+        if question.at_beginning:
+            return self.nest.at(self.plan.snapshot.tick)[question.path]
+        return self.nest[question.path]
+
+    def answer_all(self, questions: Iterable[Question]) -> tuple[StoryAnswer, ...]:
+        """Answer several questions from the nest, in their order.
+
+        Raises:
+            InputError: A question names an agent or a thing that is not in the story.
+        """
+        asked = tuple(questions)
+        by_depth = sorted(set(asked), key=lambda question: _deepest_first(question.path))
+        found = {question: self.answer(question) for question in by_depth}
+        return tuple(found[question] for question in asked)
+
+    def line_at(self, tick: int) -> int | None:
+        """Return the index of the line during which a tick passed; None: before the first."""
+        if tick <= self.plan.snapshot.tick:
+            return None
+        return next((n for n, end in enumerate(self.line_ends) if tick <= end), None)
+
+    def _door(self, simulator: Simulator | PastSimulator, room: str) -> StoryAnswer:
+        block = simulator.state.blocks[self.plan.doors[room]]
+        is_open = None if block is None else "open=true" in block
+        return StoryAnswer(simulator.path, simulator.tick, "", None, None, is_open)
+
+    def _sign(self, simulator: Simulator | PastSimulator, room: str) -> StoryAnswer:
+        says = simulator.state.signs.get(self.plan.signs[room])
+        return StoryAnswer(simulator.path, simulator.tick, "", None, None, says=says)
+
+    def _find(self, simulator: Simulator | PastSimulator, thing: str) -> StoryAnswer:
+        item = self.plan.items[thing]
+        containers = simulator.state.containers
+        holding = [p for p, held in sorted(containers.items()) if held.items.get(item)]
+        if not holding:
+            return StoryAnswer(simulator.path, simulator.tick, thing, None, None)
+        latest = max(holding, key=lambda position: containers[position].basis.observed_at)
+        place, basis = self.plan.place_at(latest), containers[latest].basis
+        return StoryAnswer(simulator.path, simulator.tick, thing, place, basis)
+
+
+def _deepest_first(path: str) -> tuple[int, str]:
+    """Return a sort key that puts deep paths first: they create the nodes above them."""
+    return (-path.count("/"), path)
+
+
+def check_question(story: Story, question: Question) -> None:
+    """Check that a question is about agents and things of a story.
+
+    Raises:
+        InputError: The question names an agent or thing that is not in the story.
+    """
+    for agent in question.believers:
+        if agent not in story.agents:
+            there = ", ".join(story.agents)
+            raise InputError(f"{question.text!r}: {agent} is not in the story; there are {there}")
+    if question.door is not None:
+        if question.door not in story.doors:
+            there = ", ".join(story.doors) or "none"
+            raise InputError(
+                f"{question.text!r}: nobody opens or shuts a door of the {question.door}; there "
+                f"are doors of: {there}"
+            )
+        return
+    if question.sign is not None:
+        if question.sign not in story.signs:
+            there = ", ".join(story.signs) or "none"
+            raise InputError(
+                f"{question.text!r}: nobody writes on a sign of the {question.sign}; there are "
+                f"signs of: {there}"
+            )
+        return
+    if question.thing not in story.things:
+        there = ", ".join(story.things)
+        raise InputError(
+            f"{question.text!r}: no line says where the {question.thing} is; there are {there}"
+        )
+
+
+def _grace(story: Story, plan: FloorPlan, world: str) -> int:
+    """Return the ticks for which agents may be out of sight only because they walk.
+
+    An agent that leaves a room does not see the agents in the hall until it gets there. In the
+    scripted world that takes no time. In the embedded world the next line waits for longer than
+    that. So only agents that stayed in the room for another line may have learnt something.
+    """
+    if world == "scripted" or not story.tells:
+        return 0
+    length, _, depth = plan.snapshot.box.shape
+    return _TICKS_PER_BLOCK * (length + depth)
+
+
+def story_setting(plan: FloorPlan, grace: int = 0, knowing: Knowing = _KNOWING) -> Setting:
+    """Return the setting of a story's nest, in which all agents know the building.
+
+    Args:
+        plan: Floor plan of the story.
+        grace: Ticks out of sight in which an agent learns nothing.
+        knowing: Rules by which agents learn of events that they do not see.
+    """
+    return Setting(
+        name="story",
+        snapshot=plan.snapshot,
+        perception=Perception(
+            max_visible_distance=None,
+            hearing="sight",
+            containers=knowing.containers,
+            testimony=knowing.testimony,
+            grace=grace,
+            sincere=knowing.sincere,
+        ),
+        static_blocks=frozenset({WALL}),
+    )
+
+
+def _play(story: Story, plan: FloorPlan, nest: Nest, world: str, grace: int) -> list[int]:
+    """Play every line, and return the last tick of each."""
+    ends = []
+    for line, act in zip(story.lines, story.acts, strict=True):
+        if world == "scripted":
+            tell(nest["/"].scripted, plan, act)
+        else:
+            programs = programs_of(act, plan)
+            # Agents go one after the other if each shuts the door behind itself.
+            shuts = isinstance(act, Come | Go) and act.shuts
+            steps = [{a: p} for a, p in programs.items()] if shuts else [programs]
+            for together in steps:
+                _perform(nest, together, f"{line.place}: {line.text!r}")
+            if grace and isinstance(act, Go):
+                nest["/"].step(grace + 1)
+        ends.append(nest.tick)
+    return ends
+
+
+def _perform(nest: Nest, programs: Mapping[str, str], where: str) -> None:
+    """Let bots perform one act together."""
+    if not programs:
+        nest["/"].step(1)
+        return
+    for agent, result in nest["/"].run_all(programs, _TIMEOUT_TICKS).items():
+        if not result.ok:
+            raise ProgramError(f"{where}: the program of {agent} failed: {result.error}")

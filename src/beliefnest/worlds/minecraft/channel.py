@@ -1,0 +1,278 @@
+"""Python's end of the channel to Node (design/channel.md).
+
+Length-prefixed msgpack over a socket pair. Requests are answered one at a time; frames
+arrive before the answer of the request that caused them.
+"""
+
+import socket
+import struct
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any, Self, TypeVar
+
+import msgspec
+
+from beliefnest.errors import BodyError, BodyLostError, InputError, WorldError
+from beliefnest.owned import Owned
+from beliefnest.world.texts import escaped
+from beliefnest.worlds.minecraft.child import Child
+from beliefnest.worlds.process_limits import ProcessLimits
+
+__all__ = ["PROTOCOL", "Channel"]
+
+PROTOCOL = 3
+"""Version of the channel's messages; both sides state it."""
+
+_HEADER = struct.Struct(">I")
+_MAX_MESSAGE = 1 << 30
+_WAIT_SECONDS = 1.0
+
+FrameHandler = Callable[[dict[str, Any]], None]
+PerceptsHandler = Callable[[], dict[str, Any]]
+A = TypeVar("A")
+T = TypeVar("T")
+
+
+class _BrokenError(Exception):
+    """Failure of Node to follow the protocol, or to answer at all."""
+
+
+class Channel(Owned):
+    """Running Node process and the socket to it; made by `Channel.start`.
+
+    A forked child of this process cannot use the channel: `request` and `post` raise ForkedError.
+    """
+
+    def __init__(self, child: Child, connection: socket.socket, silence: float) -> None:
+        super().__init__()
+        self._child = child
+        self._connection = connection
+        self._silence = silence
+        self._wait = min(_WAIT_SECONDS, silence)
+        connection.settimeout(self._wait)
+        self._number = 0
+        self._tick: int | None = None
+        self._closed = False
+
+    @classmethod
+    def start(cls, command: Sequence[str], limits: ProcessLimits | None = None) -> Self:
+        """Start a process that speaks the channel's protocol.
+
+        Args:
+            command: The program and its arguments; the numbers of the two descriptors are appended.
+            limits: Limits of the process.
+
+        Raises:
+            BodyError: The program could not be started.
+        """
+        limits = limits or ProcessLimits()
+        ours, theirs = socket.socketpair()
+        try:
+            child = Child.start(command, theirs.fileno(), limits)
+        except BaseException:
+            ours.close()
+            raise
+        finally:
+            theirs.close()
+        return cls(child, ours, limits.silence)
+
+    @property
+    def pid(self) -> int:
+        """Process id of Node."""
+        return self._child.pid
+
+    @property
+    def lost(self) -> bool:
+        """True if Node has ended and will answer nothing more."""
+        return not self._child.alive
+
+    def request(
+        self,
+        op: str,
+        on_frame: FrameHandler | None = None,
+        percepts: PerceptsHandler | None = None,
+        **arguments: Any,
+    ) -> Any:
+        """Send a request and return its result; frames that arrive before it go to `on_frame`.
+
+        If Node asks for the agents' present percepts, `percepts` answers.
+
+        Raises:
+            InputError: A text of the request contains half a character and cannot be sent.
+            WorldError: Node refused the request as impossible.
+            BodyLostError: Node ended or had to be killed; the message contains its last output.
+            BodyError: Node failed to fulfil the request.
+        """
+        self.check_own("the Minecraft side")
+        if self._closed:
+            raise BodyError(f"the world was closed and cannot do {op!r} any more; open another one")
+        message = _encoded(op, {"id": self._number + 1, "op": op, **arguments})
+        self._number += 1
+        self._tick = None
+        try:
+            self._send(message)
+            answer, refused = self._answer(on_frame, percepts)
+        except (OSError, EOFError) as error:
+            raise self._lost(op) from error
+        except _BrokenError as error:
+            raise self._lost(op, str(error)) from error
+        except BaseException:
+            # Kill Node: its late answer would be taken for that of the next request.
+            self._child.kill()
+            raise
+        if refused is not None:
+            raise refused
+        return _result(op, answer)
+
+    def post(self, op: str, **arguments: Any) -> None:
+        """Send a message that has no answer; this is possible during a request.
+
+        Raises:
+            BodyLostError: Node accepts nothing any more and was killed. If it had ended before, the
+                next request raises the error.
+        """
+        self.check_own("the Minecraft side")
+        try:
+            self._send(_packed({"op": op, **arguments}))
+        except _BrokenError as error:
+            raise self._lost(op, str(error)) from error
+        except OSError:
+            return
+
+    def kill(self) -> None:
+        """Kill the process at once."""
+        self._child.kill()
+
+    def close(self) -> None:
+        """End the process without waiting for its last requests."""
+        self._closed = True
+        self._connection.close()
+        self._child.close()
+
+    def disown(self) -> None:
+        """Close the socket in a forked child; the parent's copy stays open."""
+        self._connection.close()
+
+    def _answer(
+        self, on_frame: FrameHandler | None, percepts: PerceptsHandler | None
+    ) -> tuple[dict[str, Any], Exception | None]:
+        """Return the answer to a request, and the error of handling a frame or question before it.
+
+        Frames are read to the end in any case, so that the next request finds its own answer.
+        """
+        refused: Exception | None = None
+        while True:
+            message = self._receive()
+            if "beat" in message or "notice" in message:
+                self._note(message)
+            elif "frame" in message:
+                if on_frame is None:
+                    raise _BrokenError("sent a frame of its own accord")
+                self._tick = message["frame"]["tick"]
+                if refused is None:
+                    try:
+                        on_frame(message["frame"])
+                    except Exception as error:  # noqa: BLE001 - raised again after the answer
+                        refused = error
+            elif "perceive" in message:
+                if percepts is None:
+                    raise _BrokenError("asked for percepts in a request without any")
+                told = None
+                if refused is None:
+                    try:
+                        told = percepts()
+                    except Exception as error:  # noqa: BLE001 - raised again after the answer
+                        refused = error
+                self._send(_packed({"percepts": told}))
+            elif message.get("id") == self._number:
+                return message, refused
+            else:
+                raise _BrokenError(f"answered request {message.get('id')}, not {self._number}")
+
+    def _note(self, message: dict[str, Any]) -> None:
+        """Handle a heartbeat, or show the user a text from Node."""
+        if "notice" in message:
+            sys.stderr.write(f"{escaped(message['notice'])}\n")
+        elif message["beat"] is not None:
+            self._tick = message["beat"]
+
+    def _send(self, message: bytes) -> None:
+        rest = memoryview(message)
+        while rest:
+            rest = rest[self._patiently(self._connection.send, rest) :]
+
+    def _receive(self) -> dict[str, Any]:
+        (length,) = _HEADER.unpack(self._read(_HEADER.size))
+        if length > _MAX_MESSAGE:
+            raise _BrokenError(f"announced a message of {length} bytes")
+        try:
+            message = msgspec.msgpack.decode(self._read(length), type=dict[str, Any])
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+            raise _BrokenError(f"sent {length} bytes that are no message ({error})") from error
+        return message
+
+    def _read(self, length: int) -> bytes:
+        parts = bytearray()
+        while len(parts) < length:
+            wanted = min(length - len(parts), 1 << 20)
+            part = self._patiently(self._connection.recv, wanted)
+            if not part:
+                raise EOFError
+            parts += part
+        return bytes(parts)
+
+    def _patiently(self, act: Callable[[A], T], argument: A) -> T:
+        """Read or write as soon as that is possible.
+
+        The method counts short waits instead of reading the clock, because time in which this
+        process itself was stopped is not Node's silence.
+        """
+        waited = 0.0
+        while True:
+            try:
+                return act(argument)
+            except TimeoutError:
+                waited += self._wait
+                if waited >= self._silence:
+                    raise _BrokenError(f"gave no sign of life for {self._silence:g} s") from None
+
+    def _lost(self, op: str, fault: str | None = None) -> BodyLostError:
+        """Return the error for a Node that ended by itself, or that is killed for a fault."""
+        if fault is not None:
+            self._child.kill()
+        elif not self._child.ends():
+            fault = "closed the channel"
+            self._child.kill()
+        how, words = self._child.obituary()
+        ended = f"ended {how}" if fault is None else f"{fault} and was killed"
+        when = f"during {op!r}" if self._tick is None else f"during {op!r}, after tick {self._tick}"
+        told = f"; its last words:\n{words}" if words else "; it said nothing"
+        return BodyLostError(f"Node {ended} {when}{told}")
+
+
+def _packed(message: dict[str, Any]) -> bytes:
+    body = msgspec.msgpack.encode(message)
+    return _HEADER.pack(len(body)) + body
+
+
+def _encoded(op: str, message: dict[str, Any]) -> bytes:
+    try:
+        return _packed(message)
+    except UnicodeEncodeError as error:
+        half = error.object[error.start]
+        raise InputError(
+            f"a text in the request {op!r} contains half a character ({half!a}); "
+            "give whole characters"
+        ) from error
+
+
+def _result(op: str, answer: dict[str, Any]) -> Any:
+    if answer["ok"]:
+        return answer.get("result")
+    error = answer["error"]
+    if error["kind"] == "bad_request":
+        raise WorldError(error["message"])
+    if error["kind"] == "world":
+        raise BodyError(error["message"])
+    stack = error.get("stack", "")
+    raise BodyError(f"the Minecraft side failed in {op!r}: {error['message']}\n{stack}".rstrip())

@@ -1,0 +1,336 @@
+"""Embedded Minecraft world: one Node process with the server and all bots."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Self
+
+import msgspec
+import numpy as np
+
+from beliefnest.errors import BodyError, BodyLostError, WorldError
+from beliefnest.owned import Owned
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.values import Box, Event
+from beliefnest.worlds.minecraft import node_messages
+from beliefnest.worlds.minecraft.channel import PROTOCOL, Channel
+from beliefnest.worlds.minecraft.node_files import EMBEDDED, node_command
+from beliefnest.worlds.process_limits import ProcessLimits
+from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
+
+__all__ = ["MINECRAFT", "EmbeddedBody", "EmbeddedWorld", "started"]
+
+MINECRAFT = "1.20.4"
+"""Minecraft version of the embedded world."""
+
+
+class _Telling:
+    """Messages to Node about an agent's knowledge: first all of it, then the changes."""
+
+    def __init__(self, sense: Sense, box: Box) -> None:
+        self._sense, self._box = sense, box
+        self._told = sense()
+
+    def whole(self) -> dict[str, Any]:
+        """Return the agent's whole knowledge as a message."""
+        return node_messages.percepts_message(self._told)
+
+    def changes(self) -> dict[str, Any]:
+        """Return the changes since the last message."""
+        before, self._told = self._told, self._sense()
+        if before is self._told:
+            return {}
+        return node_messages.percepts_changes(before, self._told, self._box.low)
+
+
+class EmbeddedBody:
+    """Region of the embedded world."""
+
+    def __init__(
+        self,
+        channel: Channel,
+        region: str,
+        snapshot: Snapshot,
+        sink: Sink,
+        on_close: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._channel = channel
+        self._region = region
+        self._box: Box = snapshot.box
+        self._tick = snapshot.tick
+        self._internal_state = snapshot.internal_state
+        self._agents = frozenset(snapshot.agents)
+        self._sink = sink
+        self._happened: list[tuple[int, Event]] = []
+        self._closed = False
+        self._on_close = on_close
+
+    @classmethod
+    def opened(
+        cls,
+        channel: Channel,
+        region: str,
+        seed: str,
+        snapshot: Snapshot,
+        sink: Sink,
+        known: Sequence[str],
+        on_close: Callable[[], None] = lambda: None,
+    ) -> Self:
+        """Let Node create and fill a region; `known` are all agents that programs may mention."""
+        channel.request(
+            "create_region",
+            region=region,
+            seed=seed,
+            known=known,
+            **node_messages.snapshot_message(snapshot),
+        )
+        return cls(channel, region, snapshot, sink, on_close)
+
+    @property
+    def goes_on(self) -> bool:
+        """False: its clock stands still between calls."""
+        return False
+
+    @property
+    def lost(self) -> bool:
+        """True if its Node process has ended."""
+        return self._channel.lost
+
+    @property
+    def tick(self) -> int:
+        """Latest tick of the body."""
+        return self._tick
+
+    @property
+    def internal_state(self) -> bytes:
+        """State of processes that its snapshot does not contain, at the end of the last call."""
+        return self._internal_state
+
+    def snapshot(self) -> Snapshot:
+        """Return the present state."""
+        return node_messages.snapshot_of(
+            self._channel.request("snapshot", region=self._region), self._box
+        )
+
+    def run(
+        self,
+        programs: Mapping[str, str],
+        timeout_ticks: int,
+        senses: Mapping[str, Sense] | None = None,
+        rules: RunRules = AS_USUAL,
+    ) -> Mapping[str, ProgramResult]:
+        """Run programs by agent, together, until the last has ended."""
+        for agent in programs:
+            if agent not in self._agents:
+                raise WorldError(
+                    f"{agent} has no bot in {self._region}: its pose is not known there; "
+                    f"there are {', '.join(sorted(self._agents)) or 'no bots'}"
+                )
+        self._happened = []
+        telling = {agent: _Telling(sense, self._box) for agent, sense in (senses or {}).items()}
+        answer = self._channel.request(
+            "run",
+            self._take,
+            lambda: {agent: each.changes() for agent, each in telling.items()},
+            region=self._region,
+            programs=dict(programs),
+            timeout_ticks=timeout_ticks,
+            speech_ticks=rules.speech_ticks,
+            remembers=rules.remembers,
+            past={agent: msgspec.to_builtins(each) for agent, each in rules.past.items()},
+            senses={agent: each.whole() for agent, each in telling.items()},
+        )
+        self._tick, self._internal_state = answer["tick"], answer["internal_state"]
+        return node_messages.results_of(answer["results"], tuple(self._happened))
+
+    def step(self, ticks: int) -> None:
+        """Let ticks pass without programs."""
+        answer = self._channel.request("step", self._take, region=self._region, ticks=ticks)
+        self._tick, self._internal_state = answer["tick"], answer["internal_state"]
+
+    def set_state(self, snapshot: Snapshot) -> None:
+        """Set the state to a snapshot by changing only what differs; no frames are sent."""
+        before = self.snapshot()
+        self._channel.request(
+            "apply", region=self._region, tick=snapshot.tick, **_difference(before, snapshot)
+        )
+        self._tick, self._internal_state = snapshot.tick, snapshot.internal_state
+        self._agents = frozenset(snapshot.agents)
+
+    def close(self) -> None:
+        """Remove the region; a second call does nothing."""
+        if self._closed or self.lost:
+            return
+        self._closed = True
+        try:
+            self._channel.request("destroy_region", region=self._region)
+        except BodyError:
+            # Kill Node: no new region can use the place of one that it failed to remove.
+            self._channel.kill()
+        else:
+            self._on_close()
+
+    def _take(self, message: dict[str, Any]) -> None:
+        frame: Frame
+        _, frame = node_messages.frame_of(message)
+        self._tick = frame.tick
+        self._happened.extend((frame.tick, event) for event in frame.events)
+        self._sink(frame)
+
+
+class EmbeddedWorld(Owned):
+    """World of one Node process; a process that ended is replaced for the next body.
+
+    The first process starts with the first body.
+
+    Args:
+        seed: Seed of the world's own random numbers.
+        limits: Limits of Node.
+    """
+
+    def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
+        super().__init__()
+        self._seed = seed
+        self._limits = limits or ProcessLimits()
+        self._channel: Channel | None = None
+        self._versions: Mapping[str, str] = {}
+        self._names: set[str] = set()
+        self._agents: set[str] = set()
+        self._closed = False
+
+    @classmethod
+    def start(cls, seed: int, limits: ProcessLimits | None = None) -> Self:
+        """Start Node with an empty world at once.
+
+        Raises:
+            BodyError: Node or the bundle is missing, or the start failed.
+        """
+        world = cls(seed, limits)
+        world._live()
+        return world
+
+    @property
+    def has_physics(self) -> bool:
+        """True: it is Minecraft."""
+        return True
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Versions of the running programs by name, including the channel's protocol."""
+        return self._versions
+
+    @property
+    def pid(self) -> int:
+        """Process id of Node, which is started if necessary."""
+        return (self._channel or self._live()).pid
+
+    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
+        """Create a region, fill it, and let the bots of its agents join.
+
+        If Node has ended, another process is started.
+        """
+        channel = self._live()
+        if name in self._names:
+            raise WorldError(f"there is a body {name!r} already")
+        # Programs may mention agents that are absent from this belief.
+        self.knows(snapshot.agents)
+        names, known = self._names, sorted(self._agents)
+        body = EmbeddedBody.opened(
+            channel, name, seed, snapshot, sink, known, lambda: names.discard(name)
+        )
+        names.add(name)
+        return body
+
+    def knows(self, agents: Iterable[str]) -> None:
+        """Add agents that programs may mention in any body, also where they are absent."""
+        self._agents |= set(agents)
+
+    def another(self) -> "EmbeddedWorld":
+        """Return another world with a process of its own."""
+        other = EmbeddedWorld(self._seed, self._limits)
+        other._agents |= self._agents
+        return other
+
+    def interrupt(self) -> None:
+        """Kill the process, whatever it is doing."""
+        if self._channel is not None:
+            self._channel.kill()
+
+    def close(self) -> None:
+        """End the process."""
+        self._closed = True
+        if self._channel is not None:
+            self._channel.close()
+
+    def _live(self) -> Channel:
+        """Return the channel to Node, which is started if none is running."""
+        self.check_own("the world")
+        if self._closed:
+            raise BodyError("this world was closed; open another one")
+        if self._channel is None or self._channel.lost:
+            if self._channel is not None:
+                self._channel.close()
+            self._channel, self._versions = started(self._seed, self._limits)
+            self._names = set()
+        return self._channel
+
+
+def started(
+    seed: int,
+    limits: ProcessLimits,
+    program: str = EMBEDDED,
+    writable: Path | None = None,
+    **more: Any,
+) -> tuple[Channel, Mapping[str, str]]:
+    """Start Node with an empty world; return the channel to it, and the running versions.
+
+    Args:
+        seed: Seed of the world's own random numbers.
+        limits: Limits of Node.
+        program: Name of the bundled program.
+        writable: The only folder to which it may write.
+        more: Further arguments of the first request.
+
+    Raises:
+        BodyError: Node or the bundle is missing, or the start failed.
+    """
+    channel = Channel.start(node_command(limits, program, writable), limits)
+    try:
+        told = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT, **more)
+    except BodyLostError as error:
+        channel.close()
+        raise BodyError(f"Node cannot be started; run `beliefnest doctor`. {error}") from error
+    except BaseException:
+        channel.close()
+        raise
+    return channel, {program: str(version) for program, version in told.items()}
+
+
+def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
+    """Return the changes from one snapshot to another, as arguments of `apply`."""
+    low = after.box.low
+    other = before.blocks != after.blocks
+    places = np.argwhere(other).tolist()
+    gone = before.containers.keys() - after.containers.keys()
+    # A container that replaces another one begins empty.
+    contents = {
+        place: items
+        for place, items in after.containers.items()
+        if before.containers.get(place) != items or other[after.box.index(place)]
+    }
+    agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
+    for name, agent in after.agents.items():
+        if before.agents.get(name) != agent:
+            agents[name] = node_messages.agent_message(agent)
+    return {
+        **node_messages.signs_message(after.signs),
+        "blocks": [
+            [low[0] + i, low[1] + j, low[2] + k, int(after.blocks[i, j, k])] for i, j, k in places
+        ],
+        "containers": [
+            *node_messages.contents_message(contents),
+            *([*place, None] for place in sorted(gone)),
+        ],
+        "agents": agents,
+        "items": node_messages.items_message(after.items),
+        "internal_state": after.internal_state,
+    }

@@ -1,0 +1,257 @@
+"""Conversion of the channel's messages to Python values and back (design/channel.md)."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from beliefnest.errors import BeliefNestError, BodyError
+from beliefnest.world.claims import Claim, claims_from_plain
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.values import (
+    AgentState,
+    Block,
+    Box,
+    DroppedItem,
+    Event,
+    Items,
+    Position,
+    Sign,
+)
+from beliefnest.worlds.protocol import Aim, Called, Fault, ProgramResult, Sensed, Unfinished
+
+__all__ = [
+    "agent_message",
+    "contents_message",
+    "frame_of",
+    "items_message",
+    "percepts_changes",
+    "percepts_message",
+    "pose_message",
+    "results_of",
+    "signs_message",
+    "snapshot_message",
+    "snapshot_of",
+]
+
+
+class _Frame(msgspec.Struct, frozen=True):
+    region: str
+    tick: int
+    agents: dict[str, AgentState | None] = {}
+    blocks: list[list[int | str]] = []
+    containers: list[tuple[int, int, int, dict[str, int] | None]] = []
+    items: dict[int, DroppedItem | None] = {}
+    events: list[Event] = []
+
+
+class _Snapshot(msgspec.Struct, frozen=True):
+    tick: int
+    blocks: bytes
+    containers: list[tuple[int, int, int, dict[str, int]]]
+    agents: dict[str, AgentState]
+    items: dict[int, DroppedItem] = {}
+    internal_state: bytes = b""
+    signs: list[tuple[int, int, int, str]] = []
+
+
+class _Result(msgspec.Struct, frozen=True):
+    ok: bool
+    ticks: int
+    lines: tuple[int, ...]
+    log: tuple[str, ...]
+    unfinished: tuple[Unfinished, ...]
+    aims: tuple[Aim, ...] = ()
+    error: Fault | None = None
+    calls: tuple[Called, ...] = ()
+
+
+def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
+    """Return region and frame of a frame message.
+
+    Raises:
+        BodyError: The message is malformed.
+    """
+    got = _converted(message, _Frame)
+    return got.region, Frame(
+        got.tick,
+        dict(sorted(got.agents.items())),
+        dict(sorted(map(_block, got.blocks))),
+        dict(sorted(((x, y, z), items) for x, y, z, items in got.containers)),
+        dict(sorted(got.items.items())),
+        tuple(map(_frozen, got.events)),
+    )
+
+
+def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
+    """Return the snapshot in a message about a box.
+
+    Raises:
+        BodyError: The message is malformed.
+    """
+    got = _converted(message, _Snapshot)
+    if len(got.blocks) != 4 * box.shape[0] * box.shape[1] * box.shape[2]:
+        raise BodyError(f"Node sent {len(got.blocks)} bytes of blocks for a box of {box.shape}")
+    return Snapshot(
+        got.tick,
+        box,
+        np.frombuffer(got.blocks, dtype="<i4").reshape(box.shape).astype(np.int32),
+        {(x, y, z): items for x, y, z, items in sorted(got.containers, key=lambda c: c[:3])},
+        dict(sorted(got.agents.items())),
+        dict(sorted(got.items.items())),
+        got.internal_state,
+        {(x, y, z): text for x, y, z, text in sorted(got.signs)},
+    )
+
+
+def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
+    """Return a snapshot as the arguments of `create_region`."""
+    return {
+        "tick": snapshot.tick,
+        "box": [snapshot.box.low, snapshot.box.high],
+        "blocks": snapshot.blocks.astype("<i4").tobytes(),
+        "containers": contents_message(snapshot.containers),
+        "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
+        "items": items_message(snapshot.items),
+        "internal_state": snapshot.internal_state,
+        **signs_message(snapshot.signs),
+    }
+
+
+def signs_message(signs: Mapping[Position, str]) -> dict[str, Any]:
+    """Return the texts on signs as a further part of a message; empty if there are none."""
+    return {"signs": [[*place, text] for place, text in sorted(signs.items())]} if signs else {}
+
+
+def items_message(items: Mapping[int, DroppedItem]) -> dict[str, Any]:
+    """Return dropped items by number as a message."""
+    return {str(number): item for number, item in sorted(items.items())}
+
+
+def contents_message(containers: Mapping[Position, Items]) -> list[list[Any]]:
+    """Return container contents as rows of x, y, z, items."""
+    return [[*place, dict(items)] for place, items in sorted(containers.items())]
+
+
+def agent_message(agent: AgentState) -> dict[str, Any]:
+    """Return an agent's state as a message."""
+    return {
+        "position": agent.position,
+        "yaw": agent.yaw,
+        "pitch": agent.pitch,
+        "on_ground": agent.on_ground,
+        "equipment": dict(agent.equipment),
+        "inventory": dict(agent.inventory),
+        "health": agent.health,
+        "food": agent.food,
+    }
+
+
+def percepts_message(sensed: Sensed) -> dict[str, Any]:
+    """Return PERCEPTS of an agent whose program begins: everything that it knows."""
+    return {
+        "states": sensed.blocks.astype("<i4").tobytes(),
+        "agents": {name: pose_message(agent) for name, agent in sensed.agents.items()},
+        "items": items_message(sensed.items),
+        **signs_message(sensed.signs),
+        **({"heard": sensed.heard} if sensed.heard else {}),
+    }
+
+
+def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, Any]:
+    """Return PERCEPTS of an agent's new knowledge; `low` is the box's lowest corner."""
+    places = np.argwhere(before.blocks != after.blocks).tolist()
+    agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
+    for name, agent in after.agents.items():
+        if before.agents.get(name) != agent:
+            agents[name] = pose_message(agent)
+    items: dict[str, Any] = {str(number): None for number in before.items.keys() - after.items}
+    for number, item in after.items.items():
+        if before.items.get(number) != item:
+            items[str(number)] = item
+    parts = {
+        "blocks": [
+            [low[0] + i, low[1] + j, low[2] + k, int(after.blocks[i, j, k])] for i, j, k in places
+        ],
+        "agents": dict(sorted(agents.items())),
+        "items": dict(sorted(items.items(), key=lambda item: int(item[0]))),
+        "heard": after.heard,
+    }
+    changes = {name: part for name, part in parts.items() if part}
+    if before.signs != after.signs:
+        changes["signs"] = [[*place, text] for place, text in sorted(after.signs.items())]
+    return changes
+
+
+def pose_message(agent: AgentState) -> dict[str, Any]:
+    """Return the visible part of an agent's state as a message."""
+    return {
+        "position": agent.position,
+        "yaw": agent.yaw,
+        "pitch": agent.pitch,
+        "on_ground": agent.on_ground,
+        "equipment": dict(agent.equipment),
+    }
+
+
+def results_of(
+    message: Mapping[str, Any], happened: tuple[tuple[int, Event], ...]
+) -> Mapping[str, ProgramResult]:
+    """Return results of programs by agent; the events of the run, by tick, belong to all.
+
+    Raises:
+        BodyError: The message is malformed.
+    """
+    got = _converted(message, dict[str, _Result])
+    return {
+        agent: ProgramResult(
+            agent,
+            r.ok,
+            r.error,
+            r.ticks,
+            happened,
+            r.lines,
+            r.log,
+            r.unfinished,
+            r.aims,
+            calls=r.calls,
+        )
+        for agent, r in got.items()
+    }
+
+
+def _block(row: list[int | str]) -> tuple[Position, Block]:
+    """Return position and block of a row x, y, z, state, and a sign's text if it has one."""
+    match row:
+        case [int(x), int(y), int(z), int(state)]:
+            return (x, y, z), state
+        case [int(x), int(y), int(z), int(state), str(text)]:
+            return (x, y, z), Sign(state, text)
+    raise BodyError(f"Node sent a malformed block: {row}")
+
+
+def _frozen(event: Event) -> Event:
+    """Return the event with tuples in its detail, and claims in their stored form."""
+    detail = {
+        key: tuple(value) if isinstance(value, list) else value
+        for key, value in event.detail.items()
+    }
+    if "claims" in detail:
+        detail["claims"] = tuple(claim.plain() for claim in _claims(detail["claims"]))
+    return replace(event, detail=detail)
+
+
+def _claims(told: Any) -> tuple[Claim, ...]:
+    try:
+        return claims_from_plain(told)
+    except BeliefNestError as fault:
+        raise BodyError(f"Node sent malformed claims: {fault}") from fault
+
+
+def _converted(message: Any, kind: type[Any]) -> Any:
+    try:
+        return msgspec.convert(message, kind, strict=False)
+    except msgspec.ValidationError as error:
+        raise BodyError(f"Node sent a malformed message: {error}") from error

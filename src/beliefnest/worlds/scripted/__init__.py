@@ -1,0 +1,1 @@
+"""Scripted world: no Minecraft, no physics; all in this process."""

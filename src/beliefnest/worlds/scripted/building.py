@@ -1,0 +1,87 @@
+"""Skills of the scripted world that change blocks: switching, pressing, breaking, placing."""
+
+from collections.abc import Callable
+from typing import Any
+
+from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.values import Position
+from beliefnest.worlds.scripted.hand import (
+    Doing,
+    Hand,
+    SkillError,
+    block_in,
+    text_in,
+    walk,
+    walk_to_use,
+)
+
+__all__ = ["mine_block", "place_item", "press_button", "switch_lever"]
+
+_MOST_WAITED = 40
+
+
+def switch_lever(*, powered: bool) -> Callable[..., Doing]:
+    """Return the skill that switches a lever; it does nothing if the lever is in that state."""
+
+    def switch(hand: Hand, position: Any) -> Doing:
+        place = block_in(position)
+        yield from walk_to_use(hand, place)
+        if _is_powered(hand, place, "lever") is powered:
+            return
+        yield
+        # Another agent may have switched it in this very tick.
+        if _is_powered(hand, place, "lever") is not powered:
+            hand.world.use_lever(hand.name, place, powered=powered)
+
+    return switch
+
+
+def press_button(hand: Hand, position: Any) -> Doing:
+    """Press a button; if it is pressed already, first wait until it comes out."""
+    place = block_in(position)
+    yield from walk_to_use(hand, place)
+    yield
+    for _ in range(_MOST_WAITED):
+        if not _is_powered(hand, place, "_button"):
+            break
+        yield
+    hand.world.press_button(hand.name, place)
+
+
+def mine_block(hand: Hand, position: Any, name: Any) -> Doing:
+    """Break a block and take its drops."""
+    place, wanted = block_in(position), text_in(name)
+    yield from walk_to_use(hand, place)
+    yield
+    there = _name_at(hand, place)
+    if there != wanted:
+        raise SkillError(f"there is no {wanted} at {place}, but {there}. Look where it is.")
+    hand.world.mine(hand.name, place)
+
+
+def place_item(hand: Hand, name: Any, position: Any) -> Doing:
+    """Place a block of the inventory, from a position next to it."""
+    place, item = block_in(position), text_in(name)
+    if not hand.world.agents[hand.name].inventory.get(item, 0):
+        raise SkillError(f"there is no {item} in the inventory")
+    yield from walk(hand, place, hand.reach(place, beside=True), "the position")
+    yield
+    hand.world.put(hand.name, item, place)
+
+
+def _is_powered(hand: Hand, place: Position, kind: str) -> bool:
+    """Return True if a switch is on; raises SkillError if there is none."""
+    registry, there = Registry.load(), _name_at(hand, place)
+    if not there.endswith(kind):
+        called = kind.strip("_")
+        raise SkillError(f"there is no {called} at {place}, but {there}. Give that of a {called}.")
+    return registry.properties(_state_at(hand, place))["powered"] == "true"
+
+
+def _name_at(hand: Hand, place: Position) -> str:
+    return Registry.load().name(_state_at(hand, place))
+
+
+def _state_at(hand: Hand, place: Position) -> int:
+    world = hand.world
+    return int(world.blocks[world.box.index(place)]) if place in world.box else AIR

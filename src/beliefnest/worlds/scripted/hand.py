@@ -1,0 +1,239 @@
+"""Agents that act in a scripted world: their knowledge, walking, and arguments of skills.
+
+Walking takes one tick for each cell.
+"""
+
+import math
+from collections.abc import Callable, Generator, Mapping
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass, field
+from typing import Any
+
+from beliefnest.errors import BeliefNestError
+from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
+from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.values import AgentState, Point, Position
+from beliefnest.worlds.protocol import NO_WAY, FreeLine
+from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach, feet_in
+from beliefnest.worlds.scripted.world import ScriptedWorld
+
+__all__ = [
+    "REACH",
+    "Doing",
+    "Doors",
+    "Hand",
+    "SkillError",
+    "block_in",
+    "cell_of",
+    "doors_in",
+    "items_in",
+    "number_in",
+    "point_in",
+    "text_in",
+    "walk",
+    "walk_to_use",
+]
+
+REACH = 4.0
+"""Largest distance, in blocks, between the eyes and the middle of a block in use."""
+Doing = Generator[None, None, Any]
+"""Skill in progress: advanced once in each tick, until it returns."""
+
+
+class SkillError(BeliefNestError):
+    """Failure of a skill.
+
+    Attributes:
+        reason: Reason, as in `Fault`.
+    """
+
+    def __init__(self, message: str, reason: str | None = None) -> None:
+        super().__init__(message)
+        self.reason = reason
+
+
+@dataclass(frozen=True)
+class Hand:
+    """Agent that acts in a scripted world.
+
+    Attributes:
+        name: Name of the agent.
+        world: World in which it acts.
+        known: Ground as far as the agent may know it; paths are planned on it.
+        others: The agents that it knows to be present.
+        signs: Texts of signs that it may know.
+        ground: True ground, which carries and stops the body.
+        speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
+        mouth: Utterances that it is about to make, in order.
+        heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
+        has_free_line: Function of eyes and a block that returns whether no known block lies
+            between; None if the agent reaches through everything.
+    """
+
+    name: str
+    world: ScriptedWorld
+    known: Callable[[], Ground]
+    others: Callable[[], Mapping[str, AgentState]]
+    signs: Callable[[], Mapping[Position, str]]
+    ground: Callable[[], Ground]
+    speech_ticks: int = 0
+    mouth: list[object] = field(default_factory=list)
+    heard: list[tuple[str, str, str | None]] = field(default_factory=list)
+    has_free_line: FreeLine | None = None
+
+    def reach(self, place: Position, *, beside: bool = False) -> InReach:
+        """Return the goal of standing where the agent reaches a block; `beside` as in `InReach`."""
+        return InReach(place, REACH, beside, self.has_free_line)
+
+    @property
+    def feet(self) -> Point:
+        """Position of the feet."""
+        return self.world.agent(self.name).position
+
+    @property
+    def cell(self) -> Position:
+        """Cell in which the agent stands."""
+        return cell_of(self.feet)
+
+
+def walk_to_use(hand: Hand, place: Position) -> Doing:
+    """Walk to where a block can be used."""
+    yield from walk(hand, place, hand.reach(place), "the block")
+
+
+@dataclass(frozen=True, slots=True)
+class Doors:
+    """Treatment of doors and gates that can be moved by hand.
+
+    Attributes:
+        opens: Whether to open shut ones if no other path exists.
+        closes: Whether to shut them afterwards, including those that stood open.
+    """
+
+    opens: bool = True
+    closes: bool = False
+
+
+_ANY_DOOR = Doors()
+
+
+def doors_in(value: Any) -> Doors:
+    """Return a program's argument about doors; raises SkillError if it is malformed."""
+    given = {} if value is None else value
+    names = ("openDoors", "closeDoors")
+    if not isinstance(given, dict) or not all(
+        name in names and isinstance(flag, bool) for name, flag in given.items()
+    ):
+        raise SkillError(
+            f"doors may have openDoors and closeDoors, each true or false; it is {value!r}"
+        )
+    return Doors(given.get("openDoors", True), given.get("closeDoors", False))
+
+
+def _way(
+    hand: Hand, goal: Goal, doors: Doors, bumped: AbstractSet[Position]
+) -> tuple[Position, ...] | None:
+    """Return a path that opens no door, or else one that does; avoid cells bumped into."""
+    known = hand.known()
+    way = known.way(hand.cell, goal, bumped)
+    if way is None and doors.opens and known.with_doors_opened.has_doorways:
+        way = known.with_doors_opened.way(hand.cell, goal, bumped)
+    return way
+
+
+def _bring(hand: Hand, cell: Position, *, opens: bool) -> Doing:
+    """Open or shut the door in a cell in one tick, if needed and if it moves by hand."""
+    world, registry = hand.world, Registry.load()
+
+    def is_to_move() -> bool:
+        state = int(world.blocks[world.box.index(cell)]) if cell in world.box else AIR
+        name = registry.name(state)
+        return is_doorway(name) and moves_by_hand(name) and is_open(registry, state) is not opens
+
+    if is_to_move():
+        yield
+        # Another agent may have moved it in this very tick.
+        if is_to_move():
+            world.use_door(hand.name, cell, open=opens)
+
+
+def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_DOOR) -> Doing:
+    """Walk until the goal is met, one cell a tick; return whether the agent walked."""
+    moved = False
+    bumped: set[Position] = set()
+    while not goal.is_met(hand.cell):
+        way = _way(hand, goal, doors, bumped)
+        if way is None:
+            far = math.dist(hand.feet, target)
+            raise SkillError(
+                f"could not reach {what} at {tuple(target)}: there is no way to it on foot; now at "
+                f"{hand.feet}, {far:.1f} blocks away. Go somewhere else, or clear the way first.",
+                NO_WAY,
+            )
+        for cell in way:
+            if doors.opens:
+                yield from _bring(hand, cell, opens=True)
+            yield
+            if not hand.ground().stands(cell):
+                bumped.add(cell)
+                break
+            moved, behind = True, hand.cell
+            _step_to(hand, cell)
+            if doors.closes:
+                yield from _bring(hand, behind, opens=False)
+    return moved
+
+
+def _step_to(hand: Hand, cell: Position) -> None:
+    """Take one step, with the view ahead."""
+    x, _, z = hand.feet
+    feet = feet_in(cell)
+    yaw = math.atan2(-(feet[0] - x), -(feet[2] - z))
+    hand.world.place_agent(hand.name, feet, yaw=yaw, pitch=0.0)
+
+
+def point_in(name: str, value: Any) -> Point:
+    """Return a program's point; raises SkillError if it is not valid."""
+    if not (isinstance(value, list | tuple) and len(value) == 3 and all(map(_is_number, value))):
+        raise SkillError(f"{name} must be a Vec3 of three finite numbers; it is {value!r}")
+    return (float(value[0]), float(value[1]), float(value[2]))
+
+
+def block_in(value: Any) -> Position:
+    """Return the position of the block that contains a point; raises SkillError if not valid."""
+    return cell_of(point_in("position", value))
+
+
+def cell_of(point: Point) -> Position:
+    """Return the cell that contains a point."""
+    return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
+
+
+def items_in(value: Any) -> dict[str, int]:
+    """Return items and their counts; raises SkillError if they are not valid."""
+    registry = Registry.load()
+    if not isinstance(value, dict) or not value:
+        raise SkillError(f"items must say how many of which, like {{diamond: 1}}; it is {value!r}")
+    for name, count in value.items():
+        registry.item_stack(name)
+        if not _is_number(count) or count != int(count) or count < 1:
+            raise SkillError(f"items.{name} must be a whole number above 0; it is {count!r}")
+    return {name: int(count) for name, count in value.items()}
+
+
+def text_in(value: Any) -> str:
+    """Return a text that is not empty; raises SkillError otherwise."""
+    if not isinstance(value, str) or not value.strip():
+        raise SkillError(f"a text is wanted that is not empty; it is {value!r}")
+    return value
+
+
+def number_in(name: str, value: Any) -> float:
+    """Return a number of at least 0; raises SkillError otherwise."""
+    if not _is_number(value) or value < 0:
+        raise SkillError(f"{name} must be a number of at least 0; it is {value!r}")
+    return float(value)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

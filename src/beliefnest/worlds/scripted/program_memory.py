@@ -1,0 +1,77 @@
+"""Memory of a scripted-world program's calls, with which an interrupted program can continue."""
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from beliefnest.worlds.protocol import Called
+
+__all__ = ["Memory"]
+
+_MOST = 2000
+"""Largest number of remembered calls; a program with more begins anew."""
+_WAITS = "waitTicks"
+
+
+@dataclass
+class _Entry:
+    """Call, with the tick at which it began."""
+
+    call: Called
+    begun: int
+    before: int = 0
+
+
+class Memory:
+    """Calls of one program.
+
+    Args:
+        past: The calls before its interruption, in order.
+    """
+
+    def __init__(self, past: Iterable[Called] = ()) -> None:
+        self._past = list(past)
+        self._entries: dict[int, _Entry] = {}
+
+    def called(self, number: int, name: str, args: list[Any], tick: int) -> tuple[bool, Any] | None:
+        """Record a call; return its result from before the interruption, or None."""
+        given = json.dumps(args)
+        known = self._past.pop(0) if self._past else None
+        if known is not None and (known.name, known.given) != (name, given):
+            # From here on the program takes another course.
+            self._past.clear()
+            known = None
+        before = 0 if known is None else known.ticks
+        answer = None if known is None else known.answer
+        since = tick if known is None else known.since
+        call = Called(name, given, answer, since=since)
+        self._entries[number] = _Entry(call, tick, before)
+        if answer is None:
+            return None
+        told = json.loads(answer)
+        return told["ok"], told["value"]
+
+    def left(self, number: int, args: list[Any]) -> list[Any]:
+        """Return the arguments of an interrupted call; a wait continues with the ticks left."""
+        entry = self._entries[number]
+        if entry.call.name != _WAITS or not entry.before:
+            return args
+        return [max(0, args[0] - entry.before)]
+
+    def answered(self, number: int, *, ok: bool, value: object) -> None:
+        """Record the result of a call."""
+        entry = self._entries[number]
+        answer = json.dumps({"ok": ok, "value": value})
+        entry.call = replace(entry.call, answer=answer)
+
+    def calls(self, tick: int) -> tuple[Called, ...]:
+        """Return all calls, as of a tick; empty if there are too many."""
+        if len(self._entries) > _MOST:
+            return ()
+        return tuple(
+            entry.call
+            if entry.call.answer is not None
+            else replace(entry.call, ticks=entry.before + tick - entry.begun)
+            for entry in self._entries.values()
+        )

@@ -1,0 +1,255 @@
+"""Skills of the scripted world, each a generator that is advanced once a tick.
+
+Walking takes one tick for each cell. Opening, taking, putting, turning to look, speaking, thinking,
+handing over, switching, breaking and placing blocks take one tick each.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from beliefnest.errors import InputError, WorldError
+from beliefnest.world.claims import Claim, claims_from_plain
+from beliefnest.world.doors import is_open
+from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.signs import sign_fault
+from beliefnest.world.values import EYE_HEIGHT, Position
+from beliefnest.worlds.scripted.building import mine_block, place_item, press_button, switch_lever
+from beliefnest.worlds.scripted.footpaths import Near
+from beliefnest.worlds.scripted.hand import (
+    Doing,
+    Hand,
+    SkillError,
+    block_in,
+    cell_of,
+    doors_in,
+    items_in,
+    number_in,
+    point_in,
+    text_in,
+    walk,
+    walk_to_use,
+)
+
+__all__ = ["CALLS", "SKILLS", "UTTERANCES"]
+
+_NEAR = 2.0
+
+
+def _go_to_position(hand: Hand, position: Any, dist: Any = 2, doors: Any = None) -> Doing:
+    target = point_in("position", position)
+    near = number_in("dist", dist)
+    doors = doors_in(doors)
+    moved = yield from walk(hand, target, Near(cell_of(target), near), "the position", doors)
+    if not moved:
+        yield
+    hand.world.arrive(hand.name, target)
+
+
+def _get_item_from_chest(hand: Hand, position: Any, items: Any) -> Doing:
+    place, wanted = block_in(position), items_in(items)
+    yield from _open(hand, place)
+    yield
+    there = hand.world.contents(place)
+    moved = {name: min(n, there.get(name, 0)) for name, n in wanted.items() if there.get(name, 0)}
+    if moved:
+        hand.world.withdraw(hand.name, place, moved)
+    missing = [
+        f"{n} {name} asked for from the chest at {place}, it holds {there.get(name, 0)}"
+        for name, n in wanted.items()
+        if there.get(name, 0) < n
+    ]
+    if missing:
+        raise SkillError(f"{'; '.join(missing)}. Ask for what is there, or look elsewhere.")
+
+
+def _deposit_item_into_chest(hand: Hand, position: Any, items: Any) -> Doing:
+    place, wanted = block_in(position), items_in(items)
+    yield from _open(hand, place)
+    yield
+    hand.world.deposit(hand.name, place, wanted)
+
+
+def _open_container(hand: Hand, position: Any) -> Doing:
+    place = block_in(position)
+    yield from _open(hand, place, walks=False)
+    return dict(hand.world.contents(place))
+
+
+def _use_door(to_open: bool) -> Callable[..., Doing]:
+    def use(hand: Hand, position: Any) -> Doing:
+        place = block_in(position)
+        yield from walk_to_use(hand, place)
+        world = hand.world
+        there = int(world.blocks[world.box.index(place)]) if place in world.box else AIR
+        if is_open(Registry.load(), there) is to_open:
+            return
+        yield
+        world.use_door(hand.name, place, open=to_open)
+
+    return use
+
+
+def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doing:
+    place, told = block_in(position), _claims(claims)
+    text = "\n".join(lines) if _is_lines(lines) else lines
+    if not isinstance(text, str):
+        raise SkillError(f"text must be a text; it is {text!r}")
+    if fault := sign_fault(text):
+        raise SkillError(f"text is {fault}")
+    yield from walk_to_use(hand, place)
+    yield
+    hand.world.write_sign(hand.name, place, text, told)
+
+
+def _is_lines(value: Any) -> bool:
+    return isinstance(value, list | tuple) and all(isinstance(line, str) for line in value)
+
+
+def _look_at(hand: Hand, position: Any) -> Doing:
+    target = point_in("position", position)
+    yield
+    x, y, z = hand.feet
+    away = (target[0] - x, target[1] - y - EYE_HEIGHT, target[2] - z)
+    hand.world.place_agent(
+        hand.name,
+        hand.feet,
+        yaw=math.atan2(-away[0], -away[2]),
+        pitch=math.atan2(away[1], math.hypot(away[0], away[2])),
+    )
+
+
+def _read_sign(hand: Hand, position: Any) -> Doing:
+    place = block_in(position)
+    if hand.known().is_sign(place) is False:
+        raise SkillError(f"there is no sign at {place}. Give the position of a sign.")
+    x, y, z = place
+    yield from _look_at(hand, (x + 0.5, y + 0.5, z + 0.5))
+    yield
+    if not hand.known().is_sign(place):
+        raise SkillError(f"no sign is to be seen at {place}. Go nearer, or look somewhere else.")
+    return hand.signs().get(place, "")
+
+
+def _claims(told: Any) -> tuple[Claim, ...]:
+    try:
+        return claims_from_plain(told or ())
+    except InputError as fault:
+        raise SkillError(
+            f"{fault}; make each with located, absent, positionOf or blockAt, "
+            "like [located('diamond', new Vec3(3, 1, 3))]"
+        ) from fault
+
+
+def _say(hand: Hand, text: Any, claims: Any = ()) -> Doing:
+    yield from _speak(hand)
+    hand.world.say(hand.name, text_in(text), _claims(claims))
+
+
+def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
+    yield from _speak(hand)
+    hand.world.whisper(hand.name, text_in(other), text_in(text), _claims(claims))
+
+
+def _speak(hand: Hand) -> Doing:
+    """Wait for the ticks that an utterance takes; several utterances take turns."""
+    if not hand.speech_ticks:
+        yield
+        return
+    words = object()
+    hand.mouth.append(words)
+    while hand.mouth[0] is not words:
+        yield
+    for _ in range(hand.speech_ticks):
+        yield
+    hand.mouth.remove(words)
+
+
+def _think(hand: Hand, text: Any) -> Doing:
+    yield
+    hand.world.think(hand.name, text_in(text))
+
+
+def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
+    name = text_in(other)
+    others = hand.others()
+    if name not in others:
+        raise SkillError(f"{name!r} is no agent that is known to be here; it is {sorted(others)}")
+    where = others[name].position
+    yield from walk(hand, where, Near(cell_of(where), _NEAR), name)
+    yield
+    hand.world.give(hand.name, name, items_in({text_in(item): count}))
+
+
+def _wait_ticks(hand: Hand, ticks: Any) -> Doing:
+    for _ in range(math.ceil(number_in("ticks", ticks))):
+        yield
+
+
+def _wait_for_chat(hand: Hand, ticks: Any = 100) -> Doing:
+    for _ in range(math.ceil(number_in("ticks", ticks))):
+        yield
+        for speaker, text, to in hand.heard:
+            if speaker != hand.name:
+                return {"speaker": speaker, "text": text, "whispered": to is not None}
+    return None
+
+
+def _do_nothing(hand: Hand) -> Doing:
+    yield
+
+
+SKILLS: Mapping[str, Callable[..., Doing]] = {
+    "goToPosition": _go_to_position,
+    "getItemFromChest": _get_item_from_chest,
+    "depositItemIntoChest": _deposit_item_into_chest,
+    "openDoor": _use_door(to_open=True),
+    "closeDoor": _use_door(to_open=False),
+    "turnOnLever": switch_lever(powered=True),
+    "turnOffLever": switch_lever(powered=False),
+    "pressButton": press_button,
+    "mineBlock": mine_block,
+    "placeItem": place_item,
+    "writeSign": _write_sign,
+    "readSign": _read_sign,
+    "lookAt": _look_at,
+    "giveItemToOther": _give_item,
+    "say": _say,
+    "whisper": _whisper,
+    "think": _think,
+    "waitTicks": _wait_ticks,
+    "waitForChat": _wait_for_chat,
+    "doNothing": _do_nothing,
+}
+"""Skills by name."""
+
+CALLS: Mapping[str, Callable[..., Doing]] = {
+    "openContainer": _open_container,
+    "bot.chat": _say,
+    "bot.whisper": _whisper,
+}
+"""Methods of the bot by name."""
+
+UTTERANCES = frozenset(("say", "whisper", "think"))
+"""Skills that take effect by the call itself, as in Minecraft, without `await` as well."""
+
+
+def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
+    if walks:
+        if not hand.known().may_hold(place):
+            raise SkillError(
+                f"there is no container at {place}. Give the position of a chest or barrel."
+            )
+        yield from walk_to_use(hand, place)
+    yield
+    if not hand.reach(place).is_met(hand.cell):
+        raise SkillError(f"{place} is too far away, or hidden, to open what is there; go nearer")
+    _check_container(hand, place)
+    hand.world.open(hand.name, place)
+
+
+def _check_container(hand: Hand, place: Position) -> None:
+    try:
+        hand.world.contents(place)
+    except WorldError as error:
+        raise SkillError(f"{error}. Give the position of a chest or barrel.") from None

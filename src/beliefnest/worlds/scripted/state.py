@@ -1,0 +1,214 @@
+"""State of a scripted world, with checks of the arguments of queries and changes."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from beliefnest.errors import BeliefNestError, InputError, WorldError
+from beliefnest.world.frames import BlockGrid, PlainClaims
+from beliefnest.world.limits import items_fault
+from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.signs import written
+from beliefnest.world.values import (
+    AgentState,
+    Block,
+    Box,
+    Event,
+    EventKind,
+    Items,
+    Point,
+    Position,
+    Sign,
+)
+from beliefnest.worlds.scripted.facts import (
+    Pending,
+    WorldFacts,
+    checked_box,
+    sum_of,
+    whole_position,
+)
+
+__all__ = ["ScriptedState"]
+
+
+class ScriptedState:
+    """Facts of a scripted world, with access to single parts.
+
+    Args:
+        box: Two inclusive corners of block positions.
+
+    Raises:
+        WorldError: The box is invalid.
+    """
+
+    def __init__(self, box: tuple[Position, Position]) -> None:
+        self._registry = Registry.load()
+        self._box = checked_box(box)
+        self._handed_out = False
+        self._facts = WorldFacts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
+
+    @property
+    def box(self) -> Box:
+        """Region of the world."""
+        return self._box
+
+    @property
+    def agents(self) -> Mapping[str, AgentState]:
+        """States of all agents by name."""
+        return dict(self._facts.agents)
+
+    def agent(self, name: str) -> AgentState:
+        """Return the state of an agent; WorldError if there is none of that name."""
+        return self._agent(name)
+
+    @property
+    def containers(self) -> Mapping[Position, Items]:
+        """Contents of all containers; must not be changed."""
+        return self._facts.containers
+
+    def contents(self, position: Position) -> Items:
+        """Return the contents of a container.
+
+        Raises:
+            WorldError: There is no container at the position.
+        """
+        return dict(self._facts.containers[self._container(position)])
+
+    @property
+    def blocks(self) -> BlockGrid:
+        """Block state ids of the box; later ticks do not change a grid that was handed out."""
+        self._handed_out = True
+        return self._facts.blocks
+
+    @property
+    def signs(self) -> Mapping[Position, str]:
+        """Texts of signs by position."""
+        return dict(self._facts.signs)
+
+    def _change(self, pending: Pending, place: Position, state: int, actor: str | None) -> None:
+        """Replace a block in the current tick."""
+        if self._handed_out or not pending.changed:
+            self._facts.blocks = self._facts.blocks.copy()
+            pending.changed, self._handed_out = True, False
+        held = self._facts.containers.get(place)
+        self._put(place, self._registry.text(state))
+        if self._facts.containers.get(place) is not held:
+            pending.containers.add(place)
+        pending.blocks[place] = self._block(place)
+        detail: dict[str, Any] = {"position": place, "block": self._registry.text(state)}
+        if place in self._facts.sign_claims:
+            # A sign that was turned keeps its claims.
+            detail["claims"] = self._facts.sign_claims[place]
+        pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
+
+    def _state_at(self, place: Position) -> int:
+        """Return the block state at a position; air outside the box."""
+        return int(self._facts.blocks[self._box.index(place)]) if place in self._box else AIR
+
+    def _block(self, place: Position) -> Block:
+        """Return the block at a position, with its text if it is a sign."""
+        state = self._state_at(place)
+        return Sign(state, self._facts.signs[place]) if place in self._facts.signs else state
+
+    def _write(self, place: Position, text: str) -> None:
+        try:
+            block = written(self._registry, self._state_at(place), text)
+        except InputError as fault:
+            raise WorldError(f"the text at {place} cannot be written: {fault}") from None
+        self._wipe(place)
+        if isinstance(block, Sign):
+            self._facts.signs[place] = block.text
+
+    def _claim_on(self, place: Position, claims: PlainClaims) -> None:
+        """Set the claims of the text on a sign."""
+        if claims and place not in self._facts.signs:
+            raise WorldError(f"there is no text at {place}, so it cannot carry claims; write one")
+        if claims:
+            self._facts.sign_claims[place] = claims
+
+    def _wipe(self, place: Position) -> None:
+        self._facts.signs.pop(place, None)
+        self._facts.sign_claims.pop(place, None)
+
+    def _put(self, place: Position, block: str) -> None:
+        state = self._state(block)
+        before = self._registry.name(self._state_at(place))
+        name = self._registry.name(state)
+        if before != name:
+            self._wipe(place)
+        self._facts.blocks[self._box.index(place)] = state
+        if self._registry.is_container(name):
+            if before != name or place not in self._facts.containers:
+                self._facts.containers[place] = {}
+        else:
+            self._facts.containers.pop(place, None)
+
+    def _set_agent(
+        self,
+        name: str,
+        *,
+        inventory: dict[str, int] | None = None,
+        equipment: dict[str, str] | None = None,
+    ) -> None:
+        agent = self._agent(name)
+        held = agent.inventory if inventory is None else inventory
+        worn = agent.equipment if equipment is None else equipment
+        gone = agent.inventory.keys() - held.keys()
+        self._facts.agents[name] = replace(
+            agent,
+            inventory=held,
+            equipment={slot: item for slot, item in worn.items() if item not in gone},
+        )
+
+    def _agent(self, name: str) -> AgentState:
+        if name not in self._facts.agents:
+            raise WorldError(f"no agent {name!r}; agents are {sorted(self._facts.agents)}")
+        return self._facts.agents[name]
+
+    def _container(self, position: Position) -> Position:
+        place = self._inside(position)
+        if place not in self._facts.containers:
+            there = self._registry.text(self._state_at(place))
+            raise WorldError(f"there is no container at {place}, but {there}")
+        return place
+
+    def _inside(self, position: Position) -> Position:
+        return self._in_box(whole_position(position))
+
+    def _in_box(self, place: Position) -> Position:
+        if place not in self._box:
+            raise WorldError(
+                f"position {place} lies outside the box {self._box.low}..{self._box.high}"
+            )
+        return place
+
+    def _feet(self, position: Point) -> Point:
+        if len(position) != 3 or not all(map(math.isfinite, position)):
+            raise WorldError(f"{position!r} is no point; give three finite numbers")
+        x, y, z = map(float, position)
+        self._in_box((math.floor(x), math.floor(y), math.floor(z)))
+        return (x, y, z)
+
+    def _state(self, block: str) -> int:
+        try:
+            return self._registry.state_id(block)
+        except BeliefNestError as error:
+            raise WorldError(str(error)) from None
+
+    def _items(self, items: Items) -> dict[str, int]:
+        for name, count in items.items():
+            if not self._registry.has_item(name):
+                raise WorldError(f"there is no item {name!r}")
+            if not isinstance(count, int) or isinstance(count, bool) or count <= 0:
+                raise WorldError(f"count {count!r} of {name!r}; give a whole number above 0")
+        return dict(items)
+
+    def _fitting(self, who: str, held: Items, moved: Items, slots: int) -> dict[str, int]:
+        """Return the items of a holder after a transfer; WorldError if they do not fit."""
+        items = sum_of(held, moved)
+        if fault := items_fault(items, self._registry, slots, who):
+            raise WorldError(f"{moved} cannot be moved: {fault}")
+        return items

@@ -1,0 +1,446 @@
+"""Scripted world: a world without Minecraft and physics that does exactly what it is told.
+
+It serves tests, imported traces and studies that need only beliefs. Every act takes one tick;
+`tick()` combines several acts into one tick. An impossible act raises WorldError and changes
+nothing.
+"""
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from copy import copy
+from typing import Any
+
+from beliefnest.errors import InputError, WorldError
+from beliefnest.world.claims import Claim, with_claims
+from beliefnest.world.doors import used_door
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.handling import (
+    Handling,
+    check_holds_nothing,
+    pressed_button,
+    put_block,
+    switched_lever,
+)
+from beliefnest.world.limits import (
+    AGENT_SLOTS,
+    WORN_SLOTS,
+    container_slots,
+    snapshot_fault,
+)
+from beliefnest.world.registry import AIR
+from beliefnest.world.signs import plain_state, text_of
+from beliefnest.world.values import (
+    AgentState,
+    Event,
+    EventKind,
+    Items,
+    Point,
+    Position,
+)
+from beliefnest.worlds.scripted.facts import (
+    Pending,
+    WorldFacts,
+    checked_equipment,
+    checked_name,
+    checked_utterance,
+    pressed_from,
+    rest_of,
+    whole_position,
+)
+from beliefnest.worlds.scripted.state import ScriptedState
+
+__all__ = ["Listener", "ScriptedWorld"]
+
+Listener = Callable[[Frame], None]
+"""Callback that receives a frame for every tick, empty frames included."""
+
+
+class ScriptedWorld(ScriptedState):
+    """World whose moves are calls of its methods.
+
+    Args:
+        box: Two inclusive corners of block positions.
+        blocks: Block state texts by position; the rest is air.
+        agents: Feet positions by agent name.
+        inventories: Items by agent name.
+        containers: Contents by position; a chest is added if `blocks` has no block there.
+        equipment: Item names by slot (`EQUIPMENT_SLOTS`), by agent name.
+        tick: The first tick.
+        signs: Texts of signs by position; `blocks` must have a sign there.
+        sign_claims: Claims of the texts by position.
+
+    Raises:
+        WorldError: A position is outside the box, or a block, item or agent name is invalid.
+    """
+
+    def __init__(
+        self,
+        box: tuple[Position, Position],
+        blocks: Mapping[Position, str] | None = None,
+        agents: Mapping[str, Point] | None = None,
+        inventories: Mapping[str, Items] | None = None,
+        containers: Mapping[Position, Items] | None = None,
+        equipment: Mapping[str, Mapping[str, str]] | None = None,
+        tick: int = 0,
+        signs: Mapping[Position, str] | None = None,
+        sign_claims: Mapping[Position, Iterable[Claim]] | None = None,
+    ) -> None:
+        super().__init__(box)
+        self._tick = tick
+        self._listeners: list[Listener] = []
+        self._pending: Pending | None = None
+        for position, text in (blocks or {}).items():
+            self._put(self._inside(position), text)
+        for position, items in (containers or {}).items():
+            place = self._inside(position)
+            if place not in self._facts.containers:
+                if place in {whole_position(p) for p in blocks or {}}:
+                    raise WorldError(f"the block at {place} is no container; it cannot hold items")
+                self._put(place, "chest")
+            self._facts.containers[place] = self._items(items)
+        for position, text in (signs or {}).items():
+            self._write(self._inside(position), text)
+        for name, feet in (agents or {}).items():
+            self._facts.agents[checked_name(name)] = AgentState(self._feet(feet))
+        for name, items in (inventories or {}).items():
+            self._set_agent(name, inventory=self._items(items))
+        for name, worn in (equipment or {}).items():
+            self._set_agent(name, equipment=checked_equipment(worn, self._items))
+        for position, told in (sign_claims or {}).items():
+            self._claim_on(self._inside(position), self._claiming({}, told).get("claims", ()))
+        if fault := snapshot_fault(self.snapshot(), self._registry):
+            raise WorldError(fault)
+
+    @classmethod
+    def from_snapshot(cls, snapshot: Snapshot) -> "ScriptedWorld":
+        """Return a world with the state of a snapshot."""
+        world = cls((snapshot.box.low, snapshot.box.high), tick=snapshot.tick)
+        world.set_state(snapshot)
+        return world
+
+    def again(self) -> "ScriptedWorld":
+        """Return a copy of this world, without its listeners."""
+        other = copy(self)
+        other._listeners, other._pending = [], None
+        other._facts = self._facts.copied()
+        return other
+
+    @property
+    def now(self) -> int:
+        """Latest tick."""
+        return self._tick
+
+    @property
+    def under_way(self) -> bytes:
+        """Internal state for snapshots, which nobody can perceive: pressed buttons."""
+        return self._facts.under_way(self._tick)
+
+    def listen(self, listener: Listener) -> None:
+        """Call `listener` with every further frame."""
+        self._listeners.append(listener)
+
+    def unlisten(self, listener: Listener) -> None:
+        """Stop calling `listener`."""
+        self._listeners.remove(listener)
+
+    def snapshot(self) -> Snapshot:
+        """Return the current state."""
+        facts = self._facts
+        return Snapshot(
+            self._tick,
+            self._box,
+            facts.blocks.copy(),
+            {place: dict(items) for place, items in facts.containers.items()},
+            dict(facts.agents),
+            dict(facts.items),
+            self.under_way,
+            dict(facts.signs),
+            dict(facts.sign_claims),
+        )
+
+    def set_state(self, snapshot: Snapshot) -> None:
+        """Set the state to that of a snapshot, without a frame."""
+        if snapshot.box != self._box:
+            raise WorldError(f"a snapshot of {snapshot.box} does not fit into {self._box}")
+        self._tick = snapshot.tick
+        self._facts = WorldFacts(
+            snapshot.blocks.copy(),
+            {place: dict(items) for place, items in snapshot.containers.items()},
+            dict(snapshot.agents),
+            dict(snapshot.items),
+            dict(snapshot.signs),
+            dict(snapshot.sign_claims),
+            pressed_from(snapshot.internal_state, snapshot.tick),
+        )
+
+    @contextmanager
+    def tick(self) -> Iterator[None]:
+        """Combine the acts of a `with` block into one tick; all of them happen, or none."""
+        if self._pending is not None:
+            raise WorldError(f"tick {self._tick + 1} has begun already; do not nest tick()")
+        with self._new_tick():
+            yield
+
+    def step(self, ticks: int = 1) -> None:
+        """Let ticks without acts pass."""
+        if self._pending is not None:
+            raise WorldError("step() takes ticks of its own; call it outside tick()")
+        if ticks < 0:
+            raise WorldError(f"step() got {ticks} ticks; give 0 or more")
+        for _ in range(ticks):
+            with self.tick():
+                pass
+
+    def place_agent(
+        self, name: str, position: Point, yaw: float | None = None, pitch: float | None = None
+    ) -> None:
+        """Move an agent to a feet position in blocks; angles are Mineflayer's radians."""
+        with self._act() as pending:
+            agent = self._agent(name)
+            angles = [agent.yaw if yaw is None else yaw, agent.pitch if pitch is None else pitch]
+            if not all(math.isfinite(angle) for angle in angles):
+                raise WorldError(f"{name} cannot look along yaw {yaw}, pitch {pitch}")
+            feet = self._feet(position)
+            self._facts.agents[name] = agent.moved(feet, float(angles[0]), float(angles[1]))
+            pending.agents.add(name)
+
+    def set_block(self, position: Position, block: str, actor: str | None = None) -> None:
+        """Replace a block; the content of a removed container is lost."""
+        with self._act() as pending:
+            place = self._inside(position)
+            if actor is not None:
+                self._agent(actor)
+            before, state = self._state_at(place), self._state(block)
+            if state != before:
+                self._change(pending, place, state, actor)
+
+    def use_door(self, name: str, position: Position, *, open: bool) -> None:
+        """Let an agent open or shut a wooden door (both halves), trapdoor or fence gate."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._inside(position)
+            moved = used_door(self._registry, self._state_at, place, opens=open)
+            for part, state in moved.items():
+                self._change(pending, part, state, None)
+            detail = {"position": min(moved), "open": open}
+            pending.events.append(Event(EventKind.USE_DOOR, name, detail))
+
+    def use_lever(self, name: str, position: Position, *, powered: bool) -> None:
+        """Let an agent switch a lever on or off; levers power nothing here."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._inside(position)
+            moved = switched_lever(self._registry, self._state_at, place, powered=powered)
+            self._change(pending, place, moved, None)
+            detail = {"position": place, "powered": powered}
+            pending.events.append(Event(EventKind.USE_LEVER, name, detail))
+
+    def press_button(self, name: str, position: Position) -> None:
+        """Let an agent press a button, which comes out again later; buttons power nothing here."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._inside(position)
+            moved = pressed_button(self._registry, self._state_at, place)
+            ticks = Handling.load().pressed_ticks(self._registry.name(moved))
+            self._change(pending, place, moved, None)
+            self._facts.pressed[place] = self._tick + 1 + ticks
+            pending.events.append(Event(EventKind.PRESS_BUTTON, name, {"position": place}))
+
+    def mine(self, name: str, position: Position) -> None:
+        """Let an agent break a block and take its drops."""
+        with self._act() as pending:
+            agent = self._agent(name)
+            place = self._inside(position)
+            state = self._state_at(place)
+            drops = Handling.load().drops(self._registry.name(state), agent.inventory)
+            check_holds_nothing(self._registry, self._state_at, place)
+            held = self._fitting(name, agent.inventory, drops, AGENT_SLOTS + WORN_SLOTS)
+            self._change(pending, place, AIR, None)
+            self._set_agent(name, inventory=held)
+            pending.agents.add(name)
+            detail = {"position": place, "block": self._registry.text(state)}
+            pending.events.append(Event(EventKind.MINE_BLOCK, name, detail))
+
+    def put(self, name: str, item: str, position: Position) -> None:
+        """Let an agent place a block from its inventory."""
+        with self._act() as pending:
+            agent = self._agent(name)
+            place = self._inside(position)
+            moved = self._items({item: 1})
+            held = rest_of(agent.inventory, moved, f"{name} cannot put {item}: it")
+            bodies = [each.position for each in self._facts.agents.values()]
+            state = put_block(self._registry, self._state_at, place, item, bodies)
+            self._change(pending, place, state, None)
+            self._set_agent(name, inventory=held)
+            pending.agents.add(name)
+            detail = {"position": place, "block": self._registry.text(state)}
+            pending.events.append(Event(EventKind.PLACE_BLOCK, name, detail))
+
+    def write_sign(
+        self, name: str, position: Position, text: str, claims: Iterable[Claim] = ()
+    ) -> None:
+        """Let an agent replace the text on a sign; every agent that sees the sign sees the text.
+
+        Args:
+            name: Name of the agent.
+            position: Position of the sign.
+            text: New text, up to 4 lines.
+            claims: Claims of the text, for its readers.
+        """
+        with self._act() as pending:
+            self._agent(name)
+            place = self._inside(position)
+            self._write(place, text)
+            block = pending.blocks[place] = self._block(place)
+            shown = {"position": place, "block": self._registry.text(plain_state(block))}
+            detail = self._claiming({**shown, "text": text_of(block)}, claims)
+            self._claim_on(place, detail.get("claims", ()))
+            pending.events.append(Event(EventKind.BLOCK_UPDATE, name, detail))
+
+    def arrive(self, name: str, destination: Point) -> None:
+        """Let an agent reach its destination; agents that see it learn where it was going."""
+        with self._act() as pending:
+            self._agent(name)
+            x, y, z = (float(value) for value in destination)
+            pending.events.append(Event(EventKind.MOVE_TO, name, {"destination": (x, y, z)}))
+
+    def deposit(self, name: str, position: Position, items: Items) -> None:
+        """Let an agent put items from its inventory into a container."""
+        self._transfer(name, position, items, EventKind.DEPOSIT_ITEM_INTO_CHEST)
+
+    def withdraw(self, name: str, position: Position, items: Items) -> None:
+        """Let an agent take items out of a container."""
+        self._transfer(name, position, items, EventKind.GET_ITEM_FROM_CHEST)
+
+    def open(self, name: str, position: Position) -> None:
+        """Let an agent look into a container; other agents see the act, not the content."""
+        with self._act() as pending:
+            self._agent(name)
+            place = self._container(position)
+            pending.events.append(Event(EventKind.OPEN_CONTAINER, name, {"position": place}))
+
+    def say(self, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
+        """Let an agent speak aloud; `claims` are the structured statements of the text."""
+        self._utter(EventKind.CHAT, name, text, claims)
+
+    def whisper(self, name: str, other: str, text: str, claims: Iterable[Claim] = ()) -> None:
+        """Let an agent speak to one other agent, unnoticed by all others. Claims as in `say`."""
+        with self._act() as pending:
+            if name == other:
+                raise WorldError(f"{name} cannot whisper to itself")
+            self._agent(name)
+            self._agent(other)
+            detail = self._claiming({"text": checked_utterance(text), "to": other}, claims)
+            pending.events.append(Event(EventKind.CHAT, name, detail))
+
+    def think(self, name: str, text: str) -> None:
+        """Let an agent think; only the agent itself perceives it."""
+        self._utter(EventKind.THINK, name, text)
+
+    def give(self, giver: str, receiver: str, items: Items) -> None:
+        """Let an agent give items to another agent."""
+        with self._act() as pending:
+            if giver == receiver:
+                raise WorldError(f"{giver} cannot give items to itself")
+            other = self._agent(receiver)
+            moved = self._items(items)
+            held = rest_of(self._agent(giver).inventory, moved, f"{giver} cannot give {moved}: it")
+            self._set_agent(giver, inventory=held)
+            self._set_agent(
+                receiver,
+                inventory=self._fitting(receiver, other.inventory, moved, AGENT_SLOTS + WORN_SLOTS),
+            )
+            pending.agents |= {giver, receiver}
+            for kind, name, partner in (
+                (EventKind.GIVE_ITEM_TO_OTHER, giver, receiver),
+                (EventKind.RECEIVE_ITEM_FROM_OTHER, receiver, giver),
+            ):
+                pending.events.append(Event(kind, name, {"other": partner, "items": moved}))
+
+    def _transfer(self, name: str, position: Position, items: Items, kind: EventKind) -> None:
+        with self._act() as pending:
+            agent = self._agent(name)
+            place = self._container(position)
+            moved = self._items(items)
+            held, inside = agent.inventory, self._facts.containers[place]
+            if kind is EventKind.DEPOSIT_ITEM_INTO_CHEST:
+                held = rest_of(held, moved, f"{name} cannot put {moved} into {place}: it")
+                state = self._state_at(place)
+                there = self._registry.name(state)
+                inside = self._fitting(
+                    f"the {there} at {place}", inside, moved, container_slots(there)
+                )
+            else:
+                inside = rest_of(inside, moved, f"{name} cannot take {moved}: the one at {place}")
+                held = self._fitting(name, held, moved, AGENT_SLOTS + WORN_SLOTS)
+            self._set_agent(name, inventory=held)
+            self._facts.containers[place] = inside
+            pending.agents.add(name)
+            pending.containers.add(place)
+            pending.events.append(Event(kind, name, {"position": place, "items": moved}))
+
+    def _utter(self, kind: EventKind, name: str, text: str, claims: Iterable[Claim] = ()) -> None:
+        with self._act() as pending:
+            self._agent(name)
+            detail = self._claiming({"text": checked_utterance(text)}, claims)
+            pending.events.append(Event(kind, name, detail))
+
+    def _claiming(self, detail: dict[str, Any], claims: Iterable[Claim]) -> dict[str, Any]:
+        """Return an utterance's detail with its claims; WorldError if they do not fit."""
+        try:
+            return with_claims(detail, claims, self._box, self._facts.agents)
+        except InputError as fault:
+            raise WorldError(str(fault)) from None
+
+    @contextmanager
+    def _act(self) -> Iterator[Pending]:
+        """Yield the changes of the current tick, or those of a new tick for a single act."""
+        if self._pending is not None:
+            yield self._pending
+            return
+        with self._new_tick() as pending:
+            yield pending
+
+    @contextmanager
+    def _new_tick(self) -> Iterator[Pending]:
+        pending = self._pending = Pending(self._facts)
+        before = self._tick
+        try:
+            self._release(pending)
+            yield pending
+            self._pending = None
+            self._finish(pending)
+        except BaseException:
+            # A listener's error undoes the tick as well.
+            self._facts, self._tick = pending.saved, before
+            raise
+        finally:
+            self._pending = None
+
+    def _release(self, pending: Pending) -> None:
+        """Release the buttons that are due in the current tick."""
+        pressed = self._facts.pressed
+        for place in sorted(at for at, due in pressed.items() if due <= self._tick + 1):
+            del pressed[place]
+            state = self._state_at(place)
+            if Handling.load().is_pressed(self._registry, state):
+                out = pressed_button(self._registry, self._state_at, place, powered=False)
+                self._change(pending, place, out, None)
+
+    def _finish(self, pending: Pending) -> None:
+        self._tick += 1
+        facts = self._facts
+        frame = Frame(
+            self._tick,
+            {name: facts.agents[name] for name in sorted(pending.agents)},
+            dict(sorted(pending.blocks.items())),
+            {
+                place: dict(facts.containers[place]) if place in facts.containers else None
+                for place in sorted(pending.containers)
+            },
+            {},
+            tuple(pending.events),
+        )
+        for listener in tuple(self._listeners):
+            listener(frame)

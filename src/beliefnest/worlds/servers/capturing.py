@@ -1,0 +1,200 @@
+"""Capture of existing places: on a Minecraft server, or in a file of the game or of WorldEdit."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.limits import box_fault
+from beliefnest.world.registry import Registry
+from beliefnest.world.signs import is_sign, sign_fault
+from beliefnest.world.values import AgentState, Box, Items, Position
+from beliefnest.worlds.minecraft import node_messages
+from beliefnest.worlds.minecraft.channel import Channel
+from beliefnest.worlds.minecraft.embedded import started
+from beliefnest.worlds.process_limits import ProcessLimits
+from beliefnest.worlds.servers.address import ServerAddress
+from beliefnest.worlds.servers.server_world import joined
+
+__all__ = ["Captured", "capture_file", "capture_server"]
+
+_MOST_NAMED = 5
+_Placed = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Captured:
+    """Place as it was found.
+
+    Attributes:
+        snapshot: Everything that a scenario can express; its agents are the players present.
+        left_out: Everything else, one sentence for each kind of thing.
+    """
+
+    snapshot: Snapshot
+    left_out: tuple[str, ...] = ()
+
+
+class _Found(msgspec.Struct, frozen=True):
+    unread: list[_Placed] = []
+    unasked: list[str] = []
+    strange: list[str] = []
+
+
+class _Place(msgspec.Struct, frozen=True):
+    shape: tuple[int, int, int]
+    palette: list[str]
+    blocks: bytes
+    containers: list[tuple[int, int, int, dict[str, int]]]
+    signs: list[tuple[int, int, int, str]]
+    special: list[_Placed]
+
+
+def capture_server(address: ServerAddress, box: Box) -> Captured:
+    """Read a place of a server without changing it.
+
+    Args:
+        address: The server; its operator moves around there, unseen.
+        box: The place, in scenario coordinates, which equal the server's if `at` is 0, 0.
+
+    Raises:
+        BodyError: The server cannot be read; the message says what to do.
+        InputError: The box is too large, or outside the world.
+    """
+    if fault := box_fault(box):
+        raise InputError(fault)
+    channel, _ = joined(address, 0, ProcessLimits())
+    told = _asked(channel, "capture", box=[box.low, box.high])
+    found = msgspec.convert(told, _Found)
+    snapshot, left_out = _said(node_messages.snapshot_of(told, box), Registry.load())
+    if found.unread:
+        left_out.append(f"what is in {_named(found.unread)}: it does not open there")
+    if found.unasked:
+        left_out.append(
+            f"what {', '.join(found.unasked)} have but do not wear or hold: the server has no "
+            "/data that could be asked"
+        )
+    if found.strange:
+        left_out.append(
+            "blocks that this version has not, now stone, or air where one can walk: "
+            + _named(found.strange)
+        )
+    return Captured(snapshot, tuple(left_out))
+
+
+def capture_file(data: bytes, corner: Position) -> Captured:
+    """Read a Sponge schematic (`.schem`) or a structure file of the game (`.nbt`).
+
+    Args:
+        data: Content of the file.
+        corner: Position of the place's lowest corner.
+
+    Raises:
+        WorldError: The file has another format, or the place is too large.
+        InputError: The place does not fit into a world there.
+    """
+    channel, _ = started(0, ProcessLimits())
+    place = msgspec.convert(_asked(channel, "read_place", bytes=data), _Place)
+    high = tuple(low + side - 1 for low, side in zip(corner, place.shape, strict=True))
+    box = Box(corner, (high[0], high[1], high[2]))
+    if fault := box_fault(box):
+        raise InputError(f"the file has a bad box: {fault}")
+    registry = Registry.load()
+    states, unknown = _states(place.palette, registry)
+    cells = np.frombuffer(place.blocks, dtype="<i4").reshape(box.shape)
+    blocks: BlockGrid = states[cells].astype(np.int32)
+
+    def there(at: Sequence[int]) -> Position:
+        return (at[0] + corner[0], at[1] + corner[1], at[2] + corner[2])
+
+    containers = {there(row[:3]): row[3] for row in place.containers}
+    signs = {there(row[:3]): row[3] for row in place.signs}
+    snapshot, left_out = _said(Snapshot(0, box, blocks, containers, {}, signs=signs), registry)
+    if unknown:
+        left_out.append(f"blocks that Minecraft {registry.version} has not, now air: {unknown}")
+    if place.special:
+        left_out.append(f"names and enchantments of items in {_named(map(there, place.special))}")
+    return Captured(snapshot, tuple(left_out))
+
+
+def _asked(channel: Channel, op: str, **more: Any) -> Any:
+    try:
+        answer = channel.request(op, **more)
+        channel.request("shutdown")
+    finally:
+        channel.close()
+    return answer
+
+
+def _states(palette: Sequence[str], registry: Registry) -> tuple[BlockGrid, str]:
+    """Return the state ids of a palette, and the names in it that this version does not know."""
+    states = np.full(len(palette), registry.air, dtype=np.int32)
+    unknown: set[str] = set()
+    for index, text in enumerate(palette):
+        try:
+            states[index] = registry.state_id(text)
+        except BeliefNestError:
+            unknown.add(text)
+    return states, ", ".join(sorted(unknown))
+
+
+def _said(found: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
+    """Return the part of a place that a scenario can express, and sentences about the rest."""
+    left_out = []
+    air = np.where(np.isin(found.blocks, registry.airs), registry.air, found.blocks)
+    found = replace(found, blocks=air.astype(np.int32))
+    names = {state: registry.name(state) for state in np.unique(found.blocks).tolist()}
+
+    def name_at(place: Position) -> str:
+        return names[int(found.blocks[found.box.index(place)])]
+
+    containers: dict[Position, Items] = {}
+    others, strange = set(), set()
+    for place, items in found.containers.items():
+        strange |= {item for item in items if not registry.has_item(item)}
+        if registry.is_container(name_at(place)):
+            containers[place] = {i: count for i, count in items.items() if registry.has_item(i)}
+        elif items:
+            others.add(name_at(place))
+    for index in np.argwhere(np.isin(found.blocks, _container_states(names, registry))).tolist():
+        x, y, z = (i + low for i, low in zip(index, found.box.low, strict=True))
+        containers.setdefault((x, y, z), {})
+    signs = {
+        place: text
+        for place, text in found.signs.items()
+        if text and is_sign(name_at(place)) and sign_fault(text) is None
+    }
+    agents = {name: _known(agent, registry, strange) for name, agent in found.agents.items()}
+    if others:
+        left_out.append(f"what is in blocks that are no containers here: {_named(others)}")
+    if strange:
+        left_out.append(f"items that Minecraft {registry.version} has not: {_named(strange)}")
+    if unsaid := {place for place, text in found.signs.items() if text} - signs.keys():
+        left_out.append(f"what is written at {_named(unsaid)}: it does not fit on a sign here")
+    return (
+        replace(found, containers=dict(sorted(containers.items())), signs=signs, agents=agents),
+        left_out,
+    )
+
+
+def _container_states(names: dict[int, str], registry: Registry) -> list[int]:
+    return [state for state, name in names.items() if registry.is_container(name)]
+
+
+def _known(agent: AgentState, registry: Registry, strange: set[str]) -> AgentState:
+    strange |= {item for item in agent.inventory if not registry.has_item(item)}
+    return replace(
+        agent,
+        inventory={i: n for i, n in agent.inventory.items() if registry.has_item(i)},
+        equipment={slot: i for slot, i in agent.equipment.items() if registry.has_item(i)},
+    )
+
+
+def _named(things: Any) -> str:
+    named = sorted(str(thing) for thing in things)
+    more = len(named) - _MOST_NAMED
+    return ", ".join(named[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -1,0 +1,318 @@
+"""Tasks of Inspect AI, with its mock model and ours, as `inspect eval` finds them."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("inspect_ai", reason="the extra `inspect` is not installed")
+
+GUIDE = Path(__file__).parents[3] / "docs" / "inspect.md"
+
+MODEL = """
+from inspect_ai import eval
+from inspect_ai.log import read_eval_log
+from inspect_ai.model import ModelOutput, ModelUsage, get_model
+
+def mock(answer):
+    def output(messages, tools, choice, config):
+        said = ModelOutput.from_content("mockllm/model", answer(messages))
+        # Else the mock model counts them with a table from the network.
+        said.usage = ModelUsage(input_tokens=1, output_tokens=1, total_tokens=2)
+        return said
+    return get_model("mockllm/model", custom_outputs=output)
+
+def read(logs):
+    for log in logs:
+        assert log.status == "success", log.error
+    return [read_eval_log(log.location) for log in logs]
+"""
+
+LEFT_OR_NOWHERE = """
+def answer(messages):
+    assert messages[0].role == "system"
+    x = -2 if "Get a diamond" in messages[-1].text else 0
+    code = f"await getItemFromChest(bot, new Vec3({x}, -51, -4), {{diamond: 1}})"
+    return f"```javascript\\n{code}\\n```"
+
+task = "beliefnest/sally_anne"
+arguments = {"conditions": [1, 2], "world": "scripted"}
+(log,) = read(eval(task, task_args=arguments, model=mock(answer), display="none"))
+for sample in log.samples:
+    score = sample.scores["in_the_belief"]
+    print(sample.metadata["condition"], score.value, score.metadata["outcome"])
+    assert "/observer/sally" in score.explanation, score.explanation
+"""
+
+LIKE_OURS = """
+from beliefnest.llm.messages import Message, Sampling
+from beliefnest.llm.offline import OfflineModel
+
+def answer(messages):
+    asked = [Message(each.role, each.text) for each in messages]
+    return OfflineModel().answer(asked, Sampling()).text
+"""
+
+VARIED = """
+arguments = {"conditions": 2, "variations": 3, "seed": 1}
+(log,) = read(
+    eval("beliefnest/sally_anne", task_args=arguments, model=mock(answer), display="none")
+)
+for sample in log.samples:
+    score = sample.scores["in_the_belief"]
+    told = score.explanation.splitlines()
+    path, names = sample.metadata["path"], sample.metadata["variation"]["agents"]
+    assert path == f"/{names['observer']}/{names['sally']}"
+    assert sample.metadata["world"] == "embedded"
+    print(score.value, told[0], any(f"What {path} holds, and why:" == line for line in told))
+    assert any(names["anne"] in line for line in told[3:]), told
+assert len({str(sample.metadata["variation"]) for sample in log.samples}) == 3
+"""
+
+EVERY = """
+from beliefnest.scenarios.loading import builtin_names
+
+logs = []
+silent = ("red-green-blue", "food-trucks")
+asking = [name for name in builtin_names() if name not in silent]
+for name in asking:
+    arguments = {"world": "scripted"}
+    task = "beliefnest/" + name.replace("-", "_")
+    logs += read(eval(task, task_args=arguments, model=mock(answer), display="none", limit=1))
+assert len(logs) == len(asking) > 9
+for log in logs:
+    (sample,) = log.samples
+    score = sample.scores["in_the_belief"]
+    assert score.explanation.splitlines()[0].startswith(score.metadata["outcome"]), score
+"""
+
+STORIES = """
+def answer(messages):
+    text = messages[-1].text
+    return "Answer: box" if "Where does Ann think" in text else "Answer: in none of them"
+
+for name, file in FILES.items():
+    arguments = {"file": file}
+    (log,) = read(
+        eval(f"beliefnest/{name}", task_args=arguments, model=mock(answer), display="none")
+    )
+    for sample in log.samples:
+        score = sample.scores["story_answer"]
+        print(name, sample.metadata["order"], sample.target, score.answer, score.value)
+        assert ", expected the " in score.explanation, score.explanation
+"""
+
+
+MINDS = """
+def answer(messages):
+    (asked,) = [each.text for each in messages]
+    assert "Where you saw student, as (x, z):" in asked
+    names = [line for line in asked.splitlines() if line[:7] in ("desire ", "belief ")]
+    # Condition 2 is left without an answer.
+    if "tick 13: (8, 1)" in asked:
+        return "I cannot tell."
+    high = ("desire mexican:", "belief mexican:")
+    return "\\n".join(f"{name} {7 if name in high else 2}" for name in names)
+
+(log,) = read(eval("beliefnest/minds", model=mock(answer), display="none"))
+for sample in log.samples:
+    score = sample.scores["like_inference"]
+    print(sample.metadata["condition"], score.metadata["outcome"], score.value > 0.6)
+metrics = {name: each.value for name, each in log.results.scores[0].metrics.items()}
+print(sorted(metrics), metrics["desires_r"] > 0.5)
+print(log.samples[1].scores["like_inference"].explanation.partition(",")[0])
+
+arguments = {"file": FILE, "films": 1}
+(log,) = read(eval("beliefnest/films", task_args=arguments, model=mock(
+    lambda messages: "desire K: 4\\ndesire L: 4\\nbelief L: 3\\nbelief none: 3"
+), display="none"))
+(sample,) = log.samples
+score = sample.scores["like_inference"]
+print(sample.id, score.metadata["outcome"], score.metadata["beliefs"][0][1])
+(log,) = read(
+    eval("beliefnest/films", task_args=arguments, model="beliefnest/offline", display="none")
+)
+print(log.samples[0].scores["like_inference"].metadata["outcome"])
+"""
+
+FILM = {
+    "worlds": [{"size": [3, 1], "spot1": [1, 1], "spot2": [3, 1], "possible_spot2": ["L", None]}],
+    "parameters": {"reward_levels": [0, 40]},
+    "scenarios": [
+        {"id": 1, "true_spot1": "K", "true_spot2": "L", "path_xy": [[2, 1], [3, 1]]},
+        {"id": 2, "true_spot1": "K", "true_spot2": None, "path_xy": [[2, 1], [1, 1]]},
+    ],
+}
+
+EPISODES = """
+import beliefnest as bn
+
+with bn.Episode(bn.Task.load("help-find", seed=1), {"anne": "search:1"}) as told:
+    program = told.play(1).parts[0].decisions["anne"].program
+
+asked = []
+def answer(messages):
+    assert messages[0].role == "system"
+    asked.append(messages)
+    code = program if len(asked) == 1 else "await bot.waitForTicks(1)"
+    return f"```javascript\\n{code}\\n```"
+
+arguments = {"seed": 1, "seeds": 1, "order": 1}
+(log,) = read(
+    eval("beliefnest/help_find", task_args=arguments, model=mock(answer), display="none")
+)
+(sample,) = log.samples
+score = sample.scores["goal_reached"]
+measures = score.metadata
+print(score.value, measures["messages"], measures["requests"] == len(asked))
+print(measures["policies"], measures["tokens"] == 2 * len(asked))
+print(score.explanation.splitlines()[0])
+assert sample.messages[0].role == "system" and sample.messages[-1].role == "assistant"
+assert program in score.explanation
+"""
+
+LISTENER = """
+import contextlib, io, json, os, sys, traceback
+
+for line in sys.stdin:
+    folder, code = json.loads(line)
+    os.chdir(folder)
+    said, failed = io.StringIO(), None
+    with contextlib.redirect_stdout(said):
+        try:
+            exec(code, {"__name__": "__main__"})
+        except BaseException:
+            failed = traceback.format_exc()
+    print(json.dumps([said.getvalue(), failed]), flush=True)
+"""
+
+Run = Callable[[str, Path], list[str]]
+
+
+@pytest.fixture(scope="module")
+def run() -> Iterator[Run]:
+    """What a program says; all run in one process, in turn, as the cells of a notebook do."""
+    # Inspect has an event loop, threads and a log of its own: a process of its own as well.
+    with subprocess.Popen(
+        [sys.executable, "-c", LISTENER],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as listener:
+        assert listener.stdin is not None and listener.stdout is not None
+
+        def told(code: str, folder: Path) -> list[str]:
+            print(json.dumps([str(folder), code]), file=listener.stdin, flush=True)
+            answer = listener.stdout.readline()
+            assert answer, f"the process ended with {listener.wait()}"
+            said, failed = json.loads(answer)
+            assert failed is None, failed
+            return said.splitlines()
+
+        yield told
+        listener.stdin.close()
+
+
+def test_answers_of_the_mock_model_are_run_in_the_belief_and_explained(run, tmp_path):
+    assert sorted(run(MODEL + LEFT_OR_NOWHERE, tmp_path)) == ["1 C ok", "2 I wrong"]
+
+
+def test_variations_in_minecraft_are_samples_with_explanations_of_their_own(run, tmp_path):
+    assert run(MODEL + LIKE_OURS + VARIED, tmp_path) == ["C ok True"] * 3
+
+
+def test_every_built_in_scenario_that_asks_is_a_task_whose_samples_are_scored(run, tmp_path):
+    run(MODEL + LIKE_OURS + EVERY, tmp_path)
+
+
+def test_suites_are_tasks_whose_answers_are_scored_and_explained(run, tmp_path):
+    story = "1 Ann and Bob entered the den.\n2 The ball is in the box.\n3 Ann exited the den.\n"
+    story += "4 Bob moved the ball to the jar."
+    asked = {"Where does Ann think the ball is?": "box", "Where is the ball really?": "jar"}
+    rows = [{"story": story, "question": each, "answer": asked[each]} for each in asked]
+    files = {"hi_tom": str(tmp_path / "hi.json"), "stories": str(tmp_path / "own.jsonl")}
+    Path(files["hi_tom"]).write_text(json.dumps(rows), encoding="utf-8")
+    events = [line.partition(" ")[2] for line in story.splitlines()]
+    own = {
+        "events": events,
+        "questions": [{"question": each, "answer": asked[each]} for each in asked],
+    }
+    Path(files["stories"]).write_text(json.dumps(own) + "\n", encoding="utf-8")
+    found = run(f"FILES = {files!r}\n{MODEL}{STORIES}", tmp_path)
+    assert found == [
+        line
+        for name in files
+        for line in (f"{name} 1 box box C", f"{name} 0 jar in none of them I")
+    ]
+
+
+def test_ratings_of_desires_and_beliefs_are_scored_against_exact_inference(run, tmp_path):
+    file = tmp_path / "films.json"
+    file.write_text(json.dumps(FILM), encoding="utf-8")
+    assert run(f"FILE = {str(file)!r}\n{MODEL}{MINDS}", tmp_path) == [
+        "1 rated True",
+        "2 no_answer False",
+        "3 rated True",
+        "['beliefs_r', 'desires_r', 'mean', 'stderr'] True",
+        "no rating from 1 to 7 for desire korean",
+        "1 rated 0.5",
+        "no_answer",
+    ]
+
+
+def test_episodes_are_samples_whose_players_a_model_plays(run, tmp_path):
+    assert run(MODEL + EPISODES, tmp_path) == [
+        "C 1 True",
+        "anne=model:inspect:1,sally=search:0 True",
+        "sally has 1 apple: at tick 25",
+    ]
+
+
+def test_the_guide_does_what_it_says(run, tmp_path):
+    (code,) = re.findall(r"```python\n(.*?)```", GUIDE.read_text("utf-8"), re.DOTALL)
+    assert run(code, tmp_path) == re.findall(r"print\(.*\)  # (.*)", code)
+
+
+def test_the_installed_package_registers_its_tasks(tmp_path):
+    names = {each.name for each in entry_points(group="inspect_ai")}
+    assert "beliefnest" in names, "installed before it had tasks; pip install -e . again"
+    command = [sys.executable, "-m", "inspect_ai", "eval", "beliefnest/help_sally"]
+    command += ["--model", "beliefnest/offline", "-T", "world=scripted", "--limit", "1"]
+    done = subprocess.run(
+        [*command, "--display", "plain"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "COLUMNS": "100"},
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert re.search(r"accuracy\s+1\.000", done.stdout)
+
+
+def test_a_question_of_a_suite_is_a_sample_with_its_container_as_target(run, tmp_path):
+    file = tmp_path / "stories.json"
+    file.write_text(
+        '[{"story": "1 Ann and Bob entered the den.\\n2 The ball is in the box.\\n'
+        '3 Ann exited the den.\\n4 Bob moved the ball to the jar.",'
+        ' "question": "Where does Ann think the ball is?", "answer": "box"}]'
+    )
+    code = (
+        "from beliefnest.inspect.registry import hi_tom\n"
+        f"(sample,) = hi_tom({str(file)!r}).dataset\n"
+        "print(sample.target, sample.metadata['order'], sample.metadata['options'])\n"
+    )
+    assert run(code, tmp_path) == ["box 1 ['box', 'jar', 'in none of them']"]
+
+
+def test_why_a_program_failed_stands_in_the_explanation_of_an_episode():
+    from beliefnest.adapters.inspect_ai.episodes import _line
+
+    done = {"agent": "ann", "program": "x()", "ended": "failed", "reason": "line 1: no x"}
+    assert _line(0, done) == "round 1, ann: x() (failed: line 1: no x)"

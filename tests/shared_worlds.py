@@ -1,0 +1,50 @@
+"""Worlds that tests play in one after the other, as the conditions of one command do.
+
+Starting Minecraft takes longer than most stories played in it. Tests of what starts, ends and
+breaks it use a world of their own.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+
+import pytest
+
+from beliefnest.worlds.by_name import Worlds, open_world
+from beliefnest.worlds.process_limits import ProcessLimits
+from beliefnest.worlds.protocol import World
+
+__all__ = ["Lent", "kept_worlds", "lent"]
+
+Lent = Callable[[int], AbstractContextManager[Worlds]]
+
+
+@pytest.fixture(scope="session")
+def lent() -> Iterator[Lent]:
+    """Worlds by their seed, which stay open until the last test has ended."""
+    with ExitStack() as ended:
+        opened: dict[int, Worlds] = {}
+
+        @contextmanager
+        def lend(seed: int) -> Iterator[Worlds]:
+            if seed not in opened:
+                opened[seed] = ended.enter_context(Worlds(seed))
+            yield opened[seed]
+
+        yield lend
+
+
+@pytest.fixture(scope="module")
+def kept_worlds(lent: Lent) -> Iterator[None]:
+    """What a file's tests begin in a world that is lent; what they resume, in one of its own."""
+
+    def lent_world(name: str, seed: int, limits: ProcessLimits | None = None) -> World:
+        if name != "embedded" or limits is not None:
+            return open_world(name, seed, limits)
+        with lent(seed) as worlds:
+            return worlds.lend(name)
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("beliefnest.cli.run.Worlds", lent)
+        patched.setattr("beliefnest.studies.worker.Worlds", lent)
+        patched.setattr("beliefnest.nest.face.nest.open_world", lent_world)
+        yield

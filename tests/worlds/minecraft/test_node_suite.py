@@ -1,0 +1,54 @@
+"""The JavaScript side's own tests, run by the Node that the package uses."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from tests.profiles import NIGHTLY, at_night
+
+from beliefnest.worlds.minecraft.node_files import node_path
+
+NODE_ROOM = Path(__file__).parents[3] / "src" / "beliefnest" / "worlds" / "minecraft" / "node"
+FILES = sorted(path.relative_to(NODE_ROOM) for path in (NODE_ROOM / "test").rglob("*.test.js"))
+TOGETHER = () if NIGHTLY else ("places", "plugins", "sandbox", "skills")
+"""Folders whose files run in one process by day: most of what a file takes is Node's beginning."""
+
+
+def runs() -> dict[str, list[Path]]:
+    """Name of each run of Node to the files in it."""
+    found: dict[str, list[Path]] = {}
+    for path in FILES:
+        name = path.parent.as_posix() if path.parent.name in TOGETHER else path.as_posix()
+        found.setdefault(name, []).append(path)
+    return found
+
+
+SECONDS = at_night(7200, 300)
+
+
+def test_there_are_javascript_tests() -> None:
+    assert FILES
+    assert (NODE_ROOM / "node_modules").is_dir(), "install them with `pip install -e '.[dev]'`"
+
+
+@pytest.mark.parametrize(("name", "files"), runs().items(), ids=list(runs()))
+def test_javascript(name: str, files: list[Path]) -> None:
+    apart = "none" if len(files) > 1 else "process"
+    ended = subprocess.run(
+        [
+            node_path(),
+            "--test",
+            f"--test-isolation={apart}",
+            "--test-reporter=spec",
+            *(file.as_posix() for file in files),
+        ],
+        cwd=NODE_ROOM,
+        env={**os.environ, "NO_COLOR": "1", "FORCE_COLOR": "0"},
+        capture_output=True,
+        text=True,
+        timeout=SECONDS,
+        check=False,
+    )
+    if ended.returncode != 0:
+        pytest.fail(f"{name}:\n{ended.stdout[-8000:]}\n{ended.stderr[-4000:]}", pytrace=False)
