@@ -122,7 +122,8 @@ def _kernels() -> str:
     from beliefnest.perception import eye_loops
     from beliefnest.perception.rays import is_compiled
 
-    if all(is_compiled(each) for each in (kernel.fold, eye_loops.seen_blocks, relaxing.sweep)):
+    kernels = (kernel.fold, eye_loops.seen_blocks, relaxing.raise_values)
+    if all(is_compiled(each) for each in kernels):
         return "compiled"
     return (
         "not compiled yet; the first belief or inference will wait for it, "

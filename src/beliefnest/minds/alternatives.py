@@ -167,6 +167,8 @@ class Worlds:
         if not self.can_differ:
             return [everyone] * count
         look: Pose = ((feet[0], feet[1] + EYE_HEIGHT, feet[2]), yaw, pitch)
+        if self.has_one_view and not self._doubted_contents and not self._doubted_agents:
+            return self._alike_by_blocks(look, all_round)
         percepts: list[object] = self._percepts(look, self._doubted, range(count), all_round)
         by_percept: dict[object, list[int]] = {}
         for number, percept in enumerate(percepts):
@@ -177,10 +179,23 @@ class Worlds:
                 behind = self._percepts(look, self._candidates(look[0]), group, all_round)
                 for number, further in zip(group, behind, strict=True):
                     percepts[number] = (percept, further)
-        masks: dict[object, int] = {}
-        for number, percept in enumerate(percepts):
-            masks[percept] = masks.get(percept, 0) | 1 << number
-        return [masks[percept] for percept in percepts]
+        return _masks(percepts)
+
+    def _alike_by_blocks(self, look: Pose, all_round: bool) -> list[int]:
+        """Return what `alike` does if only blocks differ, and none of them hides more."""
+        plain = self._geometry_of[0]
+        seeing = self._round[id(plain)] if all_round else plain
+        seen = seeing.sees_blocks(*look, self._doubted + np.array(self.box.low))
+        key = seen.tobytes()
+        if key not in self._by_seen:
+            cells = tuple(self._doubted[seen].T)
+            self._by_seen[key] = _masks([world.blocks[cells].tobytes() for world in self.worlds])
+        return self._by_seen[key]
+
+    @cached_property
+    def _by_seen(self) -> dict[bytes, list[int]]:
+        """Alternatives with the same percept, by which of the differing blocks are seen."""
+        return {}
 
     def _percepts(
         self, look: Pose, cells: npt.NDArray[np.int64], which: Sequence[int], all_round: bool
@@ -257,6 +272,14 @@ class Worlds:
             places = [item.position for item in self.items.values()]
             items = seeing.sees_points(*look, places).tobytes()
         return blocks, tuple(contents), tuple(agents), items
+
+
+def _masks(percepts: Sequence[object]) -> list[int]:
+    """Return for each percept the numbers of equal ones, as bits."""
+    masks: dict[object, int] = {}
+    for number, percept in enumerate(percepts):
+        masks[percept] = masks.get(percept, 0) | 1 << number
+    return [masks[percept] for percept in percepts]
 
 
 def _items_key(items: Items | None) -> object:

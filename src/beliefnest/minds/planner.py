@@ -43,15 +43,51 @@ class PlanRules:
 
 @dataclass(frozen=True, eq=False)
 class _Values:
-    """Values of one knowledge.
+    """Values of one knowledge, once for hypotheses that do not differ in it.
 
     Attributes:
         rows: By cell its row in the table, or -1.
-        table: float64 (rows, utilities, credences or 1).
+        kinds: Which hypotheses share values.
+        table: float64 (rows, kinds of utilities, kinds of credences).
     """
 
     rows: npt.NDArray[np.int64]
+    kinds: "_Kinds"
     table: Floats
+
+    def at(self, cells: npt.NDArray[np.int64], kinds: "_Kinds") -> Floats:
+        """Return values in some cells: (cells, utilities, credences) of some kinds."""
+        mine = self.kinds
+        utility, credence = mine.of_utility[kinds.utilities], mine.of_credence[kinds.credences]
+        found: Floats = self.table[self.rows[cells]][:, utility][:, :, credence]
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class _Kinds:
+    """Hypotheses that have the same values with one knowledge.
+
+    The utility of a goal that is nowhere in what is believed plays no part, and credences count
+    only by what they are on it.
+
+    Attributes:
+        utilities: One row of the utilities for each kind.
+        of_utility: The kind of each row.
+        credences: One row of the credences for each kind.
+        of_credence: The kind of each row.
+        weights: float64 (members of what is believed, kinds of credences).
+    """
+
+    utilities: npt.NDArray[np.int64]
+    of_utility: npt.NDArray[np.int64]
+    credences: npt.NDArray[np.int64]
+    of_credence: npt.NDArray[np.int64]
+    weights: Floats
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Numbers of kinds of utilities and credences."""
+        return len(self.utilities), len(self.credences)
 
 
 class Planner:
@@ -63,7 +99,7 @@ class Planner:
         self.stage, self.rules = stage, rules
         self._utilities, self._credences = utilities, credences
         self._solved: dict[Knowledge, _Values] = {}
-        self._weights: dict[int, Floats] = {}
+        self._kinds: dict[int, _Kinds] = {}
 
     @property
     def size(self) -> int:
@@ -85,9 +121,10 @@ class Planner:
         """Q of all actions: (actions, utilities, credences or 1); -inf where there is none."""
         stage, rules = self.stage, self.rules
         possible, believed = knowledge
-        weights = self.weights(believed)
+        kinds = self._kinds_of(believed)
+        weights = kinds.weights
         available = self.actions(cell, knowledge)
-        shape = (len(self._utilities), weights.shape[1])
+        shape = kinds.shape
         q = np.full((len(available), *shape), -np.inf)
         members = numbers_in(believed)
         steps = stage.moves.shape[2]
@@ -97,7 +134,8 @@ class Planner:
             for number, a in enumerate(members):
                 to = cell if action == 0 else int(stage.moves[a, cell, action - 1])
                 kept = int(stage.same[a, to])
-                total += weights[number] * self._value(to, possible & kept, believed & kept)
+                after = self._solve((possible & kept, believed & kept))
+                total += weights[number] * after.at(np.array([to]), kinds)[0]
             q[action] = rules.discount * total - cost
         for box in range(len(stage.boxes)):
             action = 1 + steps + box
@@ -105,36 +143,40 @@ class Planner:
                 total = np.zeros(shape)
                 for number, a in enumerate(members):
                     kept = int(stage.content[box, a]) & int(stage.same[a, cell])
-                    total += weights[number] * self._value(cell, possible & kept, believed & kept)
+                    after = self._solve((possible & kept, believed & kept))
+                    total += weights[number] * after.at(np.array([cell]), kinds)[0]
                 q[action] = rules.discount * total - rules.act_cost
         first = 1 + steps + len(stage.boxes)
         for goal in range(stage.acts.shape[1]):
             if available[first + goal]:
-                q[first + goal] = self._utilities[:, goal, None] - rules.act_cost
-        return q
+                q[first + goal] = self._utilities[kinds.utilities, goal, None] - rules.act_cost
+        if len(numbers_in(believed)) == 1:
+            return q[:, kinds.of_utility]
+        return q[:, kinds.of_utility][:, :, kinds.of_credence]
 
-    def weights(self, believed: int) -> Floats:
-        """Credence in each member of a set: (members, credences), or (1, 1) if there is one."""
-        found = self._weights.get(believed)
+    def _kinds_of(self, believed: int) -> _Kinds:
+        found = self._kinds.get(believed)
         if found is None:
             members = numbers_in(believed)
             if len(members) == 1:
-                found = np.ones((1, 1))
+                weights = np.ones((1, len(self._credences)))
             else:
                 part = self._credences[:, members].T
                 total = part.sum(axis=0)
-                found = np.where(total > 0, part / np.where(total > 0, total, 1), 1 / len(members))
-            self._weights[believed] = found
+                weights = np.where(
+                    total > 0, part / np.where(total > 0, total, 1), 1 / len(members)
+                )
+            there = np.logical_or.reduce(self.stage.acts[members], axis=(0, 2))
+            utilities, of_utility = _distinct(self._utilities[:, there])
+            credences, of_credence = _distinct(weights.T)
+            found = self._kinds[believed] = _Kinds(
+                utilities, of_utility, credences, of_credence, weights[:, credences]
+            )
         return found
 
     def _differs(self, box: int, possible: int) -> bool:
         first = numbers_in(possible)[0]
         return int(self.stage.content[box, first]) & possible != possible
-
-    def _value(self, cell: int, possible: int, believed: int) -> Floats:
-        values = self._solve((possible, believed))
-        table: Floats = values.table[values.rows[cell]]
-        return table
 
     def _solve(self, knowledge: Knowledge) -> _Values:
         found = self._solved.get(knowledge)
@@ -146,8 +188,8 @@ class Planner:
         stage, rules = self.stage, self.rules
         possible, believed = knowledge
         members, everyone = numbers_in(believed), numbers_in(possible)
-        weights = self.weights(believed)
-        shape = (len(self._utilities), weights.shape[1])
+        kinds = self._kinds_of(believed)
+        weights, shape = kinds.weights, kinds.shape
         # Only where all that is possible looks the same can the agent be with this knowledge.
         cells = np.flatnonzero(stage.same[everyone[0]] & possible == possible)
         rows = np.full(len(stage.cells), -1, dtype=np.int64)
@@ -157,7 +199,7 @@ class Planner:
         acts = np.logical_and.reduce(stage.acts[everyone], axis=0)
         for goal in range(stage.acts.shape[1]):
             at = np.flatnonzero(acts[goal, cells])
-            worth = self._utilities[:, goal, None] - rules.act_cost
+            worth = self._utilities[kinds.utilities, goal, None] - rules.act_cost
             table[at] = np.maximum(table[at], worth)
         for box in range(len(stage.boxes)):
             at = np.flatnonzero(stage.reach[box, cells])
@@ -166,7 +208,7 @@ class Planner:
                 for number, a in enumerate(members):
                     kept = int(stage.content[box, a])
                     after = self._solve((possible & kept, believed & kept))
-                    total += weights[number] * after.table[after.rows[cells[at]]]
+                    total += weights[number] * after.at(cells[at], kinds)
                 table[at] = np.maximum(table[at], rules.discount * total - rules.act_cost)
         steps = stage.moves.shape[2]
         inner = np.full((len(cells), steps), -1, dtype=np.int32)
@@ -187,7 +229,7 @@ class Planner:
                         continue
                     which = np.flatnonzero(left[number, at] == smaller)
                     after = self._solve((smaller, smaller & believed))
-                    total[which] += weights[number] * after.table[after.rows[to[number, at[which]]]]
+                    total[which] += weights[number] * after.at(to[number, at[which]], kinds)
             leaves = ~np.logical_or.reduce(stays_in[:, at], axis=0)
             out = at[leaves]
             table[out] = np.maximum(table[out], rules.discount * total[leaves] - rules.step_cost)
@@ -199,8 +241,16 @@ class Planner:
                 ]
                 mixes.append((int(at[row]), total[row].reshape(-1), within))
         flat = table.reshape(len(cells), -1)
-        relax(flat, inner, mixes, rules.discount, rules.step_cost)
-        return _Values(rows, table)
+        relax(flat, inner, mixes, rules.discount, rules.step_cost, start)
+        return _Values(rows, kinds, table)
+
+
+def _distinct(rows: Floats) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Return the first of each kind of equal rows, in order, and by row the number of its kind."""
+    kinds: dict[bytes, int] = {}
+    of_row = [kinds.setdefault(row.tobytes(), len(kinds)) for row in rows]
+    first = [of_row.index(kind) for kind in range(len(kinds))]
+    return np.array(first, dtype=np.int64), np.array(of_row, dtype=np.int64)
 
 
 def count_values(stage: Stage, credences: int) -> int:

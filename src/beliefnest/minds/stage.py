@@ -5,7 +5,7 @@ alternative `a`.
 """
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -81,11 +81,10 @@ def shortest(stage: Stage, actual: int, start: Position, end: Position) -> int |
         return None
     goal, front, steps = stage.index[end], [stage.index[start]], 0
     seen = set(front)
-    moves: Sequence[Sequence[int]] = stage.moves[actual].tolist()
     while front:
         if goal in front:
             return steps
-        reached = {to for at in front for to in moves[at]} - seen
+        reached = set(stage.moves[actual, front].reshape(-1).tolist()) - seen
         seen |= reached
         front, steps = list(reached), steps + 1
     return None
