@@ -38,7 +38,8 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
     from beliefnest.nest.explain.explanation import Explanation
     from beliefnest.nest.explain.parts import Contents
     from beliefnest.nest.face.exploration import Attempt
-    from beliefnest.nest.face.imagining import History, ImaginationWarning, Imagined
+    from beliefnest.nest.face.histories import History, Imagined
+    from beliefnest.nest.face.imagining import ImaginationWarning
     from beliefnest.nest.face.nest import Nest
     from beliefnest.nest.face.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
@@ -111,9 +112,9 @@ _HOMES = {
     "Difference": "beliefnest.nest.explain.comparison",
     "Episode": "beliefnest.episodes.episode",
     "Explanation": "beliefnest.nest.explain.explanation",
-    "History": "beliefnest.nest.face.imagining",
+    "History": "beliefnest.nest.face.histories",
     "ImaginationWarning": "beliefnest.nest.face.imagining",
-    "Imagined": "beliefnest.nest.face.imagining",
+    "Imagined": "beliefnest.nest.face.histories",
     "Inference": "beliefnest.minds.inference",
     "InitialBelief": "beliefnest.belief.grounds",
     "MindModel": "beliefnest.minds.mind_model",

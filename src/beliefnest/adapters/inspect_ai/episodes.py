@@ -13,8 +13,7 @@ from inspect_ai.model import GenerateConfig, ModelOutput, get_model
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
-from beliefnest.adapters.inspect_ai.conversation import messages_of
-from beliefnest.adapters.inspect_ai.task_parts import metrics_by, score_of
+from beliefnest.adapters.inspect_ai.task_parts import messages_of, metrics_by, score_of
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
 from beliefnest.episodes.task import Task as Played

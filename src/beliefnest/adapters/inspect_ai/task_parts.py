@@ -1,14 +1,22 @@
-"""Common parts of all tasks: data sets of samples, and scores with explanations."""
+"""Common parts of all tasks: data sets of samples, conversations, scores with explanations."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from inspect_ai import Task
 from inspect_ai.dataset import MemoryDataset, Sample
+from inspect_ai.model import (
+    ChatMessage,
+    ChatMessageAssistant,
+    ChatMessageSystem,
+    ChatMessageUser,
+)
 from inspect_ai.scorer import CORRECT, INCORRECT, Metric, Score, Scorer, accuracy, grouped, stderr
 from inspect_ai.solver import Solver, generate
 
-__all__ = ["metrics_by", "score_of", "task_of"]
+from beliefnest.llm.messages import Message
+
+__all__ = ["messages_of", "metrics_by", "score_of", "task_of"]
 
 
 def task_of(name: str, samples: list[Sample], scorer: Scorer, *before: Solver) -> Task:
@@ -37,3 +45,13 @@ def score_of(
         explanation="\n".join(lines),
         metadata=metadata,
     )
+
+
+def messages_of(messages: Sequence[Message]) -> list[ChatMessage]:
+    """Convert a conversation to Inspect's form."""
+    forms = {
+        "system": ChatMessageSystem,
+        "user": ChatMessageUser,
+        "assistant": ChatMessageAssistant,
+    }
+    return [forms[each.role](content=each.text) for each in messages]

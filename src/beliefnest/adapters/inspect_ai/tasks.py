@@ -9,9 +9,8 @@ from inspect_ai.dataset import Sample
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
-from beliefnest.adapters.inspect_ai.conversation import messages_of
 from beliefnest.adapters.inspect_ai.samples import Stage, requests_of
-from beliefnest.adapters.inspect_ai.task_parts import metrics_by, score_of, task_of
+from beliefnest.adapters.inspect_ai.task_parts import messages_of, metrics_by, score_of, task_of
 from beliefnest.errors import InputError
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.loading import read_document

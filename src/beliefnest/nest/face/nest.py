@@ -11,12 +11,12 @@ from beliefnest.errors import InputError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.script import Progress, play_script
 from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction
+from beliefnest.nest.face.given import tick_of
 from beliefnest.nest.face.joining import Joining
 from beliefnest.nest.face.opening import BareSetting, HasSetting, as_scenario, begun, resumed
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import Past
 from beliefnest.nest.face.simulator import Simulator
-from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.face.visiting import Visiting
 from beliefnest.nest.past.over_time import each_tick

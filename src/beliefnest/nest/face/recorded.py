@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Self
 
 from beliefnest.nest.face.base import NestBase
+from beliefnest.nest.face.given import tick_of
 from beliefnest.nest.face.shown import Past, PastSimulator
-from beliefnest.nest.face.ticks import tick_of
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import read_recording
 from beliefnest.timeline.journal import FOLLOW, TimelineKey

@@ -15,7 +15,7 @@ from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
 from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.made_claims import MadeClaim, claims_made
-from beliefnest.nest.face.ticks import tick_of
+from beliefnest.nest.face.given import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
@@ -28,7 +28,7 @@ from beliefnest.world.values import Placements, Position
 if TYPE_CHECKING:  # What draws or infers takes long to import, and few nests are asked to.
     from beliefnest.minds.inference import Inference
     from beliefnest.minds.mind_model import MindModel
-    from beliefnest.nest.face.imagining import Imagined
+    from beliefnest.nest.face.histories import Imagined
     from beliefnest.pictures.figure import Figure
     from beliefnest.pictures.scene import Scene
 
@@ -191,23 +191,14 @@ class ShownSimulator(ABC):
             PathError: There is no such agent.
             TickError: A tick is in the future or before the start, or `since` is after `until`.
         """
-        from beliefnest.nest.face.imagining import Faces, imagine_in
+        from beliefnest.nest.face.histories import Faces
+        from beliefnest.nest.face.imagine_arguments import Asked
+        from beliefnest.nest.face.imagining import imagine_in
 
         last = self._tick if until is None else until
-        return imagine_in(
-            self._recording,
-            self._path,
-            since,
-            last,
-            actors,
-            n,
-            seed,
-            weights,
-            evidence,
-            tolerance,
-            on_progress,
-            Faces(PastSimulator, self._live_on),
-        )
+        asked = Asked(since, last, actors, n, seed, weights, evidence, tolerance)
+        faces = Faces(PastSimulator, self._live_on)
+        return imagine_in(self._recording, self._path, asked, faces, on_progress)
 
     def _live_on(self, recording: Recording) -> Any:
         """Return the simulator, able to act, on other timelines."""

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING, Literal
 from beliefnest.errors import BranchError, InputError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.imagination import Imagination
-from beliefnest.nest.face.branch_names import check_branch_name
+from beliefnest.nest.face.given import check_branch_name, tick_of, whole
 from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.shown import ShownSimulator
-from beliefnest.nest.face.ticks import tick_of, whole
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Senses

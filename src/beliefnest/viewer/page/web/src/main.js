@@ -4,8 +4,7 @@ import { Chooser } from './choice.js'
 import { App } from './app.js'
 import { element, refill } from './elements.js'
 import { Run } from './run.js'
-import { PackedSource, ServedSource } from './source.js'
-import { packedData } from './unpack.js'
+import { PackedSource, ServedSource, packedData } from './source.js'
 
 const root = document.getElementById('page')
 

@@ -6,11 +6,10 @@ const minecraft = require('minecraft-protocol')
 const { Vec3 } = require('vec3')
 const { TcpEnd } = require('../net/tcpEnd')
 const versions = require('../versions')
-const { CannotListen } = require('./cannotListen')
 const { Earshot } = require('./earshot')
-const { ease } = require('./ease')
 const { Gallery } = require('./gallery')
 const { Standstill } = require('./standstill')
+const { ease } = require('./visitor')
 const { canGo } = require('./way')
 
 // More than there are agents, so that the door can tell an extra player why they are refused.
@@ -56,6 +55,17 @@ class PersonEnd extends TcpEnd {
     if (isWrong) this.player?.sendSelfPosition()
     else super.deliver(name, params)
   }
+}
+
+/** Error for a port that cannot be opened. The message says which port, and what to do. */
+class CannotListen extends Error {
+  constructor (host, port, { code, message }) {
+    const why = { EADDRINUSE: 'another program listens there', EACCES: 'only the system may listen there', EADDRNOTAVAIL: 'this machine has no such address' }[code] ?? message
+    super(`people cannot come in at ${host}:${port}: ${why}; give another port, or 0 for any that is free`)
+  }
+
+  /** Kind of the failure for the channel: the world failed, and the message says everything. */
+  get kind () { return 'world' }
 }
 
 class Door {

@@ -5,13 +5,20 @@ const { agentUuid } = require('../bots/bot')
 const { vecOf } = require('../server/plugins/lib/positions')
 const { loginPacket } = require('../server/login')
 const { inside, listing, moving, sign, spawning, wearing } = require('../exhibits/views')
-const { ease } = require('./ease')
 
 const SPECTATOR = 3
 const OWN_NUMBER = 1
 const LAST_WINDOW = 100
 const FULL = 20
 const NOTHING = { present: false }
+const NIGHT_VISION = 15
+const FOR_EVER = -1
+
+/** Send a client with a screen what it needs besides: the end of its loading screen, and light. */
+function ease (end, entityId) {
+  end.write('game_state_change', { reason: 'level_chunks_load_start', gameMode: 0 })
+  end.write('entity_effect', { entityId, effectId: NIGHT_VISION, amplifier: 0, duration: FOR_EVER, hideParticles: 0 })
+}
 
 class Visitor {
   /**
@@ -130,4 +137,4 @@ class Visitor {
   }
 }
 
-module.exports = { Visitor }
+module.exports = { ease, Visitor }

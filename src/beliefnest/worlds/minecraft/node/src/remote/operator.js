@@ -7,7 +7,6 @@ const { NEEDED } = require('./commands')
 const reasons = require('./reasons')
 const { ByCompletions } = require('./settling')
 const { parseSnbt } = require('./snbt')
-const { columnsLacking } = require('./shown')
 
 const POLL_MS = 10
 // Number of server ticks after which an answer or effect is no longer expected.
@@ -17,6 +16,7 @@ const TICKS_PER_SECOND = 20
 const PATIENT_TICKS = 40
 const MOST_LINES = 20
 const TOP = 1
+const CHUNK_BITS = 4
 // Number of commands that are typed before the operator waits for the server. It grows while the server answers
 // quickly.
 const FEWEST_AT_ONCE = 8
@@ -252,6 +252,17 @@ class Operator {
 /** Return the names of the commands that a player may use. */
 function namesOf ({ nodes, rootIndex }) {
   return new Set(nodes[rootIndex].children.map(index => nodes[index].extraNodeData?.name))
+}
+
+/** Return the number of columns of a box that a bot has not received. @returns {number} */
+function columnsLacking ({ world }, { low, high }) {
+  let lacking = 0
+  for (let x = low[0] >> CHUNK_BITS; x <= high[0] >> CHUNK_BITS; x++) {
+    for (let z = low[2] >> CHUNK_BITS; z <= high[2] >> CHUNK_BITS; z++) {
+      if (!world.getColumn(x, z)) lacking += 1
+    }
+  }
+  return lacking
 }
 
 module.exports = { Operator }

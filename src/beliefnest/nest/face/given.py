@@ -1,11 +1,11 @@
-"""Checks of ticks given by callers."""
+"""Checks of ticks and names given by callers."""
 
 from operator import index
 from typing import SupportsIndex
 
-from beliefnest.errors import TickError
+from beliefnest.errors import BranchError, TickError
 
-__all__ = ["tick_of", "whole"]
+__all__ = ["check_branch_name", "tick_of", "whole"]
 
 
 def whole(value: object) -> int | None:
@@ -28,3 +28,11 @@ def tick_of(value: object) -> int:
     if tick is None:
         raise TickError(f"{value!r} is not a tick; give a whole number")
     return tick
+
+
+def check_branch_name(name: object) -> None:
+    """Refuse what can name no branch; BranchError says so."""
+    if not isinstance(name, str) or not name or not name.isprintable() or set(name) & set("/[]"):
+        raise BranchError(
+            f"{name!r} is not a branch name; use printable text without '/', '[' and ']'"
+        )

@@ -1,0 +1,370 @@
+"""Imagined histories: weighted possible courses of events, and branches of them."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from beliefnest.belief.conditions import GoalCondition, GoalFacts, StateFacts
+from beliefnest.belief.view import State
+from beliefnest.errors import BranchError, InputError, PathError, StoreError
+from beliefnest.nest.acting.courses import Course
+from beliefnest.nest.acting.particles import Drawing, Lost, Particle
+from beliefnest.nest.face.given import check_branch_name, tick_of, whole
+from beliefnest.nest.face.history_starts import Starts
+from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
+from beliefnest.nest.past.recording import Recording
+from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Items, Point, Position
+from beliefnest.worlds.scripted.world import ScriptedWorld
+
+if TYPE_CHECKING:  # These take long to import, and few histories are drawn or listed.
+    import pandas as pd
+
+    from beliefnest.pictures.figure import Figure
+
+__all__ = ["Faces", "History", "Imagined", "weigh"]
+
+
+@dataclass(frozen=True, slots=True)
+class Faces:
+    """Functions that make the simulators in which users see histories.
+
+    Attributes:
+        past: Function that makes the read-only simulator of a path at a tick.
+        live: Makes the simulator that histories are of, able to act, on other timelines.
+    """
+
+    past: Callable[[Recording, BeliefPath, int | None], Any]
+    live: Callable[[Recording], Any]
+
+
+@dataclass(frozen=True, slots=True)
+class _WorldFacts:
+    """The facts of a scripted world."""
+
+    world: ScriptedWorld
+
+    def items_in(self, place: Position) -> Items:
+        return self.world.containers.get(place, {})
+
+    def is_empty(self, place: Position) -> bool:
+        return self.world.containers.get(place) == {}
+
+    def items_of(self, agent: str) -> Items:
+        state = self.world.agents.get(agent)
+        return {} if state is None else state.inventory
+
+    def feet_of(self, agent: str) -> Point | None:
+        state = self.world.agents.get(agent)
+        return None if state is None else state.position
+
+    def block(self, place: Position) -> str | None:
+        index = self.world.box.index(place)
+        return Registry.load().text(int(self.world.blocks[index]))
+
+
+class History:
+    """Possible course of events, as a branch that is not recorded.
+
+    Belief paths are those inside the history: `/` is its world, `/bob` is Bob's belief in it.
+
+    Attributes:
+        number: Number of the history among those that were drawn.
+        weight: Probability of the history among them.
+    """
+
+    def __init__(self, imagined: "Imagined", number: int, particle: Particle) -> None:
+        self.number, self.weight = number, particle.weight
+        self._imagined, self._course = imagined, particle.course
+
+    @property
+    def candidates(self) -> Mapping[str, str]:
+        """Names of the candidates that its agents followed."""
+        return {name: each.name for name, each in self._course.candidates.items()}
+
+    @property
+    def hypotheses(self) -> Mapping[str, Mapping[str, float | str]]:
+        """The drawn hypotheses by factor, for each agent whose candidate is a model."""
+        return {
+            name: each.strategy.told(self._course.draws[name])
+            for name, each in self._course.candidates.items()
+            if each.strategy is not None
+        }
+
+    @property
+    def failed(self) -> Mapping[str, str]:
+        """The reasons why programs failed, by agent."""
+        return {name: str(fault) for name, fault in self._course.faults.items()}
+
+    @property
+    def tick(self) -> int:
+        """Its latest tick."""
+        return self._course.tick
+
+    @property
+    def state(self) -> State:
+        """The state of the history's world at its end."""
+        state: State = self["/"].state
+        return state
+
+    def at(self, tick: int) -> Any:
+        """Return the history's world at a tick.
+
+        Raises:
+            TickError: The tick is after the end of the history, or before the start of the run.
+        """
+        recording = self._imagined._recorded(self._course)
+        then = tick_of(tick)
+        recording.moment(self._imagined._path, then)
+        return self._imagined._faces.past(recording, self._imagined._path, then)
+
+    def __getitem__(self, path: str) -> Any:
+        """Return a simulator of it in the end; `/` is what is the case in it."""
+        recording = self._imagined._recorded(self._course)
+        whole_path = self._imagined._within(path)
+        return self._imagined._faces.past(recording, whole_path, self._course.tick)
+
+    def figure(self, against: str | None = None) -> "Figure":
+        """Draw it as it is in the end; compared with a belief path of the nest, if one is given."""
+        figure: Figure = self["/"].figure(against)
+        return figure
+
+    def fork(self, name: str = "fork") -> Any:
+        """Return a simulator in which it goes on, on a branch of its own, in a scripted world.
+
+        Programs run in it as in any other; nothing of it is recorded in the nest.
+
+        Args:
+            name: Name of the branch, which stays with the histories.
+
+        Raises:
+            InputError: The nest is only read.
+            BranchError: The name is not allowed.
+        """
+        recording = self._imagined._recorded(self._course)
+        own = recording.on(recording.selected[self._imagined._path])
+        simulator = self._imagined._faces.live(own)
+        simulator.switch(name)
+        return simulator
+
+    def keep(self, name: str) -> None:
+        """Record it in the nest as a branch; see `Imagined.keep`."""
+        self._imagined.keep(self.number, name)
+
+    def __repr__(self) -> str:
+        names = ", ".join(f"{agent}: {name or '-'}" for agent, name in self.candidates.items())
+        return f"<history {self.number}, weight {self.weight:.3g}, tick {self.tick}: {names}>"
+
+
+class Imagined:
+    """Weighted histories of a simulator, drawn by `imagine`.
+
+    If none agrees with what was perceived, `impossible` says at which tick the last one was lost;
+    the histories are then those that were lost last, as they were at that tick.
+
+    Attributes:
+        since: The tick at which they begin.
+        until: The tick at which they end.
+        n: How many were drawn.
+        impossible: When and why the last one was lost; None: some agree.
+        log_evidence: Natural logarithm of the probability of what was perceived, estimated.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        path: BeliefPath,
+        base: ForkPoint,
+        drawing: Drawing,
+        starts: Starts,
+        until: int,
+        side: Recording,
+        faces: Faces,
+    ) -> None:
+        self._recording, self._path, self._base = recording, path, base
+        self._starts, self._side, self._faces = starts, side, faces
+        self._drawing = drawing
+        self.since, self.until, self.n = base.tick, until, len(drawing.drawn)
+        self.impossible: Lost | None = drawing.lost
+        self.log_evidence = -math.inf if drawing.lost is not None else drawing.log_evidence
+        self._particles = [each for each in drawing.particles if each.weight > 0]
+        self._keys: dict[Course, TimelineKey] = {}
+
+    def __len__(self) -> int:
+        return len(self._particles)
+
+    def __getitem__(self, number: int) -> History:
+        """Return one history."""
+        index = whole(number)
+        if index is None or not -len(self) <= index < len(self):
+            raise InputError(f"no history {number!r}; there are {len(self)}, from 0")
+        return History(self, index % len(self), self._particles[index])
+
+    def __iter__(self) -> Iterator[History]:
+        return (self[number] for number in range(len(self)))
+
+    @property
+    def weights(self) -> tuple[float, ...]:
+        """Weights of the histories, which sum to 1."""
+        return tuple(particle.weight for particle in self._particles)
+
+    @property
+    def effective_size(self) -> float:
+        """The effective number of histories, counted as different ones at the first tick.
+
+        0 if none agrees with what was perceived.
+        """
+        return 0.0 if self.impossible is not None else self._drawing.effective_size
+
+    def share(self, condition: Mapping[str, Any] | Sequence[Mapping[str, Any]]) -> float:
+        """Return the probability that a condition, or all of several, holds in the end.
+
+        Args:
+            condition: As in goals: `{"container": place, "items": {name: count}}`, `{"agent": name,
+                "at": place}`, `{"block": place, "state": text}` and so on. Its `path` is one inside
+                the histories: `/` is what is the case in them.
+
+        Raises:
+            InputError, PathError, UnknownNameError: The condition is malformed.
+        """
+        wanted = goal_conditions(self._recording, condition)
+        with self._recording.turn:
+            held: dict[Course, bool] = {}
+            for particle in self._particles:
+                if particle.course not in held:
+                    held[particle.course] = self._holds(particle.course, wanted)
+        return math.fsum(each.weight for each in self._particles if held[each.course])
+
+    def by_candidate(self, agent: str) -> dict[str, float]:
+        """Return the probability of each candidate of an agent.
+
+        Raises:
+            PathError: The agent had no candidates.
+        """
+        actors = self._starts.candidates
+        if agent not in actors:
+            raise PathError(f"{agent!r} had no candidates; those who had are {', '.join(actors)}")
+        followed = [(each.course.candidates[agent].name, each.weight) for each in self._particles]
+        return {
+            name: math.fsum(weight for other, weight in followed if other == name)
+            for name in actors[agent]
+        }
+
+    @property
+    def failed(self) -> dict[str, dict[str, str]]:
+        """The first reason why a candidate's program failed, by agent and candidate.
+
+        Histories that were dropped count too.
+        """
+        found: dict[str, dict[str, str]] = {}
+        for (agent, name), fault in self._drawing.plan.failures.items():
+            found.setdefault(agent, {})[name] = str(fault)
+        return found
+
+    def frame(self) -> "pd.DataFrame":
+        """Return the candidates of all histories.
+
+        Returns:
+            Columns history, weight, agent, candidate, failed (the reason, or None).
+        """
+        import pandas as pd
+
+        rows = [
+            (history.number, history.weight, agent, name, history.failed.get(agent))
+            for history in self
+            for agent, name in history.candidates.items()
+        ]
+        return pd.DataFrame(rows, columns=["history", "weight", "agent", "candidate", "failed"])
+
+    def keep(self, number: int, name: str) -> None:
+        """Record one history in the nest, as a branch of the simulator; nothing else is recorded.
+
+        Raises:
+            BranchError: The name is not allowed, or there is such a branch.
+            StoreError: The run is only read; resume it to keep anything.
+            InputError: There is no such history.
+        """
+        check_branch_name(name)
+        recording, key = self._recording, TimelineKey(self._path, name)
+        self[number]
+        course = self._particles[number].course
+        with recording.turn:
+            journal = recording.journal
+            if not journal.writable:
+                raise StoreError(
+                    "this run is only read, so that no history can be kept in it; open it with "
+                    "Nest.resume and imagine there"
+                )
+            if any(info.key == key for info in journal.timelines()):
+                raise BranchError(
+                    f"{path_text(self._path)} already has a branch {name!r}; choose another name"
+                )
+            with journal.together():
+                journal.create(key, self._base, self._base.tick)
+                journal.append(key, self._starts.entries(course), course.tick)
+
+    def __repr__(self) -> str:
+        head = f"<{self.n} histories of {path_text(self._path)}, ticks {self.since} to {self.until}"
+        for agent, named in self.failed.items():
+            head += "".join(f", {agent} {name!r} failed ({why})" for name, why in named.items())
+        if self.impossible is not None:
+            return (
+                f"{head}: none agrees with what was perceived; the last was lost at tick "
+                f"{self.impossible.tick}>"
+            )
+        shares = [
+            f"{agent} {name or repr(name)} {share:.3g}"
+            for agent in self._starts.candidates
+            for name, share in self.by_candidate(agent).items()
+        ]
+        return f"{head}, effective size {self.effective_size:.3g}: {', '.join(shares)}>"
+
+    # Histories as branches
+
+    def _within(self, path: str) -> BeliefPath:
+        return normalised((*self._path, *parse_path(path, self._recording.agents)))
+
+    def _recorded(self, course: Course) -> Recording:
+        """Return timelines with the course on one of its own, beside those of the nest."""
+        key = self._keys.get(course)
+        if key is None:
+            key = self._keys[course] = TimelineKey(self._path, f"history {len(self._keys)}")
+            journal = self._side.journal
+            journal.create(key, self._base, self._base.tick)
+            journal.append(key, self._starts.entries(course), course.tick)
+        return self._side.on(key)
+
+    def _holds(self, course: Course, wanted: Sequence[GoalCondition]) -> bool:
+        def look(path: BeliefPath) -> GoalFacts:
+            inside = normalised((*self._path, *path))
+            if inside == self._path:
+                return _WorldFacts(course.world)
+            return StateFacts(self._recorded(course).state(inside))
+
+        return all(condition.holds(look) for condition in wanted)
+
+
+def weigh(imagined: Imagined, evidence: Evidence) -> None:
+    """Weigh histories by the probability of conditions at their end."""
+    likely: dict[Course, float] = {}
+    for particle in imagined._particles:
+        course = particle.course
+        if course not in likely:
+            factor = 0.0 if course.contradiction is not None else 1.0
+            for conditions, mistaken in evidence:
+                holds = imagined._holds(course, conditions)
+                factor *= 1 - mistaken if holds else mistaken
+            likely[course] = factor
+    total = math.fsum(each.weight * likely[each.course] for each in imagined._particles)
+    if total <= 0:
+        text = "no history leads to what the evidence says"
+        imagined.impossible = Lost(imagined.until, text)
+        imagined.log_evidence = -math.inf
+        return
+    for particle in imagined._particles:
+        particle.weight *= likely[particle.course] / total
+    imagined._particles = [each for each in imagined._particles if each.weight > 0]
+    imagined.log_evidence += math.log(total)

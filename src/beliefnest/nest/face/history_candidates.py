@@ -1,0 +1,129 @@
+"""Candidates of imagined histories: programs, models of minds, and policies."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from beliefnest.errors import InputError
+from beliefnest.minds.mind_model import MindModel
+from beliefnest.minds.walking import Strategy
+from beliefnest.nest.acting.courses import Candidate, Course, PolicyProgram
+from beliefnest.nest.face.histories import Faces
+from beliefnest.nest.face.history_starts import Doubt, Starts
+from beliefnest.nest.inferring.node_inference import ModelStart, start_of_model
+from beliefnest.nest.past.recording import Recording
+from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.world.paths import BeliefPath, normalised
+
+__all__ = ["Candidates", "Policies"]
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Checks of candidates, and their preparation.
+
+    Attributes:
+        recording: Recording of the nest.
+        path: The simulator that histories are of.
+        base: The point from which they begin.
+        end: The point at which they end.
+        starts: Beginnings of the histories, which learn the doubts of models.
+        policies: Policies as programs.
+    """
+
+    recording: Recording
+    path: BeliefPath
+    base: ForkPoint
+    end: ForkPoint
+    starts: Starts
+    policies: "Policies"
+
+    def of(self, agent: str, name: str, given: object) -> Candidate:
+        """Return a candidate of an agent.
+
+        Raises:
+            InputError: It is no program, model of that agent, or policy.
+        """
+        if isinstance(given, str):
+            return Candidate(name, program=given)
+        if isinstance(given, MindModel):
+            if given.agent != agent:
+                raise InputError(
+                    f"candidate {name!r} of {agent} is a model of {given.agent}; give one of "
+                    f"{agent}"
+                )
+            start = start_of_model(self.recording, self.path, given, self.base.tick, self.end.tick)
+            return Candidate(name, strategy=_strategy(self.recording, start, self.starts, name))
+        if callable(given):
+            return Candidate(name, policy=self.policies.of(given, agent, name))
+        raise InputError(
+            f"candidate {name!r} of {agent} is {given!r}; give a program (text), a MindModel, or a "
+            "policy (a function from the agent's simulator to a program)"
+        )
+
+
+def _strategy(recording: Recording, start: ModelStart, starts: Starts, name: str) -> Strategy:
+    context = recording.context
+    strategy = Strategy(
+        start.model,
+        start.scene,
+        start.agrees,
+        start.step_ticks,
+        context.sight,
+        transparent=context.options.containers == "transparent",
+    )
+    elements = start.model.alternatives[0].elements
+    for known in starts.doubts:
+        same = known.strategy.model
+        if elements & known.elements and (
+            [repr(each) for each in same.alternatives]
+            != [repr(each) for each in start.model.alternatives]
+            or same.actual_weights != start.model.actual_weights
+        ):
+            raise InputError(
+                f"candidate {name!r} of {start.model.agent} and one of {same.agent} doubt the same "
+                "elements in different ways; give both the same doubt and the same actual"
+            )
+    if elements and not any(elements == known.elements for known in starts.doubts):
+        starts.doubts.append(Doubt(elements, strategy))
+    return strategy
+
+
+@dataclass(eq=False)
+class Policies:
+    """Policies as programs: shows each policy the course so far."""
+
+    side: Recording
+    starts: Starts
+    path: BeliefPath
+    faces: Faces
+    _keys: dict[Course, tuple[TimelineKey, int]] = field(default_factory=dict)
+
+    def of(self, policy: Callable[..., object], agent: str, name: str) -> PolicyProgram:
+        """Return what asks a policy for the next program."""
+
+        def program(course: Course, actor: str) -> str:
+            simulator = self._shown(course, actor)
+            code = policy(simulator)
+            if not isinstance(code, str):
+                raise InputError(
+                    f"policy {name!r} of {agent} returned {code!r}; return a program, or an empty "
+                    "text to do nothing more"
+                )
+            return code
+
+        return program
+
+    def _shown(self, course: Course, agent: str) -> Any:
+        journal = self.side.journal
+        known = self._keys.get(course)
+        entries = self.starts.entries(course)
+        if known is None:
+            key = TimelineKey(self.path, f"drawing {len(self._keys)}")
+            journal.create(key, self.starts.base, self.starts.base.tick)
+            known = (key, 0)
+        key, written = known
+        journal.append(key, entries[written:], course.tick)
+        self._keys[course] = (key, len(entries))
+        recording = self.side.on(key)
+        return self.faces.past(recording, normalised((*self.path, agent)), course.tick)
