@@ -2,12 +2,12 @@
 
 Run it with `python examples/observe_predict_plan_act.py [MODEL]`. In each round
 
-* observe: Anne's belief follows what she perceives, by itself;
-* predict: inside her belief, Sally's next program is asked for from what Anne believes that Sally
-  believes, and run on a branch of the belief;
-* plan: if that does not give Sally what she wants, Anne's own program is asked for from what Anne
-  believes, and tried out on another branch of the belief;
-* act: only a plan that works there is run in the real world.
+* observe: Anne's belief follows her perceptions automatically;
+* predict: the model writes Sally's next program from Anne's belief about Sally's belief; it runs on
+  a branch of Anne's belief;
+* plan: if Sally would not succeed, the model writes Anne's program from Anne's belief; it runs on
+  another branch of the belief;
+* act: Anne runs a plan in the real world only if it worked in her belief.
 """
 
 import os
@@ -46,7 +46,7 @@ def ask(model: Model, belief: bn.Simulator, task: str) -> str:
 
 
 def imagine(belief: bn.Simulator, agent: str, program: str, branch: str) -> bool:
-    """Run a program on a branch of a belief: would Sally have a diamond then?"""
+    """Run a program on a branch of a belief; return True if Sally has a diamond then."""
     belief.switch(branch)
     try:
         belief.run(agent, program)
@@ -61,7 +61,7 @@ def has_diamond(simulator: bn.Simulator) -> bool:
 
 
 def play_round(nest: bn.Nest, model: Model, number: int) -> Round:
-    """Predict, plan, act, once; observing happens by itself."""
+    """Predict, plan and act once; observing is automatic."""
     anne = nest["/anne"]
     predicted = ask(model, nest["/anne/sally"], WISH)
     if imagine(anne, "sally", predicted, f"prediction {number}"):
@@ -74,7 +74,7 @@ def play_round(nest: bn.Nest, model: Model, number: int) -> Round:
 
 
 def play(model: Model, store: str | None = None) -> list[Round]:
-    """All rounds, until Sally has her diamond."""
+    """Play rounds until Sally has her diamond."""
     rounds: list[Round] = []
     with bn.Nest.open(bn.Scenario.load("help-sally"), store=store) as nest:
         nest.play()

@@ -1,9 +1,9 @@
-"""Watch and help somebody who has not said what he is after (Puig and others 2021).
+"""Watch and help an agent whose goal is not known (Puig and others 2021).
 
-Each lift rises while its two levers are on, with somebody at each. Bob wants one of them to rise,
-and walks to its lever; the other lever is at the end of a passage on Anne's side, and there is no
-time to try two passages. Nobody tells Anne which lift it is: whoever does not infer it from where
-he walks has to guess.
+Each lift rises while its two levers are on, with an agent at each of them. Bob wants one of the
+lifts to rise, and walks to its lever. The other lever is at the end of a passage on Anne's side.
+She has no time to try two passages. Nobody tells Anne which lift it is: she must infer it from his
+walk, or guess.
 """
 
 import random

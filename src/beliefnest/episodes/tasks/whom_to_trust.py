@@ -1,11 +1,11 @@
 """Task of trust: a speaker is a helper or a deceiver (Koenig and Harris 2005; Sodian 1991).
 
 Bob wants an apple and a treasure. The apple is in one of two chests beside him, the treasure at one
-end of the hall, and there is only time to go to one end. Eve knows where both are. She wants him to
-get them, or wants to keep the treasure from him, and does not say which; she has said where the
-treasure is. Either her claim about the apple, which Bob can check, shows what she is after, or a
-deed: she walks to where she will be if she helps, or to where she will be if she deceives him.
-Whoever does not infer it takes her word or leaves it.
+end of the hall, and he has time to go to one end only. Eve knows both places. She wants him to get
+both, or wants to keep the treasure from him, and does not say which. She has told him where the
+treasure is. One of two things reveals her goal: a claim about the apple, which Bob can check, or
+her walk to the place where she will stand if she helps, or if she deceives. If Bob does not infer
+her goal, he can only believe her always or never.
 """
 
 import random
