@@ -41,12 +41,15 @@ def test_an_explanation_says_what_the_state_says(story: Story) -> None:
             assert str(told)
 
 
-def test_an_act_of_which_the_kind_alone_is_known_is_told_in_words():
+def test_what_was_handed_on_is_told_with_what_was_seen():
     scenario = bn.Scenario.load("knowledge-access", condition=1)
     with bn.Nest.open(scenario) as nest:
         nest.play()
         told = str(nest["/observer/fiona"].explain(container=(7, 1, 2)))
-    assert "something was put in; fiona took it over" in told
+    assert (
+        "perceived at tick 100 what had been seen to happen (observer "
+        "looked in, then observer put 1 diamond in) at tick 3."
+    ) in told
     assert "deposit_item" not in told
 
 

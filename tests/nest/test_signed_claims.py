@@ -202,7 +202,7 @@ def test_what_was_claimed_is_listed_with_who_read_it() -> None:
 def test_an_explanation_tells_of_the_sign() -> None:
     hall = Hall(signs={SIGN: "right"}, claims={SIGN: [THERE]})
     told = str(hall.nest["/nora"].explain(container=RIGHT))
-    assert "nora read so on a sign at tick 0" in told
+    assert "nora read on the sign at (10, 0, 12) at tick 0 that diamond is in (17, 0, 3)" in told
     hall.world.place_agent("max", ALSO_THERE)
     told = str(hall.nest["/max"].explain(container=RIGHT))
     assert "max read on the sign at (10, 0, 12) at tick 1 that diamond is in (17, 0, 3)" in told

@@ -5,14 +5,15 @@ along the path a `_Finding` notes when the belief took its present value, and th
 in the parent node that did not reach it. `sightings` then says why it did not.
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 
-from beliefnest.belief.columns import cell_of, place_of
+from beliefnest.belief.columns import cell_of
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.grounds import Basis, PerceivedEvent
+from beliefnest.belief.grounds import Basis, PerceivedEvent, Source
+from beliefnest.belief.holdings import Content
 from beliefnest.belief.node_view import NodeView
-from beliefnest.belief.testimony import Verdict
+from beliefnest.belief.priors import merged_belief
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.element_history import (
     LogStep,
@@ -25,25 +26,25 @@ from beliefnest.nest.explain.element_history import (
     value_in,
 )
 from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.explain.ground_chain import Grounds, mattering
 from beliefnest.nest.explain.parts import (
     Absence,
     Contents,
     Element,
     Fact,
+    Ground,
     HeardClaim,
     Level,
     Missed,
-    SeenElsewhere,
+    Reason,
     Sighting,
     Value,
 )
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import Edit, Entry, ForkPoint
-from beliefnest.world.claims import ClaimKind, claims_of
-from beliefnest.world.frames import Frame
+from beliefnest.timeline.journal import Edit, ForkPoint
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import EventKind, Point, Position
+from beliefnest.world.values import Point, Position
 
 __all__ = ["element_of", "explain"]
 
@@ -109,7 +110,9 @@ def _explained(
     paths = [path[:depth] for depth in range(len(root), len(path) + 1)]
     now = _held_now(recording, path, moment, element)
     fact = _fact(recording, moment, now[root], element)
-    traces = [_Finding(node, now[node]) for node in paths[1:]]
+    traces = [
+        _Finding(node, now[node], _grounds(recording, node, now, element)) for node in paths[1:]
+    ]
     _follow(recording, path, moment, element, traces)
     before = None
     base = recording.journal.info(moment.timeline).base
@@ -143,21 +146,17 @@ class _Finding:
         parent: Value in the parent node at that tick.
         was_known: Whether the node ever held another value.
         missed: First later change in the parent node that did not reach the node.
-        value: Value in the node after the last entry.
-        told: Claims that moved the element's items.
-        elsewhere: Perceptions of unique items that moved the element's items.
+        grounds: Grounds of the belief.
     """
 
     path: BeliefPath
     held: _HeldNow
+    grounds: Grounds
     since: int | None = None
     stood: Point | None = None
     parent: Value = None
     was_known: bool = False
     missed: Missed | None = None
-    value: Value = None
-    told: list[HeardClaim] = field(default_factory=list)
-    elsewhere: list[SeenElsewhere] = field(default_factory=list)
 
     @property
     def observed_at(self) -> int | None:
@@ -178,14 +177,17 @@ def _held_now(
     for depth in range(len(root), len(path) + 1):
         node = path[:depth]
         basis, current = _ground_of(recording, moment, forest, node, element)
-        block = None
+        block, value = None, value_in(forest, node, element)
         if not isinstance(element.where, str):
-            cell = cell_of(recording.box, element.where)
-            block = recording.context.block_name(forest.block(node, cell))
+            number = forest.block(node, cell_of(recording.box, element.where))
+            # Contents can be believed where no container is known: in the air, for example.
+            context = recording.context
+            is_container = isinstance(value, Contents)
+            block = context.container_name(number) if is_container else context.block_name(number)
         events = NodeView(forest, node).events()
         if current and basis is not None:
             basis = replace(basis, observed_at=moment.tick)
-        held[node] = _HeldNow(value_in(forest, node, element), block, basis, current, events)
+        held[node] = _HeldNow(value, block, basis, current, events)
     return held
 
 
@@ -231,9 +233,7 @@ def _follow(
     """Fold the log from the oldest basis on, and note in each trace what happened."""
     if not traces:
         return
-    # For an unknown element start at the beginning, to find out if it was ever known.
-    first = recording.setting.snapshot.tick
-    start = min(first if trace.observed_at is None else trace.observed_at for trace in traces)
+    start = min(_begin(recording, trace) for trace in traces)
     last = None
     for step in steps_since(recording.history, recording.journal, path, moment, start, element):
         last = step
@@ -253,10 +253,7 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
     forest = step.forest
     outside = value_in(forest, trace.path[:-1], element)
     mine = value_in(forest, trace.path, element)
-    if mine != trace.value:
-        trace.elsewhere += _elsewhere(step, trace.path, element, trace.value)
-        trace.value = mine
-        trace.told += _told(recording, trace.path, step, element)
+    trace.grounds.take(step)
     is_held, goes_on = _is_held(trace, forest, mine, element)
     if not is_held:
         trace.was_known = True
@@ -268,8 +265,7 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
         trace.since, trace.parent = forest.tick, outside
         trace.stood = forest.feet(trace.path[:-1], trace.path[-1])
     elif trace.missed is None and outside != trace.parent and trace.observed_at is not None:
-        entry = _entry(recording, step)
-        edited = isinstance(entry, Edit) and entry.path == trace.path[:-1]
+        edited = isinstance(step.entry, Edit) and step.entry.path == trace.path[:-1]
         events = NodeView(forest, trace.path[:-1]).events()
         acts = () if edited else _acts(events, forest.tick, element)
         missed = _missed(recording, trace.path, step, element, trace.parent, acts)
@@ -316,54 +312,6 @@ def _missed(
     )
 
 
-def _told(
-    recording: Recording, path: BeliefPath, step: LogStep, element: Element
-) -> Iterable[HeardClaim]:
-    """Yield the claims of one entry that may have moved items in a node out of a container."""
-    entry = _entry(recording, step) if element.kind == "container" else None
-    if not isinstance(entry, Frame):
-        return
-    node = step.forest.node(path)
-    for row, event in enumerate(entry.events):
-        for index, claim in enumerate(claims_of(event) if event.kind is EventKind.CHAT else ()):
-            is_here = claim.cell == element.where
-            takes = claim.kind is (ClaimKind.ABSENT if is_here else ClaimKind.LOCATED)
-            if takes and step.forest.verdicts[row, index][node].believed:
-                yield HeardClaim(entry.tick, str(event.actor), claim)
-    for (cell, _), told in step.forest.holdings.of(node).told.items():
-        claims = step.forest.context.claims_on(step.forest.block(path, cell))
-        if told.tick != entry.tick:
-            continue
-        for claim, verdict in zip(claims, told.verdicts, strict=False):
-            about = claim.cell == element.where or claim.kind is ClaimKind.LOCATED
-            if about and claim.item is not None and Verdict(verdict).believed:
-                sign = place_of(recording.box, cell)
-                yield HeardClaim(entry.tick, told.speaker, claim, sign)
-
-
-def _elsewhere(
-    step: LogStep, path: BeliefPath, element: Element, before: Value
-) -> Iterable[SeenElsewhere]:
-    """Yield the unique items that one entry took out of a container: they are elsewhere."""
-    forest = step.forest
-    after = value_in(forest, path, element)
-    held = forest.holdings.of(forest.node(path))
-    had = before.items if isinstance(before, Contents) else {}
-    left = after.items if isinstance(after, Contents) else {}
-    for item, sole in held.sole.items():
-        if sole.tick != forest.tick or item not in had or item in left:
-            continue
-        where = forest.place_of(path, sole.place)
-        if where != element.where:
-            yield SeenElsewhere(sole.tick, item, where)
-
-
-def _entry(recording: Recording, step: LogStep) -> Entry | None:
-    """Return the entry that a step folded; None at the beginning of a timeline."""
-    count = step.forest.position
-    return next(recording.journal.entries(step.timeline, count - 1, count)) if count else None
-
-
 def _absence(recording: Recording, forest: Forest, path: BeliefPath) -> Absence:
     """Return why the parent of a node does not see the node's owner."""
     parent = path[:-1]
@@ -401,11 +349,50 @@ def _acts(
     return tuple(event for event in events if event.tick == tick and touches(element, event))
 
 
+def _grounds(
+    recording: Recording, path: BeliefPath, held: Mapping[BeliefPath, _HeldNow], element: Element
+) -> Grounds:
+    """Return the grounds of a node at the beginning of everything: its prior beliefs."""
+    seen = []
+    for node in (path[:depth] for depth in range(len(path), 0, -1) if path[:depth] in held):
+        acts: dict[int, tuple[PerceivedEvent, ...]] = {}
+        for event in held[node].events:
+            if touches(element, event):
+                acts[event.tick] = (*acts.get(event.tick, ()), event)
+        seen.append(acts)
+    grounds = Grounds(path, element, seen)
+    setting = recording.setting
+    basis = Basis(setting.snapshot.tick, Source.PRIOR)
+    priors = merged_belief(setting.initial_beliefs, path).containers
+    for place, (items, complete) in priors.items() if element.kind == "container" else ():
+        if place == element.where:
+            grounds.content = Content(dict(items), complete, basis)
+            found = Contents(dict(items), complete)
+            grounds.chain.append(Ground(basis, basis.observed_at, None, found=found))
+    return grounds
+
+
+def _begin(recording: Recording, trace: _Finding) -> int:
+    """Return the tick from which on the log has to be folded for a belief.
+
+    For an unknown element this is the beginning, to find out if it was ever known. It is also for
+    contents that rest on more than their basis.
+    """
+    basis, path = trace.held.basis, trace.path
+    first = recording.setting.snapshot.tick
+    if basis is None:
+        return first
+    if isinstance(trace.held.value, Contents):
+        acts = trace.grounds.seen[0].get(basis.observed_at, ())
+        is_change = basis.source is Source.WITNESSED and all(a.actor != path[-1] for a in acts)
+        if is_change or basis.source is Source.HEARD or recording.setting.unique:
+            return first
+    return basis.observed_at
+
+
 def _level(trace: _Finding, element: Element) -> Level:
     held = trace.held
     at = trace.observed_at
-    acts = () if at is None else [act for act in held.events if act.tick <= at]
-    latest = next((act.tick for act in reversed(acts) if touches(element, act)), None)
     since = trace.since
     if since is not None and at is not None:
         since = max(since, at)
@@ -416,10 +403,24 @@ def _level(trace: _Finding, element: Element) -> Level:
         block=held.block,
         basis=held.basis,
         current=held.current,
-        acts=() if latest is None else _acts(acts, latest, element),
         since=since,
         stood=trace.stood,
         missed=trace.missed,
-        told=tuple(each for each in trace.told if at is not None and each.tick >= at),
-        elsewhere=tuple(each for each in trace.elsewhere if at is not None and each.tick >= at),
+        reasons=_reasons(trace, since, element),
     )
+
+
+def _reasons(trace: _Finding, since: int | None, element: Element) -> tuple[Reason, ...]:
+    """Return what a value rests on, in the order in which it came."""
+    chain, basis, value = trace.grounds.chain, trace.held.basis, trace.held.value
+    if isinstance(value, Contents) and not isinstance(element.where, str) and basis and chain:
+        *before, last = mattering(chain, value, element.where)
+        if isinstance(last, Ground) and trace.held.current:
+            last = replace(last, basis=basis)
+        return (*before, last)
+    if basis is None or since is None:
+        return tuple(chain) if element.kind == "container" else ()
+    claims = tuple(e for e in chain if isinstance(e, HeardClaim) and e.tick == basis.observed_at)
+    if basis.source is Source.HEARD and claims:
+        return claims
+    return (trace.grounds.ground(basis, since, trace.stood),)

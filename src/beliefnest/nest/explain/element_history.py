@@ -1,5 +1,6 @@
 """History of one element in the nodes of a path, entry by entry, up to the explained moment."""
 
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -28,10 +29,17 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class LogStep:
-    """Forest after one more entry of a timeline."""
+    """Forest after one more entry of a timeline.
+
+    Attributes:
+        timeline: The timeline.
+        forest: The forest.
+        entry: The entry; None for the forest before the first one.
+    """
 
     timeline: TimelineKey
     forest: Forest
+    entry: Entry | None
 
 
 def cells_of(element: Element, box: Box) -> Sequence[int]:
@@ -55,8 +63,10 @@ def steps_since(
         yield from steps_since(history, journal, path, info.base, tick, element)
     first = min(journal.entries_until(moment.timeline, tick - 1), moment.entries)
     cells = cells_of(element, history.context.box)
-    for forest in history.steps(moment.timeline, path, first, moment.entries, cells):
-        yield LogStep(moment.timeline, forest)
+    entries = itertools.chain([None], journal.entries(moment.timeline, first, moment.entries))
+    forests = history.steps(moment.timeline, path, first, moment.entries, cells)
+    for forest, entry in zip(forests, entries, strict=True):
+        yield LogStep(moment.timeline, forest, entry)
 
 
 def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:

@@ -15,9 +15,11 @@ __all__ = [
     "Contents",
     "Element",
     "Fact",
+    "Ground",
     "HeardClaim",
     "Level",
     "Missed",
+    "Reason",
     "SeenElsewhere",
     "Sighting",
     "Value",
@@ -136,35 +138,76 @@ class Missed:
 
 @dataclass(frozen=True, slots=True)
 class HeardClaim:
-    """Claim that made a holder believe that an item left a container.
+    """Claim about an element that a holder believed when it heard or read it.
 
     Attributes:
         tick: Tick at which the holder perceived the claim.
         speaker: Name of the speaker or writer; None: the writer is unknown.
         claim: The claim.
         sign: Position of the sign with the claim; None: the claim was heard.
+        refuted: Tick at which the holder first perceived that the item is not in the claimed
+            container; None: it did not.
     """
 
     tick: int
     speaker: str | None
     claim: Claim
     sign: Position | None = None
+    refuted: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class SeenElsewhere:
-    """Perception of a unique item that made a holder believe that it left a container.
+    """Perception or edit of a unique item that made a holder believe that it left a container.
 
     Attributes:
-        tick: Tick of the perception.
+        tick: Tick of the perception or edit.
         item: Name of the item.
         where: Position of another container, name of the agent that has the item, or point of the
             floor; None: the holder saw the item moved, but not to which place.
+        edited: Whether the holder's belief was edited by hand so.
     """
 
     tick: int
     item: str
     where: Position | Point | str | None
+    edited: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """Perception, prior belief or edit by hand on which a value rests, apart from claims.
+
+    Attributes:
+        basis: Its source and tick.
+        since: Tick at which the holder took it up.
+        stood: The holder's feet in the parent node at that tick; None: unknown.
+        handed_on: Whether the holder perceived a value that was not current in the parent node, and
+            took over its basis with it.
+        is_change: Whether it shows a change of contents and not all of them: somebody else put
+            items in or took some out.
+        found: Known contents of the container then; None: it is no container, or only a change of
+            its contents was perceived.
+        acts: Acts on the element at the tick of the basis. If the value was handed on, these are
+            acts that a believer further out perceived.
+    """
+
+    basis: Basis
+    since: int
+    stood: Point | None
+    handed_on: bool = False
+    is_change: bool = False
+    found: Contents | None = None
+    acts: tuple[PerceivedEvent, ...] = ()
+
+    @property
+    def tells_contents(self) -> bool:
+        """False if the container was known from outside only."""
+        return self.found is None or self.found.complete or bool(self.found.items)
+
+
+Reason = Ground | HeardClaim | SeenElsewhere
+"""Reason for a value: a perception, a prior, an edit or a claim."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,15 +246,13 @@ class Level:
         block: Name of the believed block at the position; None: unknown, or an agent.
         basis: Ground of the value; None if nothing is known.
         current: Whether a perception in this tick backs the value.
-        acts: Perceived acts on the element at the last tick with any, up to that of the basis.
         since: Tick since which the belief has had this value. It is later than the tick of the
             basis if the holder took over a stale value. None: nothing was ever known.
         stood: The holder's feet in the parent node at tick `since`; None: unknown.
         missed: The first later change that did not reach the belief. For an element that was never
             known, the reason why it is not perceived now. None: there is none.
         weighed: Whether hearers weigh claims (`testimony: informed`).
-        told: Claims since the tick of the basis by which items left the container.
-        elsewhere: Perceptions since then by which unique items left the container.
+        reasons: What the value rests on, in the order in which it came; empty if nothing is known.
     """
 
     path: BeliefPath
@@ -220,10 +261,8 @@ class Level:
     block: str | None
     basis: Basis | None
     current: bool
-    acts: tuple[PerceivedEvent, ...]
     since: int | None
     stood: Point | None
     missed: Missed | None
     weighed: bool = False
-    told: tuple[HeardClaim, ...] = ()
-    elsewhere: tuple[SeenElsewhere, ...] = ()
+    reasons: tuple[Reason, ...] = ()

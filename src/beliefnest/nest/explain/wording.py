@@ -3,14 +3,16 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from beliefnest.belief.grounds import Basis, PerceivedEvent, Source
+from beliefnest.belief.grounds import PerceivedEvent, Source
 from beliefnest.nest.explain.parts import (
     Contents,
     Element,
     Fact,
+    Ground,
     HeardClaim,
     Level,
     Missed,
+    Reason,
     SeenElsewhere,
     Sighting,
     Value,
@@ -28,6 +30,19 @@ _KINDS = {
     EventKind.OPEN_CONTAINER: "somebody looked in",
 }
 """Words for acts of which only the kind is known."""
+
+
+_GIVEN = (Source.PRIOR, Source.EDITED)
+"""Sources that are no perceptions."""
+
+_HANDED_ON = {
+    Source.PRIOR: "had been believed since tick",
+    Source.SEEN: "had last been seen at tick",
+    Source.WITNESSED: "had been seen to happen ({acts}) at tick",
+    Source.HEARD: "{speaker} had said at tick",
+    Source.EDITED: "had been edited by hand at tick",
+}
+"""Words for a value that was not current when the holder perceived it, by its source."""
 
 
 def explanation_lines(element: Element, fact: Fact, levels: Iterable[Level]) -> list[str]:
@@ -63,83 +78,89 @@ def _belief_text(level: Level, element: Element) -> str:
         known = f"{holder} does not know what {name} holds"
     elif level.value is None and level.block is None:
         known = f"{holder} knows nothing of a container at {_place(element)}"
-    if level.basis is None:
+    if not level.reasons:
         return f"{outer}{known}.{given_up}"
     now = " That is current." if level.current else ""
-    return f"{outer}{known}: {_context(level, level.basis, name)}.{now}"
+    return f"{outer}{known}: {_reasons_text(level, name)}.{now}"
 
 
 def _given_up(level: Level, element: Element) -> str:
-    begin = f" At tick {level.since} {_knows(level)}{_standing(level.holder, level.stood)}"
+    view = "" if len(level.path) == 1 else f", {_knows(level)[:-2]},"
+    begin = f" At tick {level.since}{view} {_standing(level.holder, level.stood)}"
     if element.kind == "agent":
         return f"{begin} saw {element.where} not to be where it was believed to be."
     return f"{begin} gave up what it had believed."
 
 
-def _context(level: Level, basis: Basis, name: str) -> str:
-    """Return the ground of a belief in words."""
-    tick, holder = basis.observed_at, level.holder
-    late = level.since is not None and level.since > tick
-    moved = [_told_text(level, told) for told in level.told if told.tick > tick]
-    gone = [_elsewhere_text(level, each) for each in level.elsewhere if each.tick > tick]
-    found = [_elsewhere_text(level, each) for each in level.elsewhere if each.tick == tick]
-    moved += gone
-    match basis.source:
-        case Source.SEEN | Source.WITNESSED if found and all(act.tick < tick for act in level.acts):
-            text = f"{_knows(level)}{'; and '.join(found)}"
-        case Source.PRIOR:
-            text = f"a prior belief, held since tick {tick}"
-        case Source.EDITED:
-            text = f"edited by hand at tick {tick}"
-        case Source.HEARD:
-            text = f"{_knows(level)}{_heard(level, basis)}"
-        case Source.WITNESSED:
-            place = "" if level.stood is None or late else f", at {_point(level.stood)},"
-            own = any(act.actor == holder for act in level.acts)
-            tick = level.acts[0].tick if level.acts else tick
-            verb = "last perceived it at" if own else "saw what happened at"
-            acts = _acts_text(level.acts) or _kind_text(basis.event)
-            text = f"{_knows(level)}{holder}{place} {verb} tick {tick}: {acts}"
-        case _:
-            place = "" if level.stood is None or late else f", at {_point(level.stood)},"
-            text = f"{_knows(level)}{holder}{place} last saw {name} at tick {tick}"
-    if moved:
-        text += f"; since then {'; and '.join(moved)}"
-    elif late:
-        text += f"; {holder} took it over at tick {level.since}"
-        text += "" if level.stood is None else f", at {_point(level.stood)}"
+def _reasons_text(level: Level, name: str) -> str:
+    """Return in words what a belief rests on, in the order in which it came."""
+    first, *later = level.reasons
+    is_percept = not isinstance(first, Ground) or first.basis.source not in _GIVEN
+    text = f"{_knows(level) if is_percept else ''}{_reason_text(level, first, name)}"
+    if later:
+        view = "" if is_percept or len(level.path) == 1 else f", {_knows(level)[:-2]},"
+        text += f"; since then{view} "
+        text += "; and ".join(_reason_text(level, each, name) for each in later)
+    last = level.reasons[-1]
+    if level.weighed and isinstance(last, HeardClaim) and last.speaker != level.holder:
+        text += "" if last.refuted else f"; nothing that {level.holder} perceived contradicted it"
     return text
 
 
-def _heard(level: Level, basis: Basis) -> str:
-    holder, speaker, tick = level.holder, basis.speaker, basis.observed_at
-    moved = [told for told in level.told if (told.tick, told.speaker) == (tick, speaker)]
-    if speaker is None and not moved:
-        return f"{holder} read so on a sign at tick {tick}"
-    if moved:
-        text = "; and ".join(_told_text(level, told) for told in moved)
-    elif speaker == holder:
-        text = f"{holder} said so at tick {tick}"
-    else:
-        text = f"{speaker} told {holder} so at tick {tick}"
-    if speaker == holder:
-        return text
-    return f"{text}; {holder} could not have looked" if level.weighed else text
+def _reason_text(level: Level, reason: Reason, name: str) -> str:
+    match reason:
+        case Ground():
+            return _ground_text(level, reason, name)
+        case HeardClaim():
+            return _told_text(level, reason)
+        case SeenElsewhere():
+            return _elsewhere_text(level, reason)
+
+
+def _ground_text(level: Level, ground: Ground, name: str) -> str:
+    """Return a perception, a prior belief or an edit in words."""
+    tick, source, holder = ground.basis.observed_at, ground.basis.source, level.holder
+    acts = _acts_text(ground.acts) or _kind_text(ground.basis.event)
+    who = _standing(holder, ground.stood)
+    last = "last " if ground is level.reasons[-1] else ""
+    verb = "saw what happened at"
+    if any(act.actor == holder for act in ground.acts):
+        verb = f"{last}perceived it at"
+    if not ground.tells_contents and source is Source.PRIOR:
+        return f"that it is there is a prior belief, held since tick {tick}"
+    if not ground.tells_contents and source is Source.SEEN:
+        return f"{who} first saw {name} at tick {ground.since}, but not what it holds"
+    text = {
+        Source.PRIOR: f"a prior belief, held since tick {tick}",
+        Source.EDITED: f"edited by hand at tick {tick}",
+        Source.WITNESSED: f"{who} {verb} tick {tick}: {acts}",
+    }.get(source, f"{who} {last}saw {name} at tick {tick}")
+    if ground.handed_on:
+        was = _HANDED_ON[source].format(speaker=ground.basis.speaker or "a sign", acts=acts)
+        text = f"{who} perceived at tick {ground.since} what {was} {tick}"
+    return text if last or ground.found is None else f"{text} (then {_contents(ground.found)})"
 
 
 def _told_text(level: Level, told: HeardClaim) -> str:
     """Return a claim that the holder heard or read, in words."""
     holder, speaker = level.holder, told.speaker
-    if told.sign is not None and speaker != holder:
-        by = "" if speaker is None else f", which {speaker} wrote,"
-        sign = f"the sign at {_point(told.sign)}{by}"
-        return f"{holder} read on {sign} at tick {told.tick} that {told.claim}"
-    said = f"{holder} said" if speaker == holder else f"{speaker} told {holder}"
-    return f"{said} at tick {told.tick} that {told.claim}"
+    wrong = f", which {holder} perceived at tick {told.refuted} to be wrong"
+    what = f"at tick {told.tick} that {told.claim}{'' if told.refuted is None else wrong}"
+    if told.sign is None:
+        said = f"{holder} said" if speaker == holder else f"{speaker} told {holder}"
+        return f"{said} {what}"
+    sign = f"the sign at {_point(told.sign)}"
+    if speaker == holder:
+        return f"{holder} wrote on {sign} {what}"
+    by = "" if speaker is None else f", which {speaker} wrote,"
+    return f"{holder} read on {sign}{by} {what}"
 
 
 def _elsewhere_text(level: Level, seen: SeenElsewhere) -> str:
     """Return in words where else the holder perceived a unique item."""
+    if seen.edited:
+        where = _point(seen.where) if isinstance(seen.where, tuple) else "another place"
+        return f"the only {seen.item} was put at {where} by hand at tick {seen.tick}"
     begin = f"{level.holder} perceived at tick {seen.tick}"
     if seen.where is None:
         return f"{begin} that the only {seen.item} was moved"
