@@ -15,10 +15,16 @@ from beliefnest_benchmarks.browser import Browser, opened_browser
 IMAGES = Path(__file__).parents[1] / "docs" / "img"
 
 SHOTS = (
-    ("sally-anne", 1, "at=/observer/sally&tick=104&thing=c858&sees=sally", (1600, 1000), False),
-    ("sally-anne", 3, "at=/observer/sally&tick=82&view=plan&thing=a2", (1600, 1000), False),
+    (
+        "sally-anne",
+        1,
+        "at=/observer/sally&tick=104&thing=container-858&sees=sally",
+        (1600, 1000),
+        False,
+    ),
+    ("sally-anne", 3, "at=/observer/sally&tick=82&view=plan&thing=agent-2", (1600, 1000), False),
     ("help-sally", None, "at=/anne/sally&tick=150", (1600, 1000), True),
-    ("ice-cream-van", 1, "at=/observer/john/mary&thing=a3", (400, 1000), False),
+    ("ice-cream-van", 1, "at=/observer/john/mary&thing=agent-3", (400, 1000), False),
 )
 """Scenario, condition, what is looked at, width and height, whether it is dark."""
 

@@ -85,7 +85,6 @@ def assert_agents_as(track: Track, book: PoseBook, state, names) -> None:
 
 
 def things(nest: bn.Nest, path: str, tick: int) -> set[str]:
-    letters = {"agent": "a", "block": "b", "container": "c", "inventory": "i"}
     box = nest.setting.snapshot.box
     _, height, depth = box.shape
     found = set()
@@ -95,7 +94,7 @@ def things(nest: bn.Nest, path: str, tick: int) -> set[str]:
         else:
             i, j, k = box.index(each.where)
             number = (i * height + j) * depth + k
-        found.add(f"{letters[each.kind]}{number}")
+        found.add(f"{each.kind}-{number}")
     return found
 
 

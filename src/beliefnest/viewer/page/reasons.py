@@ -23,7 +23,7 @@ from beliefnest.world.values import EventKind, Position
 
 __all__ = ["ahead", "explanation_of", "look_of", "name_of", "sight_of"]
 
-_THING = re.compile(r"([abci])(\d{1,9})", re.ASCII)
+_THING = re.compile(r"(agent|block|container|inventory)-(\d{1,9})", re.ASCII)
 
 _DEEDS = frozenset(
     {
@@ -64,7 +64,7 @@ def explanation_of(
         key: Key of the timeline.
         path: Path of the node.
         tick: Tick of the belief.
-        thing: `a1`, agent number 1; `c7`, contents of cell 7; `b7`, block of cell 7.
+        thing: `agent-1`; `container-7`, contents of cell 7; `block-7`, block of cell 7.
 
     Raises:
         InputError: There is no such thing.
@@ -72,11 +72,11 @@ def explanation_of(
     """
     shown = reader.simulator(key, path, tick)
     kind, number = _named(thing)
-    if kind in "ai":
+    if kind in ("agent", "inventory"):
         told = shown.explain(agent=_agent(reader, number))
     else:
         place = _place(reader, number)
-        told = shown.explain(container=place) if kind == "c" else shown.explain(block=place)
+        told = shown.explain(container=place) if kind == "container" else shown.explain(block=place)
     return {"t": tick, "lines": str(told).splitlines()}
 
 
@@ -91,13 +91,13 @@ def look_of(
         path: Path of the node.
         tick: Tick of the view.
         viewer: Name of the agent that looks.
-        target: `a1` or `b7`, as for `explanation_of`.
+        target: `agent-1` or `block-7`, as for `explanation_of`.
 
     Returns:
         None if the viewer's pose is unknown.
     """
     kind, number = _named(target)
-    what = _agent(reader, number) if kind == "a" else _place(reader, number)
+    what = _agent(reader, number) if kind == "agent" else _place(reader, number)
     return _told(reader.look(key, path, tick, viewer, what))
 
 
@@ -105,7 +105,9 @@ def _named(thing: str) -> tuple[str, int]:
     """Return the kind and the number of a thing; raises InputError if it is malformed."""
     found = _THING.fullmatch(thing)
     if found is None:
-        raise InputError(f"{thing[:50]!r} is not a thing; write a, b or c and a number")
+        raise InputError(
+            f"{thing[:50]!r} is not a thing; write one such as agent-0, block-7 or container-7"
+        )
     return found[1], int(found[2])
 
 
@@ -164,19 +166,22 @@ class _Views:
         grid = hash(reading.blocks.tobytes())
         cells = sorted(self._reader.history.context.tracked)
         for number, viewer in enumerate(agents):
-            name = f"{name_of(info.key, reading.path)} a{number}"
+            name = f"{name_of(info.key, reading.path)} agent-{number}"
             here = self._standing(reading, viewer)
             _add(self.sights, name, tick, self._sight(reading, viewer, (grid, here)))
             for at, other in enumerate(agents):
                 if at != number:
                     mark = (grid, here, _place_of(reading, other))
                     _add(
-                        self.looks, f"{name} a{at}", tick, self._look(reading, viewer, other, mark)
+                        self.looks,
+                        f"{name} agent-{at}",
+                        tick,
+                        self._look(reading, viewer, other, mark),
                     )
             for cell in cells:
                 place = place_of(self._reader.setting.snapshot.box, cell)
                 look = self._look(reading, viewer, place, (grid, here, cell))
-                _add(self.looks, f"{name} c{cell}", tick, look)
+                _add(self.looks, f"{name} container-{cell}", tick, look)
 
     def _standing(self, reading: NodeView, name: str) -> Any:
         """Return everything on which an agent's view depends.
@@ -227,7 +232,7 @@ def _explanations(
     left = min(_EXPLANATIONS, _ENTRIES // max(1, longest))
     infos = {info.key: info for info, _ in wanted}
     deeds = {key: _deeds(reader, info) for key, info in infos.items()} if left else {}
-    for kind in ("c", "a"):
+    for kind in ("container", "agent"):
         for info, path in wanted:
             for thing in _things(reader, kind) if path else ():
                 rows = []
@@ -251,9 +256,9 @@ def _deeds(reader: Reader, info: TimelineInfo) -> list[int]:
 
 def _things(reader: Reader, kind: str) -> Iterator[str]:
     numbers: Iterable[int] = range(len(reader.agents))
-    if kind == "c":
+    if kind == "container":
         numbers = sorted(reader.history.context.tracked)
-    yield from (f"{kind}{number}" for number in numbers)
+    yield from (f"{kind}-{number}" for number in numbers)
 
 
 def _some(ticks: range, count: int) -> list[int]:

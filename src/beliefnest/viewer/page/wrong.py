@@ -12,7 +12,7 @@ from beliefnest.nest.explain.parts import Contents
 __all__ = ["WrongThings"]
 
 Things = tuple[str, ...]
-"""`a1`: the pose of agent 1; `i1`: its inventory; `c7`, `b7`: contents, block of cell 7."""
+"""`agent-1`: its pose; `inventory-1`: its inventory; `container-7`, `block-7`: those of cell 7."""
 
 
 class WrongThings:
@@ -57,7 +57,7 @@ class WrongThings:
             if changed[number] or changed[0]:
                 held = blocks[number]
                 cells = np.flatnonzero((held >= 0) & (held != blocks[0]))
-                self._block_things[at] = tuple(f"b{cell}" for cell in cells.tolist())
+                self._block_things[at] = tuple(f"block-{cell}" for cell in cells.tolist())
         self._blocks[changed] = blocks[changed]
 
     def _judge_contents(self) -> None:
@@ -70,7 +70,7 @@ class WrongThings:
                 continue
             self._held[at] = mark
             self._content_things[at] = tuple(
-                f"c{cell}"
+                f"container-{cell}"
                 for cell in sorted(held)
                 if are_false(_contents(real, cell), _contents(held, cell) or _NONE)
             )
@@ -85,7 +85,7 @@ class WrongThings:
         apart = known & (moved | ~known[0])
         found: list[list[str]] = [[] for _ in self._numbers]
         for at, agent in np.argwhere(apart[self._numbers]).tolist():
-            found[at].append(f"a{agent}")
+            found[at].append(f"agent-{agent}")
         return [tuple(things) for things in found]
 
     def _inventories(self, number: int) -> Things:
@@ -94,7 +94,7 @@ class WrongThings:
         for agent in range(len(forest.context.agents)):
             real, held = (Contents(*forest.holdings.inventory(node, agent)) for node in (0, number))
             if are_false(real, held):
-                things.append(f"i{agent}")
+                things.append(f"inventory-{agent}")
         return tuple(things)
 
 

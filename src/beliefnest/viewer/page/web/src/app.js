@@ -7,6 +7,7 @@ import { noteNamed } from './notes.js'
 import { Posterior } from './posterior.js'
 import { rayOf } from './ray.js'
 import { Rounds } from './rounds.js'
+import { partsOf } from './run.js'
 import { Stages } from './stages.js'
 import { mainStorey, thingsOf } from './things.js'
 import { Tree } from './tree.js'
@@ -83,7 +84,7 @@ export class App {
   view ({ run, viewer, chosen }, track, tick) {
     if (viewer === null) return { look: null, seen: null, seenVersion: '', ray: null }
     const runs = this.source.sight(run, track, tick, viewer)
-    const judged = chosen !== null && 'abc'.includes(chosen[0]) && chosen !== `a${viewer}`
+    const judged = chosen !== null && partsOf(chosen).kind !== 'inventory' && chosen !== `agent-${viewer}`
     const look = judged ? this.source.look(run, track, tick, viewer, chosen) : null
     return { look, seen: flags(runs, run), seenVersion: `${viewer} ${runs === null ? '' : runs.length} ${runs?.join()}`, ray: rayOf(run, track, tick, viewer, judged ? chosen : null, look) }
   }

@@ -138,7 +138,7 @@ export class Clock {
     const thing = each.at === undefined ? null : run.cell(each.at)
     const isContainer = thing !== null && track.timeline.tracks.get(track.timeline.facts.path)?.cells().includes(thing)
     const claims = (each.claims ?? []).map(([said, kind], index) => claimLine(said, kind, track.verdict(each.number, index)))
-    const jump = { tick: each.t, note: each.note ?? null, ...(thing === null || thing < 0 ? {} : { thing: `${isContainer ? 'c' : 'b'}${thing}` }) }
+    const jump = { tick: each.t, note: each.note ?? null, ...(thing === null || thing < 0 ? {} : { thing: `${isContainer ? 'container' : 'block'}-${thing}` }) }
     return element('li', { 'data-past': String(past), class: `${heard ? '' : 'missed'}${each.t === this.tick ? ' now' : ''}` },
       element('button', { type: 'button', class: choice.note !== null && choice.note === each.note ? 'chosen' : '', onclick: () => this.choose(jump) },
         element('span', { class: 'when' }, each.t), look ? badge(look, { small: true }) : element('span', { class: 'nobody' }),

@@ -2,6 +2,7 @@
 
 import { badge, button, element, itemsText, pointText, refill } from './elements.js'
 import { lookWords } from './ray.js'
+import { partsOf } from './run.js'
 import { contentsText, markWords, memoryWords, tellerOf } from './things.js'
 
 export class Detail {
@@ -71,7 +72,7 @@ export class Detail {
       element('dl', {},
         ...pair(track.path, valueText(run, track, tick, thing)),
         ...(beside && beside !== track ? pair(beside.path, valueText(run, beside, Math.min(tick, beside.timeline.facts.head), thing)) : [])),
-      scene.viewer === null || thing === `a${scene.viewer}` ? null : element('p', { class: 'look' }, lookWords(run, scene.viewer, thing, scene.look)),
+      scene.viewer === null || thing === `agent-${scene.viewer}` ? null : element('p', { class: 'look' }, lookWords(run, scene.viewer, thing, scene.look)),
       element('h4', {}, 'Why'), why,
       button('Copy a link to this', 'copy a link to this view', event => copyLink(event.currentTarget), { class: 'link' }))
     clearTimeout(this.waiting)
@@ -83,7 +84,7 @@ export class Detail {
     const asked = this.asked = {}
     let told
     try {
-      told = await this.source.explain(run, track, tick, thing.replace('i', 'a'))
+      told = await this.source.explain(run, track, tick, thing.replace('inventory', 'agent'))
     } catch (error) {
       told = { error: `The server does not answer (${error.message}).` }
     }
@@ -118,15 +119,15 @@ function pair (path, value) {
 }
 
 function valueText (run, track, tick, thing) {
-  const number = Number(thing.slice(1))
-  if (thing[0] === 'c') return contentsText(track.contents(number, tick))
-  if (thing[0] === 'b') {
+  const { kind, number } = partsOf(thing)
+  if (kind === 'container') return contentsText(track.contents(number, tick))
+  if (kind === 'block') {
     const state = track.grid(tick)[number]
     return state < 0 ? 'not known' : blockText(run.states[state])
   }
   const [items, complete] = track.owned(number, tick)
   const has = itemsText(items) ? `has ${itemsText(items)}${complete ? '' : ', perhaps more'}` : complete ? 'has nothing' : 'what it has is not known'
-  if (thing[0] === 'i') return has
+  if (kind === 'inventory') return has
   const pose = track.agent(number, tick)
   const age = pose && !pose.current ? `, ${memoryWords(tellerOf(pose), tick - pose.seenAt)}` : ''
   return `${placeText(pose)}${age}; ${has}`
@@ -141,8 +142,8 @@ function blockText ({ text, says }) {
  * perceptions.
  */
 function groundParts (run, track, tick, thing) {
-  const number = Number(thing.slice(1))
-  const held = thing[0] === 'c' ? track.contents(number, tick) : thing[0] === 'a' ? track.agent(number, tick) : null
+  const { kind, number } = partsOf(thing)
+  const held = kind === 'container' ? track.contents(number, tick) : kind === 'agent' ? track.agent(number, tick) : null
   const parts = []
   if (held !== null) {
     const event = held.event ? ` (${held.event.replaceAll('_', ' ')})` : ''

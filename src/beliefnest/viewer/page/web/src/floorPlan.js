@@ -171,7 +171,7 @@ export class Plan {
     return things.wrongBlocks.filter(cell => run.place(cell)[1] === storey).slice(0, 200).map(cell => {
       const [x, , z] = run.place(cell)
       const [left, top] = this.at(x, z)
-      return this.target(`b${cell}`, `block at ${run.place(cell).join(', ')}: false`, chosen,
+      return this.target(`block-${cell}`, `block at ${run.place(cell).join(', ')}: false`, chosen,
         svg('rect', { class: 'wrong', x: left + 1, y: top + 1, width: this.size - 2, height: this.size - 2 }))
     })
   }

@@ -1,5 +1,6 @@
 /** Lines of sight, judged by Python, as data for drawing. */
 
+import { partsOf } from './run.js'
 const EYE = 1.62
 const MIDDLE = 0.9
 
@@ -19,8 +20,8 @@ export function rayOf (run, track, tick, viewer, thing, look) {
 }
 
 function targetOf (run, track, tick, thing) {
-  const number = Number(thing.slice(1))
-  if (thing[0] === 'a') {
+  const { kind, number } = partsOf(thing)
+  if (kind === 'agent') {
     const pose = track.agent(number, tick)
     return pose && { x: pose.x, y: pose.y + MIDDLE, z: pose.z }
   }

@@ -150,7 +150,7 @@ class Track {
     return row === undefined ? null : { believed: row[2], condition: row[3] }
   }
 
-  /** Return the keys of the false beliefs at a tick, such as "c12" for a container: see `wrong.py`. @returns {string[]} */
+  /** Return the keys of the false beliefs at a tick, such as "container-12": see `wrong.py`. @returns {string[]} */
   wrong (tick) {
     return rowAt(this.list('wrong'), tick)?.[1] ?? []
   }
@@ -226,6 +226,12 @@ class Timeline {
   }
 }
 
+/** Return kind (agent, block, container, inventory) and number of a thing such as "agent-1". @returns {{kind: string, number: number}} */
+export function partsOf (thing) {
+  const [kind, number] = thing.split('-')
+  return { kind, number: Number(number) }
+}
+
 /** Run of a scenario, with all its timelines. */
 export class Run {
   constructor () {
@@ -272,11 +278,11 @@ export class Run {
 
   /** Return the name of a thing for people. @returns {string} */
   thingName (thing) {
-    const number = Number(thing.slice(1))
-    if (thing[0] === 'a') return this.head.agents[number].name
-    if (thing[0] === 'i') return `what ${this.head.agents[number].name} has`
+    const { kind, number } = partsOf(thing)
+    if (kind === 'agent') return this.head.agents[number].name
+    if (kind === 'inventory') return `what ${this.head.agents[number].name} has`
     const place = this.place(number)
-    return this.label(place) ?? `${thing[0] === 'c' ? 'container' : 'block'} at ${place.join(', ')}`
+    return this.label(place) ?? `${kind} at ${place.join(', ')}`
   }
 
   /** Return the key under which explanations and lines of sight of a track are stored. @returns {string} */

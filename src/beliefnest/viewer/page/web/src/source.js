@@ -13,12 +13,12 @@ export class PackedSource {
   }
 
   look (run, track, tick, viewer, thing) {
-    const rows = run.ahead.looks[`${run.nameOf(track)} a${viewer} ${thing.replace('b', 'c')}`] ?? []
+    const rows = run.ahead.looks[`${run.nameOf(track)} agent-${viewer} ${thing.replace('block', 'container')}`] ?? []
     return rows[rowIndex(rows, tick)]?.[1] ?? null
   }
 
   sight (run, track, tick, viewer) {
-    const rows = run.ahead.sights[`${run.nameOf(track)} a${viewer}`] ?? []
+    const rows = run.ahead.sights[`${run.nameOf(track)} agent-${viewer}`] ?? []
     return rows[rowIndex(rows, tick)]?.[1] ?? null
   }
 
@@ -47,7 +47,7 @@ export class ServedSource {
   }
 
   look (run, track, tick, viewer, thing) {
-    return this.later('look', { ...placeOf(run, track), tick, viewer: run.head.agents[viewer].name, thing: thing.replace('c', 'b') })
+    return this.later('look', { ...placeOf(run, track), tick, viewer: run.head.agents[viewer].name, thing: thing.replace('container', 'block') })
   }
 
   sight (run, track, tick, viewer) {

@@ -304,7 +304,7 @@ function instances (boxes, opacity) {
   const material = new MeshLambertMaterial({ transparent: opacity < 1, opacity })
   const mesh = new InstancedMesh(CUBE, material, boxes.length)
   const still = new Quaternion()
-  mesh.userData.cells = boxes.map(({ cell, container }) => `${container ? 'c' : 'b'}${cell}`)
+  mesh.userData.cells = boxes.map(({ cell, container }) => `${container ? 'container' : 'block'}-${cell}`)
   boxes.forEach(({ box: [x0, y0, z0, x1, y1, z1], colour, place: [x, y, z] }, number) => {
     const middle = new Vector3(x + (x0 + x1) / 64, y + (y0 + y1) / 64, z + (z0 + z1) / 64)
     mesh.setMatrixAt(number, new Matrix4().compose(middle, still, new Vector3((x1 - x0) / 32, (y1 - y0) / 32, (z1 - z0) / 32)))

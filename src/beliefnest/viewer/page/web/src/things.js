@@ -1,6 +1,7 @@
 /** Things to show of one simulator at one tick: values of its track, with their marks. */
 
 import { ago, itemsText } from './elements.js'
+import { partsOf } from './run.js'
 
 const MOST_SHOWN = 24
 
@@ -14,7 +15,7 @@ export function thingsOf (run, track, tick) {
     items: [...track.items(tick).values()],
     signs: writtenSigns(run, track, tick, wrong),
     wrong,
-    wrongBlocks: [...wrong].filter(thing => thing[0] === 'b').map(thing => Number(thing.slice(1)))
+    wrongBlocks: [...wrong].filter(thing => partsOf(thing).kind === 'block').map(thing => partsOf(thing).number)
   }
 }
 
@@ -24,7 +25,7 @@ function writtenSigns (run, track, tick, wrong) {
   const found = []
   track.grid(tick).forEach((state, cell) => {
     if (state < 0 || run.states[state].says === undefined) return
-    const thing = `b${cell}`
+    const thing = `block-${cell}`
     const { name, says } = run.states[state]
     found.push({ thing, cell, place: run.place(cell), name: `${name.replaceAll('_', ' ')} at ${run.place(cell).join(', ')}`, says, marks: wrong.has(thing) ? ['false'] : [], age: null })
   })
@@ -38,17 +39,17 @@ export function shortened (says) {
 
 function agentThing (run, track, tick, look, number, wrong) {
   const pose = track.agent(number, tick)
-  const thing = `a${number}`
+  const thing = `agent-${number}`
   const marks = []
   if (wrong.has(thing)) marks.push('false')
   if (pose === null) marks.push('unknown')
   else if (!pose.current) marks.push(memoryMark(pose))
-  return { thing, number, teller: tellerOf(pose), look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`i${number}`) }
+  return { thing, number, teller: tellerOf(pose), look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`inventory-${number}`) }
 }
 
 function containerThing (run, track, tick, cell, wrong) {
   const contents = track.contents(cell, tick)
-  const thing = `c${cell}`
+  const thing = `container-${cell}`
   const marks = []
   if (wrong.has(thing)) marks.push('false')
   if (contents === null || (!contents.complete && Object.keys(contents.items).length === 0)) marks.push('unknown')
