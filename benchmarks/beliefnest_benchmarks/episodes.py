@@ -2,7 +2,7 @@
 
 import time
 
-from beliefnest.belief.conditions import StateFacts
+from beliefnest.belief.facts import StateFacts
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 from beliefnest.episodes.policies.course_planner import Bounds, Planner

@@ -3,29 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from beliefnest.belief.conditions import (
-    AgentAt,
-    BlockIs,
-    BlocksAlike,
-    GoalCondition,
-    ItemsIn,
-    ItemsWith,
-    LeversHeld,
-    NothingIn,
-    NothingWith,
-)
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.scenarios.goals import Goal, Progress
-from beliefnest.world.values import EventKind
 
 __all__ = ["Share", "shares_of"]
 
 _NEVER = float("inf")
-_CHANGES_NO_BLOCK = (
-    EventKind.OPEN_CONTAINER,
-    EventKind.GET_ITEM_FROM_CHEST,
-    EventKind.DEPOSIT_ITEM_INTO_CHEST,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,32 +67,7 @@ def _share(
     for number, condition in enumerate(goal.reach):
         after_it = {name for name, other in goals.items() if condition in other.reach}
         tick = first.get(number, -1)
-        did = _bringers(condition, [each for each in events if each.tick <= tick]) & after_it
+        did = condition.bringers([each for each in events if each.tick <= tick]) & after_it
         if agent in (did or after_it):
             reach.append(number)
     return Share(tuple(reach), tuple(range(len(goal.reach), len(goal.conditions))))
-
-
-def _bringers(condition: GoalCondition, events: Sequence[PerceivedEvent]) -> set[str]:
-    """Return the agents that brought a condition about: by holding, having or doing."""
-    if condition.path:
-        return {condition.path[0]}
-    fact = condition.fact
-    if isinstance(fact, ItemsWith | NothingWith | AgentAt):
-        return {fact.agent}
-    if isinstance(fact, LeversHeld):
-        return set(fact.agents)
-    return {each.actor for each in _deeds(fact, events) if each.actor is not None}
-
-
-def _deeds(
-    fact: ItemsIn | NothingIn | BlockIs | BlocksAlike, events: Sequence[PerceivedEvent]
-) -> Sequence[PerceivedEvent]:
-    """Return the acts that gave a container or a block its state."""
-    here = [each for each in events if each.detail.get("position") == fact.place]
-    if isinstance(fact, ItemsIn):
-        deposits = [each for each in here if each.kind is EventKind.DEPOSIT_ITEM_INTO_CHEST]
-        return [each for each in deposits if fact.item in each.detail["items"]]
-    if isinstance(fact, NothingIn):
-        return [each for each in here if each.kind is EventKind.GET_ITEM_FROM_CHEST]
-    return [each for each in here if each.kind not in _CHANGES_NO_BLOCK][-1:]

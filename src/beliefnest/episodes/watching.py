@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from beliefnest.belief.conditions import looking_at
+from beliefnest.belief.facts import looking_at
 from beliefnest.belief.view import State
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest

@@ -12,6 +12,7 @@ from beliefnest.prompts import event_rows, text
 from beliefnest.prompts.filterset import FilterSet, filter
 from beliefnest.prompts.memory_filters import FILTERS
 from beliefnest.prompts.simulator_view import BranchView, belief_of, believed_agent, owner_of
+from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.values import EQUIPMENT_SLOTS, Position
 
 __all__ = ["BUILT_IN"]
@@ -144,7 +145,7 @@ def chests(branch: BranchView) -> str:
 
 def _is_chest(state: State, at: Position) -> bool:
     block = state.blocks[at]
-    return block is None or text.block_name(block) in _CHESTS
+    return block is None or block_name(block) in _CHESTS
 
 
 @filter("other_players")
@@ -221,7 +222,7 @@ def block_property(branch: BranchView, name: str) -> str:
     """
     found = branch.state.blocks.named(frozenset({name}))
     lines = [
-        f"{text.position(at)}: {text.mapping(text.block_properties(block))}"
+        f"{text.position(at)}: {text.mapping(parse_state(block)[1])}"
         for at, block in sorted(found.items())
     ]
     return "\n".join(lines) or text.NOT_OBSERVED
@@ -302,13 +303,13 @@ def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[P
         grouped: dict[str, list[Position]] = {}
         for at in state.blocks:
             block = state.blocks[at]
-            if block is not None and text.block_name(block) not in _AIRS:
-                grouped.setdefault(text.block_name(block), []).append(at)
+            if block is not None and block_name(block) not in _AIRS:
+                grouped.setdefault(block_name(block), []).append(at)
         return {name: sorted(grouped[name]) for name in sorted(grouped)}
     wanted = [name.removeprefix("minecraft:") for name in _strings(names)]
     grouped = {name: [] for name in wanted}
     for at, block in sorted(state.blocks.named(frozenset(wanted)).items()):
-        grouped[text.block_name(block)].append(at)
+        grouped[block_name(block)].append(at)
     return grouped
 
 

@@ -6,6 +6,7 @@ from beliefnest.prompts import event_rows, text
 from beliefnest.prompts.filterset import filter
 from beliefnest.prompts.simulator_view import BranchView
 from beliefnest.world.doors import is_door, is_switch
+from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import TICKS_PER_SECOND, EventKind, Position
 
@@ -29,7 +30,7 @@ def containers(branch: BranchView) -> str:
 
 def _container(branch: BranchView, at: Position, content: ContainerBelief) -> str:
     block = branch.state.blocks[at]
-    name = "container" if block is None else text.block_name(block)
+    name = "container" if block is None else block_name(block)
     label = branch.labels.get(at)
     called = "" if label is None else f" ({text.one_line(label)})"
     return f"{text.position(at)} {name}{called}: {_holds(branch.state, content)}"
@@ -86,7 +87,7 @@ def mechanisms(branch: BranchView) -> str:
             basis = state.blocks.basis(at)
             came = "" if basis is None else f"; {_memory_of_block(state, at, basis)}"
             lines.append(
-                f"{text.position(at)} {text.block_name(block)}: {stands}{came}{_use(state, at)}"
+                f"{text.position(at)} {block_name(block)}: {stands}{came}{_use(state, at)}"
             )
     return "\n".join(lines) or text.NOT_OBSERVED
 
@@ -102,7 +103,7 @@ def signs(branch: BranchView) -> str:
     lines = []
     for at, written in state.signs.items():
         block, basis = state.blocks[at], state.blocks.basis(at)
-        name = "sign" if block is None else text.block_name(block)
+        name = "sign" if block is None else block_name(block)
         says = f'says "{sign_words(written)}"' if written else "says nothing"
         came = "" if basis is None else f"; {_memory_of_block(state, at, basis)}"
         lines.append(f"{text.position(at)} {name}: {says}{came}{_writer(state, at)}")
@@ -123,7 +124,7 @@ def _stands(block: str) -> str | None:
 
     None for other blocks, and for the upper half of a door.
     """
-    name, properties = text.block_name(block), text.block_properties(block)
+    name, properties = block_name(block), parse_state(block)[1]
     if is_door(name):
         upper = properties.get("half") == "upper" and "hinge" in properties
         return None if upper else "open" if properties.get("open") == "true" else "shut"

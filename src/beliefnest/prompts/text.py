@@ -16,8 +16,6 @@ __all__ = [
     "NO_DATA",
     "NO_THOUGHT",
     "as_json",
-    "block_name",
-    "block_properties",
     "mapping",
     "nearest",
     "number",
@@ -63,18 +61,6 @@ def as_json(value: object) -> str:
 def one_line(text: str) -> str:
     """Return an agent's text on one line, so that it cannot imitate a section of the prompt."""
     return on_one_line(text)
-
-
-def block_name(block: str) -> str:
-    """Return the name of a canonical block state text: `lever` of `lever[powered=true]`."""
-    return block.partition("[")[0]
-
-
-def block_properties(block: str) -> dict[str, str]:
-    """Return the properties of a canonical block state text by name."""
-    inner = block.partition("[")[2].removesuffix("]")
-    pairs = (pair.partition("=") for pair in inner.split(",") if pair)
-    return {name: value for name, _, value in pairs}
 
 
 def nearest(name: str, names: Iterable[str]) -> str:

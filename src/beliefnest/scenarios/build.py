@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from beliefnest.belief.condition_form import check_condition
+from beliefnest.belief.conditions import check_condition
 from beliefnest.belief.grounds import InitialBelief
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.unique import unique_fault, unique_items

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from beliefnest.belief.condition_form import ConditionEntry, check_condition, conditions_of
+from beliefnest.belief.conditions import ConditionEntry, check_condition, conditions_of
 from beliefnest.errors import InputError
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.forms import note

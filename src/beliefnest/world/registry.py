@@ -22,7 +22,7 @@ import numpy.typing as npt
 from beliefnest.errors import BodyError, InputError, UnknownNameError
 from beliefnest.world.bundled import Bundled, read_bundled
 
-__all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "parse_state"]
+__all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "block_name", "parse_state"]
 
 AIR = 0
 """State id of air; it is the same in every version of the protocol."""
@@ -264,6 +264,11 @@ def _bare(name: str) -> str:
 def _nearest(name: str, names: Iterable[str]) -> str:
     close = difflib.get_close_matches(name, names, n=3)
     return f"; did you mean {' or '.join(close)}?" if close else ""
+
+
+def block_name(text: str) -> str:
+    """Return the name of a block state text: `lever` of `lever[powered=true]`."""
+    return text.partition("[")[0]
 
 
 def parse_state(text: str) -> tuple[str, dict[str, str]]:

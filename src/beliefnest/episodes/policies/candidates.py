@@ -2,24 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 
-from beliefnest.belief.conditions import (
-    AgentAt,
-    BlockIs,
-    BlocksAlike,
-    ItemsIn,
-    ItemsWith,
-    LeversHeld,
-    NothingIn,
-    NothingWith,
-    agrees,
-)
-from beliefnest.episodes.policies.distance import MindFacts, name_of
+from beliefnest.belief.conditions import Fact, agrees
+from beliefnest.episodes.policies.distance import MindFacts
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_open
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.values import Position
 
 __all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
@@ -27,8 +17,11 @@ __all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
 
 def items_of(goals: Sequence[Goal]) -> list[str]:
     """Return the items in goals, sorted."""
-    facts = [condition.fact for goal in goals for condition in goal.conditions]
-    return sorted({each.item for each in facts if isinstance(each, ItemsIn | ItemsWith)})
+    return sorted({item for fact in _facts(goals) for item in fact.items})
+
+
+def _facts(goals: Sequence[Goal]) -> Iterator[Fact]:
+    return (condition.fact for goal in goals for condition in goal.conditions)
 
 
 def calls_of(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[Call]:
@@ -99,9 +92,10 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
     near = [
         (at, held) for at, held in sorted(world.containers.items()) if mind.may_reach(agent, at)
     ]
-    wanted = {c.fact.place for g in goals for c in g.conditions if isinstance(c.fact, ItemsIn)}
-    named = [*items_of(goals), *_materials(mind, agent, goals)]
-    for item in [*named, *sorted(_to_remove(mind, agent, goals) - {*named})]:
+    wanted = {fact.store for fact in _facts(goals)}
+    named, facts = [*items_of(goals), *_materials(mind, agent, goals)], MindFacts(mind)
+    removed = {item for fact in _facts(goals) for item in fact.removed(agent, facts)}
+    for item in [*named, *sorted(removed - {*named})]:
         for place, items in near:
             if items.get(item, 0):
                 yield Call("getItemFromChest", (place, {item: 1}))
@@ -115,47 +109,24 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
             yield Call("giveItemToOther", (other, item, 1))
 
 
-def _to_remove(mind: Imagination, agent: str, goals: Sequence[Goal]) -> set[str]:
-    """Return the items in containers that goals want to be empty, and those to get rid of."""
-    world = mind.world
-    items: set[str] = set()
-    for fact in (condition.fact for goal in goals for condition in goal.conditions):
-        if isinstance(fact, NothingIn):
-            items |= world.containers.get(fact.place, {}).keys()
-        elif isinstance(fact, NothingWith) and fact.agent == agent:
-            items |= world.agents[agent].inventory.keys()
-    return items
-
-
 def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
     facts = MindFacts(mind)
-    places: set[Position] = set()
-    levers: set[Position] = set()
-    for fact in (condition.fact for goal in goals for condition in goal.conditions):
-        if isinstance(fact, AgentAt) and fact.agent == agent:
-            places.add(fact.place)
-        elif isinstance(fact, LeversHeld) and agent in fact.agents:
-            levers |= {place for site in fact.known(facts) for place in site}
-    for place in sorted(places):
+    for place in sorted({at for fact in _facts(goals) for at in fact.pursuit(agent, {}).at}):
         yield Call("goToPosition", (place, 0))
-    for place in sorted(levers):
+    for place in sorted({at for fact in _facts(goals) for at in fact.levers(agent, facts)}):
         yield Call("turnOnLever", (place,))
 
 
 def _sought(mind: Imagination, goals: Sequence[Goal]) -> Iterator[tuple[Position, str | None]]:
     """Yield places of blocks in a wrong state, with the wanted block state; None: unknown."""
     facts = MindFacts(mind)
-    for goal in goals:
-        for fact in (condition.fact for condition in goal.conditions):
-            match fact:
-                case BlockIs(place=place, state=state):
-                    wanted: str | None = state
-                case BlocksAlike(place=place, property=""):
-                    wanted = fact.wanted(facts)
-                case _:
-                    continue
-            if facts.block(place) is not None and not fact.holds(facts):
-                yield place, None if wanted is None else name_of(wanted)
+    for fact in _facts(goals):
+        wanted = fact.sought(facts)
+        if wanted is None or fact.holds(facts):
+            continue
+        place = fact.blocks[0]
+        if facts.block(place) is not None:
+            yield place, block_name(wanted) or None
 
 
 def _materials(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str]:
@@ -176,12 +147,12 @@ def _building(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[
     facts, mine = MindFacts(mind), mind.world.agents[agent].inventory
     for place, wanted in sorted(_sought(mind, goals), key=lambda each: each[0]):
         there = facts.block(place)
-        if there is None or is_door(name_of(there)) or not mind.may_reach(agent, place):
+        if there is None or is_door(block_name(there)) or not mind.may_reach(agent, place):
             continue
-        if name_of(there) != "air":
-            yield Call("mineBlock", (place, name_of(there)))
+        if block_name(there) != "air":
+            yield Call("mineBlock", (place, block_name(there)))
         for item in _materials(mind, agent, goals):
-            if mine.get(item, 0) and wanted in (None, item) and name_of(there) == "air":
+            if mine.get(item, 0) and wanted in (None, item) and block_name(there) == "air":
                 yield Call("placeItem", (item, place))
 
 
@@ -195,12 +166,4 @@ def _doors(mind: Imagination, goals: Sequence[Goal]) -> Iterator[Call]:
 
 
 def _block_places(goals: Sequence[Goal]) -> list[Position]:
-    places = set()
-    for goal in goals:
-        for condition in goal.conditions:
-            match condition.fact:
-                case BlockIs(place=place):
-                    places.add(place)
-                case BlocksAlike(place=place, model=model):
-                    places |= {place, model}
-    return sorted(places)
+    return sorted({place for fact in _facts(goals) for place in fact.blocks})

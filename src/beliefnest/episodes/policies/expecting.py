@@ -10,7 +10,6 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from beliefnest.belief.conditions import ItemsIn
 from beliefnest.episodes.agent_view import AgentView, Brief
 from beliefnest.episodes.policies.candidates import items_of
 from beliefnest.episodes.policies.course_planner import (
@@ -178,11 +177,11 @@ def _completed(mind: Imagination, brief: Brief, agent: str, order: int) -> list[
         known = mind.view().containers
         unseen = [at for at, held in known.items() if not held.complete and at not in doubted]
         wanted = [
-            condition.fact.place
+            condition.fact.store
             for name, other in brief.goals.items()
             if name != agent
             for condition in other.reach
-            if isinstance(condition.fact, ItemsIn) and condition.fact.item == item
+            if condition.fact.store is not None and item in condition.fact.items
         ]
         places = sorted(set(wanted) & set(unseen)) or sorted(unseen)
         minds = [_with_item(each, at, item) for each in minds for at in places] or minds

@@ -9,15 +9,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from beliefnest.belief.conditions import (
-    AgentAt,
-    BlockIs,
-    BlocksAlike,
-    GoalCondition,
-    ItemsIn,
-    ItemsWith,
-    LeversHeld,
-)
+from beliefnest.belief.conditions import Pursuit
 from beliefnest.belief.grounds import Source
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
@@ -93,27 +85,19 @@ def goals_of_planner(goal: Goal, agent: str, state: State) -> list[Mapping[str, 
         agent: The agent.
         state: What it is taken to believe.
     """
-    return [each for one in goal.reach if not one.path for each in _pursued(one, agent, state)]
+    mine = state.agents[agent].inventory
+    return [
+        each
+        for one in goal.reach
+        if not one.path
+        for each in _pursued(one.fact.pursuit(agent, mine), state)
+    ]
 
 
-def _pursued(condition: GoalCondition, agent: str, state: State) -> Iterator[Mapping[str, object]]:
-    match condition.fact:
-        case AgentAt(agent=who, place=place) if who == agent:
-            yield {"at": place}
-        case ItemsWith(agent=who, item=item) if who == agent and _is_somewhere(item, state):
-            yield {"item": item}
-        case ItemsIn(place=place, item=item):
-            if state.agents[agent].inventory.get(item, 0):
-                yield from ({"at": at} for at in _in_reach(place, state))
-            elif _is_somewhere(item, state):
-                yield {"item": item}
-        case LeversHeld(agents=agents, sites=sites) if agent in agents:
-            for at in sorted(
-                {at for site in sites for lever in site for at in _in_reach(lever, state)}
-            ):
-                yield {"at": at}
-        case BlockIs(place=place) | BlocksAlike(place=place):
-            yield from ({"at": at} for at in _in_reach(place, state))
+def _pursued(pursuit: Pursuit, state: State) -> Iterator[Mapping[str, object]]:
+    near = {at for place in pursuit.near for at in _in_reach(place, state)}
+    yield from ({"at": at} for at in (*pursuit.at, *sorted(near)))
+    yield from ({"item": item} for item in pursuit.items if _is_somewhere(item, state))
 
 
 def _is_somewhere(item: str, state: State) -> bool:

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 
-from beliefnest.belief.conditions import ItemsWith
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.decided import Spent
 from beliefnest.llm.asking import ask_for_program
@@ -131,9 +130,5 @@ def _template() -> str:
 def _sentence(goal: Goal, agent: str) -> str:
     """Return a goal as a sentence for the model, with a natural wording of simple goals."""
     facts = [each.fact for each in goal.reach if not each.path]
-    if len(facts) == 1 and not goal.never and isinstance(facts[0], ItemsWith):
-        wanted = facts[0]
-        if wanted.agent == agent:
-            return f"Get {wanted.count} {wanted.item} from a chest."
-        return f"Help {wanted.agent}."
-    return f"See to it: {goal}."
+    task = facts[0].task(agent) if len(facts) == 1 and not goal.never else None
+    return task or f"See to it: {goal}."

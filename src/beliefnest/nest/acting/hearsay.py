@@ -13,13 +13,13 @@ import numpy as np
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.setting import Setting
-from beliefnest.prompts.text import block_name
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.frames import Frame
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.registry import block_name
 from beliefnest.world.values import Event, EventKind, Position
 
 __all__ = ["ClaimReader", "Hearsay", "has_unread", "recalled"]

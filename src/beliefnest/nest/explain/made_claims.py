@@ -14,11 +14,11 @@ from beliefnest.belief.testimony import Verdict
 from beliefnest.errors import InputError
 from beliefnest.nest.explain.wording import as_known_to
 from beliefnest.nest.past.recording import Recording
-from beliefnest.prompts.text import block_name, block_properties
 from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineKey
 from beliefnest.world.claims import Claim, ClaimKind, claims_from_plain, claims_of
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
+from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.values import Event, EventKind, Position
 
 __all__ = ["MadeClaim", "claims_made", "says_otherwise"]
@@ -258,7 +258,7 @@ def _cell(point: tuple[float, float, float]) -> tuple[int, ...]:
 def _is_other_block(block: str | None, stated: str) -> bool:
     if block is None:
         return False
-    told, held = block_properties(stated), block_properties(block)
+    told, held = parse_state(stated)[1], parse_state(block)[1]
     same = block_name(block) == block_name(stated)
     return not same or any(held.get(name) != value for name, value in told.items())
 

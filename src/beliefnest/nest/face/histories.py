@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.belief.conditions import GoalCondition, GoalFacts, StateFacts
+from beliefnest.belief.conditions import GoalCondition
+from beliefnest.belief.facts import GoalFacts, StateFacts
 from beliefnest.belief.view import State
 from beliefnest.errors import BranchError, InputError, PathError, StoreError
 from beliefnest.nest.acting.courses import Course
@@ -16,9 +17,7 @@ from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
-from beliefnest.world.registry import Registry
-from beliefnest.world.values import Items, Point, Position
-from beliefnest.worlds.scripted.world import ScriptedWorld
+from beliefnest.worlds.scripted.world_facts import WorldFacts
 
 if TYPE_CHECKING:  # These take long to import, and few histories are drawn or listed.
     import pandas as pd
@@ -39,31 +38,6 @@ class Faces:
 
     past: Callable[[Recording, BeliefPath, int | None], Any]
     live: Callable[[Recording], Any]
-
-
-@dataclass(frozen=True, slots=True)
-class _WorldFacts:
-    """The facts of a scripted world."""
-
-    world: ScriptedWorld
-
-    def items_in(self, place: Position) -> Items:
-        return self.world.containers.get(place, {})
-
-    def is_empty(self, place: Position) -> bool:
-        return self.world.containers.get(place) == {}
-
-    def items_of(self, agent: str) -> Items:
-        state = self.world.agents.get(agent)
-        return {} if state is None else state.inventory
-
-    def feet_of(self, agent: str) -> Point | None:
-        state = self.world.agents.get(agent)
-        return None if state is None else state.position
-
-    def block(self, place: Position) -> str | None:
-        index = self.world.box.index(place)
-        return Registry.load().text(int(self.world.blocks[index]))
 
 
 class History:
@@ -341,7 +315,7 @@ class Imagined:
         def look(path: BeliefPath) -> GoalFacts:
             inside = normalised((*self._path, *path))
             if inside == self._path:
-                return _WorldFacts(course.world)
+                return WorldFacts(course.world)
             return StateFacts(self._recorded(course).state(inside))
 
         return all(condition.holds(look) for condition in wanted)

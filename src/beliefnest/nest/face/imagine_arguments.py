@@ -5,8 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.belief.condition_form import condition_entry, conditions_of
-from beliefnest.belief.conditions import GoalCondition
+from beliefnest.belief.conditions import GoalCondition, condition_entry, conditions_of
 from beliefnest.errors import InputError, PathError, TickError
 from beliefnest.nest.acting.course_agreement import Tolerance
 from beliefnest.nest.face.given import tick_of, whole

@@ -1,0 +1,40 @@
+"""Facts of a scripted world, as conditions read them."""
+
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Items, Point, Position
+from beliefnest.worlds.scripted.world import ScriptedWorld
+
+__all__ = ["WorldFacts"]
+
+
+class WorldFacts:
+    """Facts of a scripted world at its latest tick.
+
+    Args:
+        world: The world.
+    """
+
+    def __init__(self, world: ScriptedWorld) -> None:
+        self._world = world
+
+    def items_in(self, place: Position) -> Items:
+        """Return the items in a container."""
+        return self._world.containers.get(place, {})
+
+    def is_empty(self, place: Position) -> bool:
+        """Return True if there is a container that holds nothing."""
+        return self._world.containers.get(place) == {}
+
+    def items_of(self, agent: str) -> Items:
+        """Return the items that an agent has."""
+        there = self._world.agents.get(agent)
+        return {} if there is None else there.inventory
+
+    def feet_of(self, agent: str) -> Point | None:
+        """Return the position of an agent's feet; None: it is not there."""
+        there = self._world.agents.get(agent)
+        return None if there is None else there.position
+
+    def block(self, place: Position) -> str | None:
+        """Return the text of a block state."""
+        return Registry.load().text(int(self._world.blocks[self._world.box.index(place)]))
