@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
+from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
 import msgspec
 
@@ -26,10 +26,6 @@ from beliefnest.world.forms import note
 from beliefnest.world.limits import AGENT_SLOTS
 from beliefnest.world.values import EventKind, Items, Point, Position
 from beliefnest.world.words import items_words, point_words
-
-if TYPE_CHECKING:  # Avoid a cycle: these modules import this one.
-    from beliefnest.scenarios.inferring import Inferred
-    from beliefnest.scenarios.outcome import ProbeOutcome
 
 __all__ = [
     "Answers",
@@ -53,6 +49,29 @@ __all__ = [
 ]
 
 T = TypeVar("T")
+
+
+class Answered(Protocol):
+    """Reply to a question, as `Reply` has it."""
+
+    @property
+    def question(self) -> str: ...
+    @property
+    def answer(self) -> str | None: ...
+
+
+class Happened(Protocol):
+    """Facts of a probe with which expectations are told, as `ProbeOutcome` has them."""
+
+    @property
+    def opened(self) -> tuple[Position, ...]: ...
+    @property
+    def arrived(self) -> Point | None: ...
+    @property
+    def intended(self) -> Point | None: ...
+    @property
+    def replies(self) -> Sequence[Answered]: ...
+
 
 _MOST_OPTIONS = 26
 """Greatest number of options: one for each letter."""
@@ -174,9 +193,7 @@ class Expected(ABC):
         """Return what is expected, for a table."""
         return self.ground
 
-    def told(
-        self, judged: "Judgement", outcome: "ProbeOutcome", setting: Setting, *, alone: bool
-    ) -> str:
+    def told(self, judged: "Judgement", outcome: Happened, setting: Setting, *, alone: bool) -> str:
         """Return what happened, for a table.
 
         Args:
@@ -187,9 +204,7 @@ class Expected(ABC):
         """
         return self.wanted if judged.ok else judged.why_not
 
-    def account(
-        self, judged: "Judgement", outcome: "ProbeOutcome", setting: Setting, agent: str
-    ) -> str:
+    def account(self, judged: "Judgement", outcome: Happened, setting: Setting, agent: str) -> str:
         """Return a sentence that says on what grounds the expectation holds or does not.
 
         Args:
@@ -267,15 +282,11 @@ class Opens(Deed):
         found = f"opened {point_words(first[0])} first" if first else "opened nothing"
         return self.verdict(first == (self.container,), found, by_deed=bool(first))
 
-    def told(
-        self, judged: Judgement, outcome: "ProbeOutcome", setting: Setting, *, alone: bool
-    ) -> str:
+    def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
         opened = container_name(outcome.opened[0], setting) if outcome.opened else "nothing"
         return opened if alone else f"opens {opened}"
 
-    def account(
-        self, judged: Judgement, outcome: "ProbeOutcome", setting: Setting, agent: str
-    ) -> str:
+    def account(self, judged: Judgement, outcome: Happened, setting: Setting, agent: str) -> str:
         opened = f"the {container_name(outcome.opened[0], setting)}" if outcome.opened else "none"
         return (
             f"Judged by the container that {agent} opens first, in the world and not in the "
@@ -312,15 +323,11 @@ class Arrives(Deed):
         found = "is nowhere" if arrived is None else f"ended at {point_words(arrived)}"
         return self.verdict(ok, found)
 
-    def told(
-        self, judged: Judgement, outcome: "ProbeOutcome", setting: Setting, *, alone: bool
-    ) -> str:
+    def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
         where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
         return where if alone else f"arrives at {where}"
 
-    def account(
-        self, judged: Judgement, outcome: "ProbeOutcome", setting: Setting, agent: str
-    ) -> str:
+    def account(self, judged: Judgement, outcome: Happened, setting: Setting, agent: str) -> str:
         where, far = "nowhere", ""
         if outcome.arrived is not None:
             where = named_place(outcome.arrived, setting)
@@ -377,9 +384,7 @@ class Intends(Deed):
             return False
         return bool(walked) and math.dist(_block(walked[-1]), _block(self.place)) <= self.within
 
-    def told(
-        self, judged: Judgement, outcome: "ProbeOutcome", setting: Setting, *, alone: bool
-    ) -> str:
+    def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
         if outcome.intended is None:
             return "makes for nothing"
         place = _block(outcome.intended)
@@ -533,9 +538,7 @@ class Answers(Expected):
             ok = named == [True, False]
         return self.verdict(ok, f"answered {answer!r}", by_deed=True)
 
-    def told(
-        self, judged: Judgement, outcome: "ProbeOutcome", setting: Setting, *, alone: bool
-    ) -> str:
+    def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
         answers = {each.question: each.answer for each in outcome.replies}
         return f"answers {answers.get(self.question) or 'nothing'}"
 
@@ -652,9 +655,9 @@ class Infers(Expected):
     def written(self) -> dict[str, Any]:
         return {"inferred": {self.factor: self._bounds}}
 
-    def judge(self, inferred: "Inferred") -> Judgement:
-        """Judge inferred means."""
-        instead = inferred.impossible or self._instead(inferred.means)
+    def judge(self, means: Mapping[str, float], impossible: str | None) -> Judgement:
+        """Judge inferred means; `impossible` is the reason why no hypothesis explains them."""
+        instead = impossible or self._instead(means)
         return self.verdict(instead is None, instead or "", by_deed=True)
 
     def _instead(self, means: Mapping[str, float]) -> str | None:

@@ -118,7 +118,11 @@ def _infer(nest: Nest, probe: Probe, infer: Inferring) -> ProbeOutcome:
     except (InputError, PathError, TickError) as error:
         raise ScenarioError(f"{infer.where}: {error}") from None
     inferred = Inferred.of(inference)
-    verdicts = tuple(each.judge(inferred) for each in probe.expect if isinstance(each, Infers))
+    verdicts = tuple(
+        each.judge(inferred.means, inferred.impossible)
+        for each in probe.expect
+        if isinstance(each, Infers)
+    )
     return ProbeOutcome(
         probe=probe,
         verdicts=verdicts,
