@@ -8,7 +8,7 @@ from beliefnest.errors import BeliefNestError
 from beliefnest.files import read_regular, read_regular_text
 from beliefnest.llm import resolve_model
 from beliefnest.prompts.templates import load_template
-from beliefnest.scenarios import Scenario
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.suites.stories.data import read_items
 from beliefnest.timeline.trace import load_trace
 from beliefnest.world.registry import Registry

@@ -43,7 +43,7 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
     from beliefnest.nest.face.nest import Nest
     from beliefnest.nest.face.simulator import Simulator
     from beliefnest.perception.options import Perception, Radius
-    from beliefnest.scenarios import Scenario
+    from beliefnest.scenarios.scenario import Scenario
     from beliefnest.studies.result import StudyResult
     from beliefnest.studies.study import Study
     from beliefnest.world.claims import Claim, ClaimKind
@@ -124,7 +124,7 @@ _HOMES = {
     "ProcessLimits": "beliefnest.worlds.process_limits",
     "ProgramResult": "beliefnest.worlds.protocol",
     "Radius": "beliefnest.perception.options",
-    "Scenario": "beliefnest.scenarios",
+    "Scenario": "beliefnest.scenarios.scenario",
     "ScriptedWorld": "beliefnest.worlds.scripted.world",
     "Simulator": "beliefnest.nest.face.simulator",
     "Study": "beliefnest.studies.study",

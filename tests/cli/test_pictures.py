@@ -14,9 +14,9 @@ from beliefnest.pictures.marks import Circle, Rectangle, Text
 from beliefnest.pictures.overview import ConditionPicture, overview
 from beliefnest.pictures.palette import Mark, agent_looks
 from beliefnest.pictures.scene import Scene
-from beliefnest.scenarios import Scenario
-from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.running import run_scenario
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.sources import builtin_names
 from beliefnest.timeline.store import SqliteJournal
 
 BUILT_IN = builtin_names()

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from beliefnest.cli.app import run_command_line
-from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.sources import builtin_names
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "batteries.md").read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ import yaml
 
 from beliefnest import Nest
 from beliefnest.cli.app import run_command_line
-from beliefnest.scenarios import Scenario
+from beliefnest.scenarios.scenario import Scenario
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 

@@ -18,7 +18,7 @@ import yaml
 
 from beliefnest.cli.app import app
 from beliefnest.episodes.tasks import builtin_tasks
-from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.sources import builtin_names
 
 ROOT = Path(__file__).parents[2]
 PAPERS = ("README.md", "CONTRIBUTING.md", "docs/*.md", "docs/tasks/*.md", "docs/reference/*.md")

@@ -7,7 +7,7 @@ import pytest
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.policies import Scripted
-from beliefnest.scenarios.loading import read_document
+from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.variation import Variation
 
 FETCH = """\

@@ -7,7 +7,7 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.episodes.policies import Program, Scripted
-from beliefnest.worlds.by_name import WORLDS
+from beliefnest.worlds.names import WORLDS
 
 ERRAND = """
 await say(bot, 'I begin.')

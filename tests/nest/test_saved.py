@@ -8,7 +8,7 @@ import beliefnest as bn
 from beliefnest.errors import StoreError
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.setting_codec import decode_start, encode_start
-from beliefnest.scenarios import Scenario
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
 

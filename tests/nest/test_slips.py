@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 import beliefnest as bn
-from beliefnest.worlds.by_name import WORLDS
+from beliefnest.worlds.names import WORLDS
 
 ROOM: dict[str, Any] = {
     "name": "room",

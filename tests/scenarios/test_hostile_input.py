@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 import beliefnest as bn
 from beliefnest.errors import BeliefNestError, InputError, PathError, ScenarioError, WorldError
 from beliefnest.nest.past.setting import Setting
-from beliefnest.scenarios import Scenario
+from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.frames import Snapshot
 from beliefnest.worlds.scripted.world import ScriptedWorld
 

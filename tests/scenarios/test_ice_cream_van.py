@@ -10,9 +10,9 @@ from ruamel.yaml import YAML
 
 import beliefnest as bn
 from beliefnest.llm.offline import OfflineModel
-from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
+from beliefnest.scenarios.sources import builtin_names
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 

@@ -11,8 +11,8 @@ from beliefnest.errors import ScenarioError, UnknownNameError
 from beliefnest.scenarios.expected import Arrives, Opens
 from beliefnest.scenarios.expected_state import Holds, Stands
 from beliefnest.scenarios.json_schema import schema
-from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.sources import builtin_names
 from beliefnest.scenarios.yaml_reading import parse_yaml
 from beliefnest.world.registry import Registry
 

@@ -6,8 +6,8 @@ from contextlib import contextmanager
 import pytest
 
 from beliefnest.cli.app import run_command_line
-from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.sources import builtin_names
 from beliefnest.worlds.by_name import Worlds
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")

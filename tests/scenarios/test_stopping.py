@@ -9,7 +9,7 @@ import pytest
 from tests.profiles import at_night
 
 import beliefnest as bn
-from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.sources import builtin_names
 from beliefnest.timeline.journal import Entry, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.worlds.by_name import Worlds

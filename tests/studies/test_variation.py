@@ -26,7 +26,7 @@ from beliefnest.scenarios.format import (
     SignEntry,
     StepEntry,
 )
-from beliefnest.scenarios.loading import builtin_names, read_document
+from beliefnest.scenarios.sources import builtin_names, read_document
 from beliefnest.studies.program_rewriting import Rewriting, rewritten
 from beliefnest.studies.random_variations import drawn_variations
 from beliefnest.studies.scene_changes import _SHAPE

@@ -12,7 +12,8 @@ from beliefnest.errors import WorldError
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, EventKind
-from beliefnest.worlds.by_name import WORLDS, open_world
+from beliefnest.worlds.by_name import open_world
+from beliefnest.worlds.names import WORLDS
 from beliefnest.worlds.protocol import Body, World
 from beliefnest.worlds.scripted.nest_world import ScriptedBody
 

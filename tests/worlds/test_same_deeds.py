@@ -9,7 +9,8 @@ import pytest
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, Event, EventKind, Position
-from beliefnest.worlds.by_name import WORLDS, open_world
+from beliefnest.worlds.by_name import open_world
+from beliefnest.worlds.names import WORLDS
 from beliefnest.worlds.protocol import RunRules, World
 
 BOX = Box((0, 0, 0), (8, 4, 8))

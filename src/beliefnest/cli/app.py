@@ -181,7 +181,7 @@ def run(
     """Play a scenario, track the beliefs, ask the model, and judge the results."""
     from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
     from beliefnest.llm.budget import RunLimits
-    from beliefnest.worlds.by_name import world_name
+    from beliefnest.worlds.names import world_name
     from beliefnest.worlds.servers.address import overwriting
 
     limits = RunLimits(max_tokens, max_cost)

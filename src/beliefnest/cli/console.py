@@ -4,13 +4,16 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Column, Table
 
 from beliefnest.cli.terminal_text import printable
-from beliefnest.nest.face.nest import Progress as OnProgress
+
+if TYPE_CHECKING:  # Importing nests takes long, and many commands need none.
+    from beliefnest.nest.face.nest import Progress as OnProgress
 
 __all__ = ["folded", "print_table", "progress_on", "stdout"]
 
@@ -73,7 +76,7 @@ def _width(*, terminal: bool) -> int | None:
 
 
 @contextmanager
-def progress_on(title: str) -> Iterator[OnProgress]:
+def progress_on(title: str) -> "Iterator[OnProgress]":
     """Show progress on stderr: a bar on a terminal, else a line for each report."""
     # The output of a command in a notebook is no terminal, even if it claims to be one.
     notebook = "JPY_PARENT_PID" in os.environ

@@ -16,15 +16,13 @@ from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
 from beliefnest.studies.plainframe import Typed, write_typed
+from beliefnest.suites import FILMS
 from beliefnest.suites.films.agreement import PUBLISHED, Agreement, agreement, interval
 from beliefnest.suites.films.film import ABOUT, About, Film, FilmParameters, grid_for
 from beliefnest.suites.films.film_files import read_films
 from beliefnest.suites.films.film_inference import LESIONS, Judgment, Lesion, judge
 
-__all__ = ["FILMS", "FilmOptions", "run_films"]
-
-FILMS = "food-trucks"
-"""Name of the suite."""
+__all__ = ["FilmOptions", "run_films"]
 
 _MODELS: tuple[Lesion | None, ...] = (None, *LESIONS)
 _WORDS: Mapping[Lesion | None, str] = {

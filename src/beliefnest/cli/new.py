@@ -6,7 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from beliefnest.errors import InputError
-from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.sources import builtin_names
 
 __all__ = ["write_starter"]
 

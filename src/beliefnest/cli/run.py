@@ -45,7 +45,8 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
-from beliefnest.worlds.by_name import Worlds, check_world
+from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.names import check_world
 
 __all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
 

@@ -14,8 +14,9 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
-from beliefnest.cli.films import FILMS, FilmOptions, run_films
+from beliefnest.cli.films import FilmOptions, run_films
 from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.suites import FILMS, SUITES
 from beliefnest.suites.stories.data import StoryItems, read_items
 from beliefnest.suites.stories.own import read_own
 from beliefnest.suites.stories.suite import (
@@ -25,15 +26,12 @@ from beliefnest.suites.stories.suite import (
     score,
     scores_by_order,
 )
-from beliefnest.worlds.by_name import check_world
+from beliefnest.worlds.names import check_world
 
 if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
     from beliefnest.llm.claim_reader import ClaimsFromModel
 
-__all__ = ["SUITES", "SuiteOptions", "run_suite"]
-
-SUITES = ("hi-tom", "stories", FILMS)
-"""Names of the suites."""
+__all__ = ["SuiteOptions", "run_suite"]
 
 _ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
 

@@ -11,7 +11,7 @@ from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.world.values import TICKS_PER_SECOND, EventKind
-from beliefnest.worlds.by_name import world_name
+from beliefnest.worlds.names import world_name
 from beliefnest.worlds.protocol import ProgramPast, ProgramResult
 from beliefnest.worlds.servers.listening import is_hosted
 

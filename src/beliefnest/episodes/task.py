@@ -13,9 +13,10 @@ from beliefnest.episodes.tasks import builtin_tasks, generated
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
 from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.goals import Goal
-from beliefnest.scenarios.loading import builtin_names, condition_number, read_document
+from beliefnest.scenarios.loading import condition_number
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.sources import builtin_names, read_document
 from beliefnest.scenarios.space import box_between
 from beliefnest.world.values import Position
 

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -11,9 +11,11 @@ from beliefnest.errors import BeliefNestError
 from beliefnest.files import decode_json
 from beliefnest.llm.failures import UnusableAnswerError, excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
-from beliefnest.world.claims import Claim, claims_from_plain
-from beliefnest.world.nameable import Nameable
-from beliefnest.world.values import Position
+
+if TYPE_CHECKING:  # Claims check blocks and items with NumPy; most who import models read none.
+    from beliefnest.world.claims import Claim
+    from beliefnest.world.nameable import Nameable
+    from beliefnest.world.values import Position
 
 __all__ = ["ClaimsFromModel", "claims_from_model"]
 
@@ -68,7 +70,7 @@ class ClaimsFromModel:
         """Return a copy that asks through the given wrapper."""
         return replace(self, wrap=wrap)
 
-    def __call__(self, text: str, speaker: str, nameable: Nameable) -> tuple[Claim, ...]:
+    def __call__(self, text: str, speaker: str, nameable: "Nameable") -> "tuple[Claim, ...]":
         """Return the claims of a text.
 
         Raises:
@@ -100,7 +102,7 @@ class _Strict:
     """Model wrapper that raises if an answer is not a list of claims about this world."""
 
     model: Model
-    nameable: Nameable
+    nameable: "Nameable"
 
     @property
     def name(self) -> str:
@@ -118,7 +120,9 @@ class _Strict:
         return answer
 
 
-def _claims_in(text: str, nameable: Nameable) -> tuple[Claim, ...]:
+def _claims_in(text: str, nameable: "Nameable") -> "tuple[Claim, ...]":
+    from beliefnest.world.claims import claims_from_plain
+
     fenced = _FENCED.fullmatch(text)
     found = decode_json(text if fenced is None else fenced[1], _Found)
     if len(found.claims) > _MOST:
@@ -129,7 +133,7 @@ def _claims_in(text: str, nameable: Nameable) -> tuple[Claim, ...]:
     return tuple(dict.fromkeys(claims))
 
 
-def _question(text: str, speaker: str, nameable: Nameable) -> str:
+def _question(text: str, speaker: str, nameable: "Nameable") -> str:
     def listed(lines: Iterable[str]) -> str:
         return "\n".join(lines) or "none"
 
@@ -137,7 +141,7 @@ def _question(text: str, speaker: str, nameable: Nameable) -> str:
         called = nameable.called.get(name, name)
         return name if called == name else f"{name} (called {called})"
 
-    def at(place: Position) -> str:
+    def at(place: "Position") -> str:
         return f"[{', '.join(map(str, place))}]"
 
     parts = {

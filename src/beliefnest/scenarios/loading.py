@@ -2,42 +2,31 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from beliefnest.errors import ScenarioError, UnknownNameError
+from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.build import build_scenario
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, merged, wrapped
 from beliefnest.scenarios.document_form import check_form
 from beliefnest.scenarios.parameters import text_of, with_parameters
-from beliefnest.scenarios.yaml_reading import parse_yaml, read_yaml
+from beliefnest.scenarios.sources import read_document
+from beliefnest.scenarios.yaml_reading import parse_yaml
 
 __all__ = [
     "Change",
-    "builtin_names",
     "condition_number",
     "condition_numbers",
     "kept_scenario",
     "load_conditions",
     "load_scenario",
-    "read_document",
     "scenario_from",
     "scenario_in",
 ]
 
 Change = Callable[[Document], Document]
 """Function from a document to a changed document."""
-
-_SUFFIXES = (".yaml", ".yml")
-
-
-def builtin_names() -> list[str]:
-    """Return the names of the built-in scenarios."""
-    folder = files("beliefnest.scenarios") / "builtin"
-    names = (entry.name for entry in folder.iterdir())
-    return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
 
 
 def condition_number(condition: int | str | None) -> int | None:
@@ -89,28 +78,6 @@ def kept_scenario(
 ) -> ScenarioContent:
     """Build the scenario that a run keeps, see `Scenario.kept`."""
     return scenario_in(replace(parse_yaml(text, source), templates=templates), condition)
-
-
-def read_document(name_or_path: str) -> Document:
-    """Return the document of a built-in scenario, or of one in a file.
-
-    Raises:
-        UnknownNameError: There is neither a built-in scenario nor a file of that name.
-        ScenarioError: The file cannot be read, or is not a single YAML mapping.
-    """
-    names = builtin_names()
-    if name_or_path in names:
-        folder = Path(str(files("beliefnest.scenarios") / "builtin"))
-        document = read_yaml(folder / f"{name_or_path}.yaml")
-        return replace(document, source=f"{name_or_path}.yaml")
-    path = Path(name_or_path)
-    looks_like_path = path.suffix in _SUFFIXES or len(path.parts) > 1
-    if not path.name or (not looks_like_path and not path.exists()):
-        raise UnknownNameError(
-            f"there is no scenario {name_or_path!r}; built in are {', '.join(names)}, "
-            "or give the path of a .yaml file"
-        )
-    return read_yaml(path)
 
 
 def scenario_in(

@@ -26,7 +26,7 @@ from beliefnest.studies.checking import (
     is_whole,
 )
 from beliefnest.studies.variation import CHANGES, Variation
-from beliefnest.worlds.by_name import check_world
+from beliefnest.worlds.names import check_world
 
 __all__ = ["Constraint", "Design", "Template", "template_named"]
 

@@ -12,7 +12,7 @@ from beliefnest.studies.checking import (
     checked_lists,
     is_count,
 )
-from beliefnest.worlds.by_name import check_world
+from beliefnest.worlds.names import check_world
 
 __all__ = [
     "EpisodeDesign",

@@ -10,7 +10,7 @@ from beliefnest.episodes.policies import policy_beside
 from beliefnest.episodes.task import Task
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, plain
-from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.sources import builtin_names
 from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
 from beliefnest.studies.design import Design, Template, template_named
@@ -22,7 +22,7 @@ from beliefnest.studies.episode_design import (
     listed,
     seeds_of,
 )
-from beliefnest.worlds.by_name import check_world
+from beliefnest.worlds.names import check_world
 
 __all__ = ["read_design"]
 

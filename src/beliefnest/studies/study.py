@@ -11,7 +11,7 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.resolve import check_model
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
-from beliefnest.scenarios.loading import read_document
+from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.cells import C, Cell, Plan, plan_cells
 from beliefnest.studies.checking import (
     StudyKeyError,

@@ -1,1 +1,9 @@
-"""Suites: batteries of text stories and of films, each scored as a whole."""
+"""Suites: batteries of stories with questions, and of films with judgments of people."""
+
+__all__ = ["FILMS", "SUITES"]
+
+FILMS = "food-trucks"
+"""Name of the suite of films."""
+
+SUITES = ("hi-tom", "stories", FILMS)
+"""Names of the suites."""

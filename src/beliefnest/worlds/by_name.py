@@ -4,35 +4,25 @@ from collections.abc import Mapping
 from types import TracebackType
 from typing import Self
 
-from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.world.frames import Snapshot
+from beliefnest.worlds.names import check_world
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import Body, Sink, World
 from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
-from beliefnest.worlds.servers.address import SCHEME, ServerAddress, is_server
+from beliefnest.worlds.servers.address import ServerAddress, is_server
 from beliefnest.worlds.servers.hosted import HostedWorld
-from beliefnest.worlds.servers.listening import DEFAULT_PORT, ListenAddress, is_hosted
+from beliefnest.worlds.servers.listening import ListenAddress, is_hosted
 from beliefnest.worlds.servers.realtime import RealtimeWorld
 
 __all__ = [
-    "WORLDS",
     "LazyWorld",
     "Worlds",
-    "check_world",
     "hosted_of",
     "is_real_time",
     "joined_of",
     "open_world",
     "realtime_of",
-    "world_name",
 ]
-
-WORLDS = ("embedded", "scripted")
-"""Names of the worlds.
-
-Any other name is the address of a server, `minecraft://HOST:PORT`, or of the embedded world in real
-time, `embedded://HOST:PORT`.
-"""
 
 _WITHOUT_PHYSICS = frozenset({"scripted"})
 
@@ -65,52 +55,6 @@ def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> Wor
             return ScriptedNestWorld()
         case _:
             raise AssertionError(f"{name} is listed in WORLDS and cannot be started")
-
-
-def check_world(name: str, *, servers: bool = True) -> None:
-    """Refuse an unknown name of a world before anything is started.
-
-    Args:
-        name: The name.
-        servers: Whether it may be a world in real time, which plays one run at a time.
-
-    Raises:
-        UnknownNameError: There is no world of that name.
-        InputError: It is a malformed address of a server.
-    """
-    if is_server(name) or is_hosted(name):
-        if is_server(name):
-            ServerAddress.parse(name)
-        else:
-            ListenAddress.parse(name)
-        if not servers:
-            raise InputError(
-                f"{name} plays one run at a time, in real time; use it with `beliefnest run` or "
-                f"Nest.open, and one of the worlds {', '.join(WORLDS)} for all else"
-            )
-    elif name not in WORLDS:
-        raise UnknownNameError(
-            f"there is no world {name!r}; there are {', '.join(WORLDS)}, {SCHEME}://HOST:PORT"
-        )
-
-
-def world_name(world: str, *, realtime: bool, listen: int | str | None) -> str:
-    """Return the name of a world, in real time if requested; `listen` is the port for people.
-
-    Raises:
-        InputError: It is not the embedded one, or `listen` is not a valid port or has no use.
-    """
-    if not realtime:
-        if listen is not None:
-            raise InputError(
-                "people can join only worlds in real time: give realtime=True (--realtime) as well"
-            )
-        return world
-    if world != "embedded":
-        raise InputError(
-            f"the world {world!r} has no real time; realtime is for the world embedded"
-        )
-    return ListenAddress.of(DEFAULT_PORT if listen is None else listen).world
 
 
 def joined_of(world: World) -> RealtimeWorld | None:

@@ -76,7 +76,7 @@ assert len({str(sample.metadata["variation"]) for sample in log.samples}) == 3
 """
 
 EVERY = """
-from beliefnest.scenarios.loading import builtin_names
+from beliefnest.scenarios.sources import builtin_names
 
 logs = []
 silent = ("red-green-blue", "food-trucks")

@@ -15,7 +15,8 @@ from beliefnest.errors import BeliefNestError, BodyError, InputError, WorldError
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, EventKind
-from beliefnest.worlds.by_name import check_world, open_world
+from beliefnest.worlds.by_name import open_world
+from beliefnest.worlds.names import check_world
 from beliefnest.worlds.protocol import World
 from beliefnest.worlds.servers.address import ServerAddress, overwriting
 

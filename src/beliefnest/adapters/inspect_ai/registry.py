@@ -25,8 +25,8 @@ from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.errors import UnknownNameError
 from beliefnest.llm.messages import Message, Sampling
 from beliefnest.llm.offline import OfflineModel
-from beliefnest.scenarios.loading import builtin_names
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.sources import builtin_names
 
 __all__ = [
     "belief_prompt",

@@ -9,10 +9,10 @@ from beliefnest.llm.messages import Answer, Message, Sampling
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Answers
-from beliefnest.scenarios.loading import read_document
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.probing import Asking, run_probe
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.variation import Variation
 from beliefnest.worlds.by_name import Worlds
 

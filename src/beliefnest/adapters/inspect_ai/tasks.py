@@ -13,8 +13,8 @@ from beliefnest.adapters.inspect_ai.samples import Stage, requests_of
 from beliefnest.adapters.inspect_ai.task_parts import messages_of, metrics_by, score_of, task_of
 from beliefnest.errors import InputError
 from beliefnest.scenarios.expected import expected_json
-from beliefnest.scenarios.loading import read_document
 from beliefnest.scenarios.records import probe_json
+from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.cells import Cell, plan_cells
 from beliefnest.studies.design import Design
 

@@ -21,7 +21,8 @@ from beliefnest.nest.past.setting import Senses
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.limits import checked_seed
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
-from beliefnest.worlds.by_name import Worlds, check_world
+from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.names import check_world
 
 __all__ = ["BeliefEnv", "BeliefSpace", "Options"]
 

@@ -29,7 +29,8 @@ from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
 from beliefnest.world.values import Position
-from beliefnest.worlds.by_name import Worlds, is_real_time, open_world, world_name
+from beliefnest.worlds.by_name import Worlds, is_real_time, open_world
+from beliefnest.worlds.names import world_name
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
 from beliefnest.worlds.scripted.world import ScriptedWorld

@@ -1,0 +1,42 @@
+"""Sources of scenarios: the documents that are built in, and those in files."""
+
+from dataclasses import replace
+from importlib.resources import files
+from pathlib import Path
+
+from beliefnest.errors import UnknownNameError
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.yaml_reading import read_yaml
+
+__all__ = ["builtin_names", "read_document"]
+
+_SUFFIXES = (".yaml", ".yml")
+
+
+def builtin_names() -> list[str]:
+    """Return the names of the built-in scenarios."""
+    folder = files("beliefnest.scenarios") / "builtin"
+    names = (entry.name for entry in folder.iterdir())
+    return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
+
+
+def read_document(name_or_path: str) -> Document:
+    """Return the document of a built-in scenario, or of one in a file.
+
+    Raises:
+        UnknownNameError: There is neither a built-in scenario nor a file of that name.
+        ScenarioError: The file cannot be read, or is not a single YAML mapping.
+    """
+    names = builtin_names()
+    if name_or_path in names:
+        folder = Path(str(files("beliefnest.scenarios") / "builtin"))
+        document = read_yaml(folder / f"{name_or_path}.yaml")
+        return replace(document, source=f"{name_or_path}.yaml")
+    path = Path(name_or_path)
+    looks_like_path = path.suffix in _SUFFIXES or len(path.parts) > 1
+    if not path.name or (not looks_like_path and not path.exists()):
+        raise UnknownNameError(
+            f"there is no scenario {name_or_path!r}; built in are {', '.join(names)}, "
+            "or give the path of a .yaml file"
+        )
+    return read_yaml(path)
