@@ -4,7 +4,7 @@
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
 
-NODE = $(shell python -c 'from beliefnest.bodies.node_files import node_path; print(node_path())')
+NODE = $(shell python -c 'from beliefnest.worlds.minecraft.node_files import node_path; print(node_path())')
 
 test: ## The tests, as CI runs them
 	pytest
