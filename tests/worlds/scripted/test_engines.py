@@ -3,7 +3,7 @@
 import pytest
 
 import beliefnest as bn
-from beliefnest.worlds.scripted.engines import Engines, leaves_nothing
+from beliefnest.worlds.scripted.engines import Engines, leaves_nothing, only_acts
 from beliefnest.worlds.scripted.javascript_program import JavaScriptProgram
 
 SKILLS = ("goToPosition", "getItemFromChest", "say")
@@ -40,6 +40,32 @@ def test_calls_with_plain_values_leave_nothing(code: str) -> None:
 @pytest.mark.parametrize("code", OTHERS)
 def test_all_else_may_leave_something(code: str) -> None:
     assert not leaves_nothing(code, SKILLS)
+
+
+@pytest.mark.parametrize(
+    ("code", "only"),
+    [
+        (
+            "for (let i = 0; i < 3; i++) await goToPosition(bot, new Vec3(Math.random(), 1, 1))",
+            True,
+        ),
+        ("await say( bot , 'so'); const robot = 1", True),
+        ("await say(bot, bot.username)", False),
+        ("const me = bot; await say(me, me.username)", False),
+        ("await say(bot, `${new Date()}`)", False),
+        ("await say(bot, arguments[0].username)", False),
+        ("await say(bot, b\\u006ft.username)", False),
+        ("await say(bot, eval('b' + 'ot').username)", False),
+        ("notsay(bot)", False),
+        ("{ const say = robot => robot.username; say(bot) }", False),
+        ("(say => say(bot))(robot => robot.username)", False),
+    ],
+)
+def test_a_program_that_gives_its_bot_to_skills_alone_reads_nothing(code: str, only: bool) -> None:
+    assert only_acts(code, SKILLS) is only
+    assert JavaScriptProgram("ann", SKILLS, code, "0", Engines()).reads is not only
+    whole = f"async function (robot) {{ {code} }}"
+    assert JavaScriptProgram("ann", SKILLS, whole, "0", Engines()).reads
 
 
 def test_programs_that_leave_nothing_have_one_engine_after_the_other_and_no_other_has_it() -> None:

@@ -16,7 +16,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-__all__ = ["MEMORY_BYTES", "Engines", "JavaScriptEngine", "leaves_nothing"]
+__all__ = ["MEMORY_BYTES", "Engines", "JavaScriptEngine", "leaves_nothing", "only_acts"]
 
 MEMORY_BYTES = 64 << 20
 """Memory limit of a program."""
@@ -35,6 +35,8 @@ _ITEMS = rf"\{{\s*{_ITEM}\s*(?:,\s*{_ITEM}\s*)*+\}}"
 _VALUE = rf"(?:{_NUMBER}|{_TEXT}|{_PLACE}|{_ITEMS})"
 _CALL = re.compile(rf"{_GAP}await\s+({_WORD})\s*\(\s*bot\s*(?:,\s*{_VALUE}\s*)*+\)\s*;?", re.ASCII)
 _END = re.compile(_GAP, re.ASCII)
+# Ways to the bot and to the clock; identifiers may be written with escapes.
+_READS = re.compile(r"\b(?:bot|arguments|eval|Date)\b|\\u")
 
 
 def leaves_nothing(code: str, skills: Collection[str]) -> bool:
@@ -45,6 +47,16 @@ def leaves_nothing(code: str, skills: Collection[str]) -> bool:
             return False
         at = call.end()
     return _END.fullmatch(code, at) is not None
+
+
+def only_acts(code: str, skills: Collection[str]) -> bool:
+    """Return True if a program uses its bot as an argument of skills only, and reads no clock.
+
+    Then it can read nothing of the world but what skills return.
+    """
+    passed = re.sub(rf"\b(?:{'|'.join(skills)})\s*\(\s*bot\s*(?=[,)])", "", code)
+    # A skill's name that is left may be defined anew, as a function that reads its bot.
+    return _READS.search(passed) is None and not {*skills} & {*re.findall(r"\w+", passed)}
 
 
 class JavaScriptEngine:

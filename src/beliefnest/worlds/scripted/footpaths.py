@@ -23,7 +23,7 @@ _SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 _CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
 _MOST_CELLS = 100_000
 _MARGIN = 2
-_MOST_WAYS = 1000
+_MOST_WAYS = 20_000
 """Largest number of paths that a ground caches."""
 
 

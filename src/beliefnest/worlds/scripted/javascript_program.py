@@ -15,6 +15,7 @@ from beliefnest.worlds.scripted.engines import (
     Engines,
     JavaScriptEngine,
     leaves_nothing,
+    only_acts,
 )
 
 __all__ = ["JavaScriptProgram"]
@@ -39,6 +40,9 @@ class JavaScriptProgram:
         code: Its text.
         seed: Seed of its random numbers.
         engines: Pool of engines to share.
+
+    Attributes:
+        reads: False if the program can read nothing of the world but what skills return.
     """
 
     def __init__(
@@ -47,6 +51,7 @@ class JavaScriptProgram:
         self._code = code
         self._engines = engines
         self._leaves_nothing = leaves_nothing(code, skills)
+        self.reads = _WHOLE.match(code) is not None or not only_acts(code, skills)
         if self._leaves_nothing:
             self._engine = engines.take(username, skills)
         else:
@@ -61,11 +66,6 @@ class JavaScriptProgram:
             "waiting": 0,
             "listens": False,
         }
-
-    @property
-    def reads(self) -> bool:
-        """True if the program can read anything of the world."""
-        return not self._leaves_nothing
 
     def start(self) -> None:
         """Start the program, and run it until it waits."""

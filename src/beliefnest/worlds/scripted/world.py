@@ -7,7 +7,7 @@ nothing.
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from copy import copy
 from typing import Any
 
@@ -174,13 +174,11 @@ class ScriptedWorld(ScriptedState):
             pressed_from(snapshot.internal_state, snapshot.tick),
         )
 
-    @contextmanager
-    def tick(self) -> Iterator[None]:
+    def tick(self) -> AbstractContextManager[object]:
         """Combine the acts of a `with` block into one tick; all of them happen, or none."""
         if self._pending is not None:
             raise WorldError(f"tick {self._tick + 1} has begun already; do not nest tick()")
-        with self._new_tick():
-            yield
+        return self._new_tick()
 
     def step(self, ticks: int = 1) -> None:
         """Let ticks without acts pass."""
@@ -198,11 +196,11 @@ class ScriptedWorld(ScriptedState):
         """Move an agent to a feet position in blocks; angles are Mineflayer's radians."""
         with self._act() as pending:
             agent = self._agent(name)
-            angles = [agent.yaw if yaw is None else yaw, agent.pitch if pitch is None else pitch]
-            if not all(math.isfinite(angle) for angle in angles):
+            turn = float(agent.yaw if yaw is None else yaw)
+            tilt = float(agent.pitch if pitch is None else pitch)
+            if not (math.isfinite(turn) and math.isfinite(tilt)):
                 raise WorldError(f"{name} cannot look along yaw {yaw}, pitch {pitch}")
-            feet = self._feet(position)
-            self._facts.agents[name] = agent.moved(feet, float(angles[0]), float(angles[1]))
+            self._facts.agents[name] = agent.moved(self._feet(position), turn, tilt)
             pending.agents.add(name)
 
     def set_block(self, position: Position, block: str, actor: str | None = None) -> None:
@@ -393,21 +391,17 @@ class ScriptedWorld(ScriptedState):
         except InputError as fault:
             raise WorldError(str(fault)) from None
 
-    @contextmanager
-    def _act(self) -> Iterator[Pending]:
-        """Yield the changes of the current tick, or those of a new tick for a single act."""
-        if self._pending is not None:
-            yield self._pending
-            return
-        with self._new_tick() as pending:
-            yield pending
+    def _act(self) -> AbstractContextManager[Pending]:
+        """Enter the changes of the current tick, or those of a new tick for a single act."""
+        return self._new_tick() if self._pending is None else nullcontext(self._pending)
 
     @contextmanager
     def _new_tick(self) -> Iterator[Pending]:
         pending = self._pending = Pending(self._facts)
         before = self._tick
         try:
-            self._release(pending)
+            if self._facts.pressed:
+                self._release(pending)
             yield pending
             self._pending = None
             self._finish(pending)
