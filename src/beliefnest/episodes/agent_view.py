@@ -132,7 +132,7 @@ class AgentView:
         round: Number of the round that begins, from 0.
         last: End of the agent's latest program.
         own: Simulator of the agent's belief.
-        imagine: Function that returns the belief as a separate world, down to a depth.
+        imagine: Function that returns the belief at a tick as a separate world, down to a depth.
         noting: Function that wraps a model so that the run records its requests.
         before: The agent's programs of earlier rounds.
 
@@ -151,7 +151,7 @@ class AgentView:
         round: int,
         last: Ended,
         own: ShownSimulator,
-        imagine: Callable[[int], Imagination],
+        imagine: Callable[[int, int | None], Imagination],
         noting: "Callable[[Model], Model]",
         before: Sequence[str],
     ) -> None:
@@ -240,13 +240,17 @@ class AgentView:
             simulator = simulator.child(agent)
         return simulator
 
-    def imagine(self, depth: int = 1) -> Imagination:
+    def imagine(self, depth: int = 1, tick: int | None = None) -> Imagination:
         """Return the agent's belief as a separate world for trying plans; it is not recorded.
 
         Args:
             depth: Depth down to which beliefs are tracked in it.
+            tick: A past tick, as the agent knew it then; 0: the first; None: now.
+
+        Raises:
+            TickError: The tick is in the future or before the start.
         """
-        return self._imagine(depth)
+        return self._imagine(depth, tick)
 
     def render(self, template: str, depth: int = 0, **variables: object) -> str:
         """Return the text of a prompt template, filled from its belief.

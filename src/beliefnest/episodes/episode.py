@@ -393,7 +393,7 @@ class Episode:
             len(self._parts) // len(self._slots),
             latest_end(self._parts, agent),
             nest.at(nest.tick)[path],
-            lambda depth: own.imagination(depth, self.task.form.pace),
+            lambda depth, tick: own.imagination(depth, self.task.form.pace, tick),
             own.noting,
             programs_of(self._parts, agent),
         )

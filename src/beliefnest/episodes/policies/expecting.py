@@ -24,7 +24,7 @@ from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.skills.calls import Call, program_of
 from beliefnest.world.values import Position
 
-__all__ = ["Expecting", "GoalShares", "uniform"]
+__all__ = ["Expecting", "GoalShares", "combinations", "uniform"]
 
 GoalShares = Mapping[str, Mapping[str, float]]
 """Probability of each possible goal, by agent and name of the goal."""
@@ -85,7 +85,7 @@ class Expecting:
 
     def _suppositions(self, shares: GoalShares) -> Iterator[_Supposition]:
         brief, mind = self._view.brief, self._view.imagine(self._order)
-        found = list(_combinations(shares))
+        found = list(combinations(shares))
         found = [(share, names) for share, names in found if share >= _LEAST] or found
         total = math.fsum(share for share, _ in found)
         for share, names in found:
@@ -151,7 +151,7 @@ def uniform(brief: Brief) -> GoalShares:
     }
 
 
-def _combinations(shares: GoalShares) -> Iterator[tuple[float, Mapping[str, str]]]:
+def combinations(shares: GoalShares) -> Iterator[tuple[float, Mapping[str, str]]]:
     """Yield all combinations of goals with their probabilities; agents are independent."""
     for names in itertools.product(*(goals for goals in shares.values())):
         chosen = dict(zip(shares, names, strict=True))

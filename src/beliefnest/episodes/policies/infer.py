@@ -1,4 +1,4 @@
-"""Policy `infer:ORDER`: infers what others are after from what they are seen to do and to claim.
+"""Policy `infer:ORDER`: infers goals of others from their deeds, their claims and their traces.
 
 Deeds are explained by inverse planning (`Simulator.infer`) in what the agent takes the other to
 believe; of order 0 in its own belief. A goal that the planner cannot express, such as one about
@@ -14,8 +14,9 @@ from beliefnest.belief.grounds import Source
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.policies.course_planner import USUAL, Bounds
-from beliefnest.episodes.policies.expecting import Expecting, GoalShares, uniform
+from beliefnest.episodes.policies.expecting import Expecting, GoalShares, combinations, uniform
 from beliefnest.episodes.policies.search import Search
+from beliefnest.episodes.policies.traces import likelihoods_of_traces
 from beliefnest.errors import InputError
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.scenarios.goals import Goal
@@ -52,16 +53,19 @@ class Infer:
         """Return the calls of the course with the best expected outcome, as a program."""
         if not view.brief.hides_goals:
             return Search(self.order, self.bounds).act(view)
-        shares = posterior(view, self.order)
-        return Expecting(view, self.order, self.bounds).program(shares, learns=True)
+        shares = posterior(view, self.order, self.bounds)
+        # Only an agent in sight can show its goal in the next round.
+        learns = any(view.state.agents[name].current for name in shares)
+        return Expecting(view, self.order, self.bounds).program(shares, learns=learns)
 
 
-def posterior(view: AgentView, order: int) -> GoalShares:
+def posterior(view: AgentView, order: int, bounds: Bounds = USUAL) -> GoalShares:
     """Return how likely the possible goals of the others are, by all that the agent perceived.
 
     Args:
         view: What the agent knows.
         order: 0: others are taken to believe what the agent believes.
+        bounds: Limits of the planner that explains traces.
     """
     found = {}
     for other, prior in uniform(view.brief).items():
@@ -74,7 +78,27 @@ def posterior(view: AgentView, order: int) -> GoalShares:
                 weights[name] *= _HONEST if is_true != is_opposed else 1 - _HONEST
         total = sum(weights.values())
         found[other] = {name: weight / total for name, weight in weights.items()}
-    return found
+    return _by_traces(view, order, bounds, found)
+
+
+def _by_traces(view: AgentView, order: int, bounds: Bounds, prior: GoalShares) -> GoalShares:
+    """Return the shares of goals by what the others left behind, given those by all else."""
+    combined = list(combinations(prior))
+    likely = likelihoods_of_traces(view, order, bounds, [goals for _, goals in combined])
+    weights = [share * each for (share, _), each in zip(combined, likely, strict=True)]
+    total = math.fsum(weights)
+    return {
+        other: {
+            name: math.fsum(
+                weight
+                for weight, (_, chosen) in zip(weights, combined, strict=True)
+                if chosen[other] == name
+            )
+            / total
+            for name in goals
+        }
+        for other, goals in prior.items()
+    }
 
 
 def goals_of_planner(goal: Goal, agent: str, state: State) -> list[Mapping[str, object]]:
@@ -125,7 +149,14 @@ def _by_deeds(
     below = (other,) if order else ()
     state = view.about(*below)
     pursued = {name: goals_of_planner(goal, other, state) for name, goal in goals.items()}
-    expressed = [name for name in goals if pursued[name]]
+
+    # An item that the agent misses may have been taken unseen. Then the other went on to where it
+    # wants the item, while the planner's course ends where the item was taken.
+    def is_judged(wants: list[Mapping[str, object]]) -> bool:
+        items = [str(each["item"]) for each in wants if "item" in each]
+        return bool(wants) and all(_is_somewhere(item, view.state) for item in items)
+
+    expressed = [name for name in goals if is_judged(pursued[name])]
     if len(expressed) < 2 or state.agents[other].position is None:
         return prior
     wanted: dict[str, Mapping[str, object]] = {}

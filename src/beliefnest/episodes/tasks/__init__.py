@@ -20,6 +20,7 @@ _TASKS: Mapping[str, str] = {
     "tell-what-is-needed": "tell_what_is_needed",
     "watch-and-help": "watch_and_help",
     "watchman": "watchman",
+    "what-happened-here": "what_happened_here",
     "whom-to-trust": "whom_to_trust",
 }
 

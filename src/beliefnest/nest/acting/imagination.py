@@ -167,12 +167,13 @@ class Imagination:
         """Return False if an agent certainly cannot get within reach of a block.
 
         True means that it may; the test is coarse. It is False for an agent of unknown position.
+        Doors that open by hand are no obstacle.
         """
         state = self.world.agents.get(agent)
         if state is None:
             return False
         x, y, z = (math.floor(value) for value in state.position)
-        return self._standing().may_lead((x, y, z), InReach(place, REACH))
+        return self._standing().with_doors_opened.may_lead((x, y, z), InReach(place, REACH))
 
     def knows(self, path: BeliefPath) -> bool:
         """Return True if the beliefs of a path below the root are followed."""

@@ -300,25 +300,36 @@ class Simulator(ShownSimulator):
         return Simulator(Engine(recording, ScriptedNestWorld()), self._path)
 
     @in_turn
-    def imagination(self, depth: int = 1, pace: int = 1) -> Imagination:
-        """Return the present state as a world of its own, to try out courses without recording.
+    def imagination(self, depth: int = 1, pace: int = 1, tick: int | None = None) -> Imagination:
+        """Return the state at a tick as a world of its own, to try out courses without recording.
 
         That world is scripted, whatever the real world is: see docs/scripted-world.md.
 
         Args:
             depth: Number of levels below the simulator at which beliefs are followed.
             pace: Number of ticks of the real world that one tick stands for.
+            tick: A past tick; 0: the first; None: the latest.
 
         Raises:
             InputError: The depth is below 0.
+            TickError: The tick is in the future or before the start.
         """
         if depth < 0:
             raise InputError(f"depth is {depth}; give a whole number from 0 on")
-        info = self._recording.info(self._path)
-        for path in paths_below(self._path, depth, self._recording.agents):
-            forest = self._recording.history.shared(info.key, path, info.entries)
+        recording = self._recording
+        if tick == 0:
+            first = recording.stretches(recording.moment(self._path))[0]
+            tick = recording.journal.info(first.timeline).start
+        moment = recording.moment(self._path, tick)
+        paths = paths_below(self._path, depth, recording.agents)
+        if tick is None:
+            for path in paths:
+                forest = recording.history.shared(moment.timeline, path, moment.entries)
+        else:
+            forest = recording.history.walk(moment.timeline, paths)
+            recording.history.advance(moment.timeline, forest, moment.entries)
         speech = -(-forest.context.options.speech_ticks // pace)
-        return Imagination.of(forest, self._path, depth, info.head, speech_ticks=speech)
+        return Imagination.of(forest, self._path, depth, moment.tick, speech_ticks=speech)
 
 
 def check_senses(senses: object) -> None:

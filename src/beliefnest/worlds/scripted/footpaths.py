@@ -112,7 +112,11 @@ class Ground:
     ) -> None:
         self._registry, self._box, self._blocks, self._opens = registry, box, blocks, opens
         states, places = np.unique(blocks, return_inverse=True)
-        ways = {s: passage(registry, s) for s in states.tolist() if self._is_way(s)}
+        doorways = [s for s in states.tolist() if s >= 0 and is_doorway(registry.name(s))]
+        ways = {s: passage(registry, s) for s in doorways if self._is_way(s)}
+        self._has_shut_doors = any(
+            moves_by_hand(registry.name(s)) for s in doorways if s not in ways
+        )
         free_states = [s < 0 or s in ways or not registry.boxes(s) for s in states.tolist()]
         free = np.array(free_states, dtype=np.bool_)[places].reshape(blocks.shape)
         x, y, z = box.low
@@ -161,6 +165,8 @@ class Ground:
     @cached_property
     def with_doors_opened(self) -> "Ground":
         """Return the same ground for agents that open doors and gates by hand."""
+        if not self._has_shut_doors:
+            return self
         return Ground(self._registry, self._box, self._blocks, opens=True)
 
     @property
@@ -169,10 +175,8 @@ class Ground:
         return bool(self._doorways)
 
     def _is_way(self, state: int) -> bool:
-        """Return True if a block is a door or gate that can be crossed."""
-        if state < 0 or not is_doorway(name := self._registry.name(state)):
-            return False
-        by_hand = self._opens and moves_by_hand(name)
+        """Return True if a door or gate can be crossed."""
+        by_hand = self._opens and moves_by_hand(self._registry.name(state))
         return by_hand or is_open(self._registry, state) is True
 
     def _is_straight(self, cell: Position, step: Position) -> bool:

@@ -1,0 +1,167 @@
+"""Inference from traces: goals of others, by what they left behind where nobody saw them.
+
+A trace is a block or a content that the agent finds changed without having perceived the change.
+If there is one, the agent imagines what the others did since the beginning, once for each
+combination of their possible goals, with the planner of `search`. Goals that would have left the
+world as the agent found it are more probable (Jara-Ettinger and Schachner 2024).
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beliefnest.belief.grounds import ContainerBelief, Source
+from beliefnest.belief.view import State
+from beliefnest.episodes.agent_view import AgentView
+from beliefnest.episodes.policies.course_planner import Bounds, Planner
+from beliefnest.nest.acting.imagination import Imagination, Performer
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import EventKind, Items, Position
+
+__all__ = ["likelihoods_of_traces"]
+
+_MISTAKEN = 0.1
+"""Probability that a block or a content is not as a course leaves it."""
+
+_PERCEIVED = (Source.SEEN, Source.WITNESSED)
+_CHANGES_NOTHING = (EventKind.MOVE_TO, EventKind.OPEN_CONTAINER)
+
+
+@dataclass(frozen=True)
+class _Moment:
+    """World from a tick on."""
+
+    tick: int
+    blocks: BlockGrid
+    containers: Mapping[Position, Items]
+
+
+def likelihoods_of_traces(
+    view: AgentView, order: int, bounds: Bounds, supposed: Sequence[Mapping[str, str]]
+) -> list[float]:
+    """Return how likely combinations of goals make what the agent found; all 1 without a trace.
+
+    Args:
+        view: What the agent knows.
+        order: Order of Theory of Mind; 0: others are taken to believe what the agent believes.
+        bounds: Limits of the planner.
+        supposed: Names of the goals of other agents, by agent.
+    """
+    start = view.imagine(order, tick=0)
+    found = _Found(view.state, start)
+    places = found.changed(found.now)
+    if not found.mismatches([found.first], places):
+        return [1.0] * len(supposed)
+    courses = [_course(view, start, order, bounds, goals) for goals in supposed]
+    places |= {place for course in courses for each in course for place in found.changed(each)}
+    odds = _MISTAKEN / (1 - _MISTAKEN)
+    return [odds ** found.mismatches(course, places) for course in courses]
+
+
+class _Found:
+    """Blocks and contents as an agent found them.
+
+    Args:
+        state: What the agent believes.
+        start: What it believed in the beginning.
+
+    Attributes:
+        first: The world as it believed it to be in the beginning.
+        now: The world as it believes it to be.
+    """
+
+    def __init__(self, state: State, start: Imagination) -> None:
+        self._state, known = state, start.view()
+        self._known = known.containers
+        self.first = _Moment(start.tick, known.blocks, _items(known.containers))
+        self.now = _Moment(state.tick, state.blocks.grid, _items(state.containers))
+        self._watched = {
+            event.detail.get("position")
+            for event in state.events
+            if event.kind not in _CHANGES_NOTHING
+        }
+
+    def changed(self, moment: _Moment) -> set[Position]:
+        """Return the places at which a moment differs from what the agent knew at first."""
+        x, y, z = self._state.box.low
+        differ = (self.first.blocks >= 0) & (moment.blocks != self.first.blocks)
+        blocks = {
+            (x + i, y + j, z + k)
+            for i, j, k in np.argwhere(differ).tolist()
+            # The upper half of a door moves with the lower one.
+            if _half(int(self.first.blocks[i, j, k])) != "upper"
+        }
+        held = moment.containers
+        return blocks | {at for at, items in self.first.containers.items() if held[at] != items}
+
+    def mismatches(self, course: Sequence[_Moment], places: Collection[Position]) -> int:
+        """Return the number of blocks and contents that the agent found other than in a course."""
+        return sum(
+            self._block_differs(course, place) + self._content_differs(course, place)
+            for place in places
+            if place not in self._watched
+        )
+
+    def _block_differs(self, course: Sequence[_Moment], place: Position) -> bool:
+        basis, index = self._state.blocks.basis(place), self._state.box.index(place)
+        if basis is None or basis.source not in _PERCEIVED or self.first.blocks[index] < 0:
+            return False
+        then = _at(course, basis.observed_at).blocks[index]
+        return bool(then != self.now.blocks[index])
+
+    def _content_differs(self, course: Sequence[_Moment], place: Position) -> bool:
+        found, known = self._state.containers.get(place), self._known.get(place)
+        if found is None or known is None or not found.complete:
+            return False
+        if found.basis.source not in _PERCEIVED:
+            return False
+        then = _at(course, found.basis.observed_at).containers[place]
+        # Of a container with unknown contents, count only what was known and what was done to it.
+        names = found.items.keys() | then.keys() if known.complete else known.items.keys() | then
+        return any(found.items.get(name, 0) != then.get(name, 0) for name in names)
+
+
+def _course(
+    view: AgentView, start: Imagination, order: int, bounds: Bounds, supposed: Mapping[str, str]
+) -> list[_Moment]:
+    """Return what the others do from the beginning until now if they have some goals."""
+    possible = view.brief.possible_goals
+    brief = view.brief.supposing({name: possible[name][goal] for name, goal in supposed.items()})
+    planner, ticks = Planner(brief), (view.tick - start.tick) // brief.pace
+    performers = {}
+    for name in sorted(supposed):
+        mind = start.below(name, order - 1) if order else start
+        plan = planner.plan(mind, name, max(0, order - 1), ticks, bounds.lower())
+        performers[name] = Performer(plan.calls)
+    mind, course = start.fork(), [_moment(start, start.tick)]
+
+    def note() -> bool:
+        tick = start.tick + (mind.tick - start.tick) * brief.pace
+        moment = _moment(mind, tick)
+        if moment.blocks is not course[-1].blocks or moment.containers != course[-1].containers:
+            course.append(moment)
+        return False
+
+    mind.play(performers, ticks, note)
+    note()
+    return course
+
+
+def _moment(mind: Imagination, tick: int) -> _Moment:
+    held = {place: dict(items) for place, items in mind.world.containers.items()}
+    return _Moment(tick, mind.world.blocks, held)
+
+
+def _at(course: Sequence[_Moment], tick: int) -> _Moment:
+    """Return the world of a course at a tick."""
+    return next(each for each in reversed(course) if each.tick <= max(tick, course[0].tick))
+
+
+def _items(containers: Mapping[Position, ContainerBelief]) -> dict[Position, Items]:
+    return {place: held.items for place, held in containers.items()}
+
+
+def _half(state: int) -> str:
+    return Registry.load().properties(state).get("half", "")
