@@ -30,6 +30,7 @@ from beliefnest.scenarios.sources import builtin_names, read_document
 from beliefnest.studies.program_rewriting import Rewriting, rewritten
 from beliefnest.studies.random_variations import drawn_variations
 from beliefnest.studies.scene_changes import _SHAPE
+from beliefnest.studies.symmetry import SYMMETRIES, Placing
 from beliefnest.studies.variation import Variation
 
 
@@ -168,6 +169,60 @@ def test_names_change_in_programs_texts_and_paths():
     assert [probe.path for probe in scenario.probes] == ["/ed/anne", "/ed", "/ed"]
     assert scenario.probes[1].task == "Help Anne."
     assert scenario.expectations[3].content.text == "an apple"
+
+
+HALL = """\
+name: hall
+box: [[0, 0, 0], [9, 3, 19]]
+blocks: [{block: stone, fill: [[0, 0, 0], [9, 0, 19]]}]
+containers: [{at: [1, 1, 2], items: {diamond: 1}}, {at: [8, 1, 2]}]
+signs:
+  - at: [4, 1, 9]
+    block: oak_sign[rotation=4]
+    text: it is in the other one
+    claims:
+      - {kind: located, item: diamond, place: [8, 1, 2]}
+      - {kind: position, agent: cid, place: [7, 1, 3]}
+      - {kind: block, place: [6, 1, 4], state: "oak_stairs[facing=east]"}
+unique: [diamond]
+perception: {max_visible_distance: 6, testimony: accept}
+initial_beliefs: [{path: /bob, containers: [{at: [1, 1, 2], items: {diamond: 1}}]}]
+agents:
+  ann: {position: [2.5, 1, 4.5]}
+  bob: {position: [5.5, 1, 11.5]}
+  cid: {position: [8.5, 1, 18.5]}
+"""
+
+
+@pytest.mark.parametrize("symmetry", SYMMETRIES, ids=lambda symmetry: symmetry.name)
+def test_unique_items_and_what_signs_claim_move_with_the_scene(tmp_path, symmetry):
+    path = small_in(tmp_path, HALL)
+    written = bn.Scenario.load(path)
+    placing = Placing(symmetry, written.setting.snapshot.box)
+    with bn.Nest.open(varied(path, symmetry=symmetry.name), world="scripted") as nest:
+        belief = nest["/bob"].state
+        place = placing.block((8, 1, 2))
+        # What is unique is believed in one place: no longer where the initial belief put it.
+        assert {at: dict(held.items) for at, held in belief.containers.items() if held.items} == {
+            place: {"diamond": 1}
+        }
+        assert belief.agents["cid"].position == placing.point((7, 1, 3))
+        stairs = belief.blocks[placing.block((6, 1, 4))]
+        assert f"facing={symmetry.direction('east')}" in stairs
+        sign = placing.block((4, 1, 9))
+        assert {claim.sign for claim in nest.claims()} == {sign}
+        assert f"the sign at {sign} at tick 0 that diamond is in {place}" in str(
+            nest["/bob"].explain(container=place)
+        )
+
+
+def test_unique_items_and_what_signs_claim_are_renamed(tmp_path):
+    names = {"agents": {"bob": "ed", "cid": "flo"}, "items": {"diamond": "apple"}}
+    with bn.Nest.open(varied(small_in(tmp_path, HALL), **names), world="scripted") as nest:
+        assert nest["/ed"].state.containers[8, 1, 2].items == {"apple": 1}
+        assert nest["/ed"].state.containers[1, 1, 2].items == {}
+        told = [str(claim.claim) for claim in nest.claims()]
+        assert told[:2] == ["apple is in (8, 1, 2)", "flo is at (7, 1, 3)"]
 
 
 def test_two_agents_cannot_get_one_name():

@@ -48,11 +48,26 @@ class _Map:
     shape: Any
 
 
+@dataclass(frozen=True, slots=True)
+class _ByKind:
+    """Mapping whose shape depends on its value of `kind`.
+
+    Attributes:
+        shape: Shape of most kinds.
+        shapes: Shapes of the other kinds, by name.
+    """
+
+    shape: Any
+    shapes: Mapping[str, Any]
+
+
 _ITEMS = _Map("item", "keep")
 _CORNERS = _Each("block")
 _BLOCKS = _Each({"block": "state", "at": "block", "fill": _CORNERS, "walls": _CORNERS})
-_CLAIM = {"kind": "keep", "place": "place", "item": "item", "agent": "agent", "state": "wanted"}
-_SIGNS = _Each({"at": "block", "text": "text", "block": "state", "claims": _Each(_CLAIM)})
+_CLAIM = {"kind": "keep", "place": "block", "item": "item", "agent": "agent", "state": "wanted"}
+# The place of an agent is a point, even if its coordinates are whole numbers.
+_CLAIMS = _Each(_ByKind(_CLAIM, {"position": {**_CLAIM, "place": "point"}}))
+_SIGNS = _Each({"at": "block", "text": "text", "block": "state", "claims": _CLAIMS})
 _EQUIPMENT = dict.fromkeys(("head", "chest", "legs", "feet", "main_hand", "off_hand"), "item")
 _EXPECTATION = {
     "label": "keep",
@@ -260,6 +275,9 @@ def _changed(
     if not isinstance(node.value, dict):
         # A value of the wrong form: the later check of the form reports it.
         return node
+    if isinstance(shape, _ByKind):
+        kind = node.value.get("kind")
+        shape = shape.shapes.get("" if kind is None else str(kind.value), shape.shape)
     inner = {}
     for key, child in node.value.items():
         if key == "conditions" and not path:
