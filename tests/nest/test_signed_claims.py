@@ -10,6 +10,9 @@ from tests.nest.test_against_reference import split
 import beliefnest as bn
 from beliefnest.belief.grounds import Basis, Source
 from beliefnest.errors import InputError, WorldError
+from beliefnest.timeline.export_tables import entry_rows, snapshot_rows
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import EventKind, Position
 
 LEFT, RIGHT, SIGN = (3, 0, 3), (17, 0, 3), (10, 0, 12)
@@ -222,6 +225,20 @@ def test_signs_are_kept_in_run_files(tmp_path: Path) -> None:
         assert [claim.speaker for claim in nest.claims()] == [None, "nora"]
     with bn.Nest.read(store) as read:
         assert read["/max"].state.containers[LEFT].items == {"diamond": 1}
+
+
+def test_exports_tell_what_signs_claim() -> None:
+    hall = Hall(signs={SIGN: "right"}, claims={SIGN: [THERE]})
+    start, frames = hall.world.snapshot(), []
+    hall.world.listen(frames.append)
+    hall.write(text="left", claim=bn.Claim.located("diamond", LEFT))
+    key, registry = TimelineKey((), "main"), Registry.load()
+    rows = [*snapshot_rows(key, start, registry), *entry_rows(key, 0, frames[0], registry)]
+    assert [
+        (row["text"], [claim["place"] for claim in row["claims"]])
+        for table, row in rows
+        if table == "signs"
+    ] == [("right", [RIGHT]), ("left", [LEFT])]
 
 
 def test_a_sign_that_is_turned_claims_what_it_claimed() -> None:

@@ -203,7 +203,7 @@ def test_blocks_and_edits(written):
         {**place(2, 5), **cell, "block": None, "edited": "/sally/anne"},
     ]
     assert written["signs"] == [
-        {**place(1, 5), **(cell | {"z": 4}), "text": "way\nout", "edited": None}
+        {**place(1, 5), **(cell | {"z": 4}), "text": "way\nout", "claims": [], "edited": None}
     ]
 
 

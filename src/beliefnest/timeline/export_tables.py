@@ -10,8 +10,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
+from beliefnest.world.claims import Claim, claims_from_plain, claims_written
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
@@ -110,7 +111,7 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
             "inventory": "object",
         },
         "blocks": {**_PLACE, **_CELL, "block": "text", "edited": "text"},
-        "signs": {**_PLACE, **_CELL, "text": "text", "edited": "text"},
+        "signs": {**_PLACE, **_CELL, "text": "text", "claims": "object", "edited": "text"},
         "containers": {**_PLACE, **_CELL, "items": "object", "edited": "text"},
         "items": {
             **_PLACE,
@@ -206,8 +207,11 @@ def timeline_row(info: TimelineInfo) -> Row:
 def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) -> Iterator[Row]:
     """Yield the rows of one entry; UnknownNameError if the registry lacks a block state."""
     place = _place(key, number, entry.tick)
-    edited = None if isinstance(entry, Frame) else path_text(entry.path)
-    yield from _block_rows(place, entry.blocks.items(), registry, edited)
+    edited = path_text(entry.path) if isinstance(entry, Edit) else None
+    claims = {}
+    if isinstance(entry, Frame):
+        claims = {at: claims_written(entry, at) for at in entry.blocks}
+    yield from _block_rows(place, entry.blocks.items(), claims, registry, edited)
     yield from _container_rows(place, entry.containers.items(), edited)
     if isinstance(entry, Frame):
         yield from _agent_rows(place, entry.agents.items())
@@ -236,7 +240,8 @@ def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> I
             for x, y, z in np.argwhere(snapshot.blocks != registry.air).tolist()
         )
     )
-    yield from _block_rows(place, cells, registry, None)
+    claims = {at: claims_from_plain(plain) for at, plain in snapshot.sign_claims.items()}
+    yield from _block_rows(place, cells, claims, registry, None)
     yield from _container_rows(place, snapshot.containers.items(), None)
     yield from _agent_rows(place, snapshot.agents.items())
     yield from _item_rows(place, snapshot.items.items())
@@ -301,6 +306,7 @@ def _place(key: TimelineKey, number: int, tick: int) -> dict[str, Any]:
 def _block_rows(
     place: Mapping[str, Any],
     cells: Iterable[tuple[Position, Block]],
+    claims: Mapping[Position, Iterable[Claim]],
     registry: Registry,
     edited: str | None,
 ) -> Iterator[Row]:
@@ -310,7 +316,8 @@ def _block_rows(
         row = {**place, "x": x, "y": y, "z": z, "edited": edited}
         yield "blocks", {**row, "block": text}
         if isinstance(block, Sign):
-            yield "signs", {**row, "text": block.text}
+            told = [claim.plain() for claim in claims.get((x, y, z), ())]
+            yield "signs", {**row, "text": block.text, "claims": told}
 
 
 def _container_rows(

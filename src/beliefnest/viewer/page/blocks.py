@@ -106,6 +106,7 @@ class BlockPalette:
 
     def _entry(self, number: int) -> dict[str, Any]:
         registry, block = self._context.registry, self._context.block(number)
+        claims = self._context.claims_on(number)
         state = plain_state(block)
         name = registry.name(state)
         boxes = [[round(32 * edge) for edge in box] for box in registry.boxes(state)]
@@ -122,6 +123,7 @@ class BlockPalette:
             "glassy": bool(registry.default_transparent[state]),
             "open": registry.properties(state).get("open"),
             **({"says": sign_words(block.text)} if isinstance(block, Sign) else {}),
+            **({"claims": [str(claim) for claim in claims]} if claims else {}),
         }
 
 

@@ -3,7 +3,7 @@
 import { badge, button, element, itemsText, pointText, refill } from './elements.js'
 import { lookWords } from './ray.js'
 import { partsOf } from './run.js'
-import { contentsText, markWords, memoryWords, tellerOf } from './things.js'
+import { contentsText, markWords, memoryWords, signText, tellerOf } from './things.js'
 
 export class Detail {
   constructor (choose, source) {
@@ -27,7 +27,7 @@ export class Detail {
     const held = document.activeElement?.dataset?.row
     refill(this.holds,
       table('Containers', things.containers.map(each => this.row(run, each, contentsText(each.contents), choice))),
-      table('Signs', things.signs.map(each => this.row(run, each, `“${each.says}”`, choice))),
+      table('Signs', things.signs.map(each => this.row(run, each, signText(each), choice))),
       table('Agents', things.agents.map(each => this.row(run, each, placeText(each.pose), choice))),
       this.others(run, things))
     if (held !== undefined) this.holds.querySelector(`[data-row="${CSS.escape(held)}"]`)?.focus()

@@ -26,10 +26,15 @@ function writtenSigns (run, track, tick, wrong) {
   track.grid(tick).forEach((state, cell) => {
     if (state < 0 || run.states[state].says === undefined) return
     const thing = `block-${cell}`
-    const { name, says } = run.states[state]
-    found.push({ thing, cell, place: run.place(cell), name: `${name.replaceAll('_', ' ')} at ${run.place(cell).join(', ')}`, says, marks: wrong.has(thing) ? ['false'] : [], age: null })
+    const { name, says, claims = [] } = run.states[state]
+    found.push({ thing, cell, place: run.place(cell), name: `${name.replaceAll('_', ' ')} at ${run.place(cell).join(', ')}`, says, claims, marks: wrong.has(thing) ? ['false'] : [], age: null })
   })
   return found
+}
+
+/** Return all that is known of a sign: its text, and what it claims. @returns {string} */
+export function signText ({ says, claims }) {
+  return `“${says}”${claims.length ? `, which claims that ${claims.join(' and that ')}` : ''}`
 }
 
 /** Return the part of a sign's text that is shown beside it. @returns {string} */
