@@ -51,7 +51,7 @@ RUN_BY = {
     ("studies.md", "python"): "docs/test_studies_page.py",
     ("timelines.md", "python"): "docs/test_nest_pages.py",
     ("tutorial.md", "python"): "docs/test_tutorial.py",
-    ("visiting.md", "python"): "nest/test_visiting.py",
+    ("visiting.md", "python"): "nest/face/test_visiting.py",
 }
 """Page and language to the test that runs its blocks."""
 SHELLS = {"bash", "console", "sh"}
