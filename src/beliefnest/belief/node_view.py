@@ -55,7 +55,7 @@ class NodeView:
 
     @cached_property
     def numbers(self) -> BlockGrid:
-        """The numbers of the believed blocks, which also tell texts of signs apart.
+        """The numbers of the believed blocks; signs with different texts have different numbers.
 
         See `BeliefContext.number`.
         """

@@ -147,7 +147,8 @@ def _one_inference() -> None:
         nest["/ann/bob"].state.blocks.named(frozenset({"stone"}))
         doubt = {block: {"blocks": {(0, 0, 2): block}} for block in ("stone", "gold_block")}
         model = MindModel("bob", {"gold": {"block": "gold_block"}}, {"gold": [0, 5]}, doubt)
-        nest["/"].infer(model).predict()  # which needs a plan, as no course so short does
+        # Only the prediction needs a plan: the course is too short.
+        nest["/"].infer(model).predict()
 
 
 def _world() -> str:

@@ -28,13 +28,13 @@ Floats = npt.NDArray[np.float64]
 
 
 def reported_credence(row: Floats, possible: int, believed: int, lapse: float) -> Floats:
-    """Return the credence that is reported for a knowledge, `lapse` of what is contradicted left.
+    """Return the credence that is reported for a knowledge.
 
     Args:
         row: float64 (..., alternatives), the initial credence.
         possible: Alternatives that no percept contradicts.
         believed: Those of them that claims allow.
-        lapse: Factor on the initial credence in the others.
+        lapse: Factor on the initial credence in alternatives that a percept contradicts.
     """
     count = row.shape[-1]
     allowed = np.array([believed >> a & 1 for a in range(count)], dtype=np.bool_)
@@ -51,14 +51,14 @@ class Inference:
     """Probabilities of hypotheses about one agent, after each piece of evidence.
 
     Factors are `utility.GOAL`, `credence.ALTERNATIVE` (the initial one),
-    `credence_now.ALTERNATIVE`, `actual.ALTERNATIVE` (1 if it is the case), `rationality` if the
+    `credence_now.ALTERNATIVE`, `actual.ALTERNATIVE` (1 if it is true), `rationality` if the
     model lists several, and `cell`.
 
     Attributes:
         model: The hypotheses.
         since: The tick from which on evidence counts.
         until: The last tick.
-        smooth: Whether marginals of `cell` and `credence_now` use later evidence too.
+        smooth: True if marginals of `cell` and `credence_now` use later evidence, too.
     """
 
     def __init__(
@@ -141,7 +141,7 @@ class Inference:
         """Return the probability of each combination of values of some factors.
 
         Raises:
-            InputError: A factor is unknown, or is none of the hypotheses' own: `cell` and
+            InputError: A factor is unknown, or is not part of a hypothesis: `cell` and
                 `credence_now` change from step to step.
             TickError: As for `mean`.
         """
@@ -182,7 +182,7 @@ class Inference:
         return pd.DataFrame(rows, columns=["tick", "factor", "value", "probability"])
 
     def explain(self, tick: int | None = None) -> list[Change]:
-        """Return which evidence changed which factor, by how much; None: at all ticks.
+        """Return the changes of factors by each piece of evidence; None: at all ticks.
 
         Raises:
             TickError: As for `mean`.
@@ -205,10 +205,10 @@ class Inference:
     def predict(self, steps: int = 1, tick: int | None = None) -> list[dict[Position, float]]:
         """Return where the agent will be after 1, 2, ... actions, by the posterior at a tick.
 
-        Whoever has acted on a goal stays where it is.
+        After acting on a goal the agent stays where it is.
 
         Raises:
-            InputError: The number of steps is none.
+            InputError: The number of steps is not a whole number from 1.
             TickError: As for `mean`.
         """
         if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
@@ -236,11 +236,11 @@ class Inference:
     def sample_paths(self, n: int, seed: int = 0) -> list[SampledPath]:
         """Draw hypotheses from the posterior, with courses that agree with all evidence.
 
-        Where the agent was in sight, its course is the one that was seen.
+        While the agent was in sight, its course is the observed one.
 
         Args:
-            n: How many.
-            seed: The same one gives the same paths.
+            n: Number of paths.
+            seed: Seed of the draws; equal seeds give equal paths.
 
         Raises:
             InputError: The number is below 1, or no hypothesis explains the course.
@@ -265,7 +265,7 @@ class Inference:
         return paths
 
     def plot(self, *factors: str) -> "Figure":
-        """Return a figure of the posterior over time, with the movements that told most.
+        """Return a figure of the posterior over time, with the most informative movements.
 
         Utilities and credences are shown by their means. A single factor, as `utility.soup`, is
         shown by the probabilities of its values.
@@ -315,7 +315,7 @@ class Inference:
         return None if number < 0 else self._known[number]
 
     def _log_actual(self, step: Step | None) -> Floats:
-        """Log weights of what may be the case, of those that agree with the node."""
+        """Log weights of the possible actual alternatives, as far as they agree with the node."""
         weights = self.model.actual_weights
         names = self.model.alternative_names
         agrees = -1 if step is None else step.agrees
@@ -367,7 +367,7 @@ class Inference:
 
     @cached_property
     def _kept(self) -> Sequence[Tracker]:
-        """The filters with their layers, worked out when somebody looks back."""
+        """The filters with their layers, computed for the first question about the past."""
         return self._keep()
 
     @cached_property

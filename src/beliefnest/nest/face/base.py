@@ -54,7 +54,7 @@ class NestBase(ShownNest, ABC):
 
     @in_turn
     def versions(self) -> Sequence[Mapping[str, str]]:
-        """Return the versions by program, from the beginning and from each resume with others."""
+        """Return versions by program, for the start and for each resume with other versions."""
         return self._recording.records.versions()
 
     @in_turn
@@ -62,8 +62,8 @@ class NestBase(ShownNest, ABC):
         """Return the programs that ran on branches that still exist, in order of their end.
 
         Args:
-            path: Simulator whose programs are wanted, on its present branch only: in follow mode it
-                has none, and programs before a fork belong to the other branch. None: all programs.
+            path: Path of a simulator, to return only the programs of its present branch. In follow
+                mode there are none; programs before a fork belong to the other branch. None: all.
         """
         programs = tuple(self._recording.records.programs())
         if path is None:

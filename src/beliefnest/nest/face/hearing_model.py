@@ -49,7 +49,7 @@ def reader_of(hook: ClaimsFrom | None, recording: Recording) -> ClaimReader | No
 
 
 def _takes_three(hook: object) -> bool:
-    """Return True if an object is callable with three arguments, or does not say."""
+    """Return True if an object is callable with three arguments, or has no signature."""
     if not callable(hook):
         return False
     try:

@@ -33,7 +33,7 @@ class Faces:
 
     Attributes:
         past: Function that makes the read-only simulator of a path at a tick.
-        live: Makes the simulator that histories are of, able to act, on other timelines.
+        live: Function that makes a simulator that can act, on the timelines of a history.
     """
 
     past: Callable[[Recording, BeliefPath, int | None], Any]
@@ -47,7 +47,7 @@ class History:
 
     Attributes:
         number: Number of the history among those that were drawn.
-        weight: Probability of the history among them.
+        weight: Probability of the history, given that one of the drawn ones is true.
     """
 
     def __init__(self, imagined: "Imagined", number: int, particle: Particle) -> None:
@@ -75,7 +75,7 @@ class History:
 
     @property
     def tick(self) -> int:
-        """Its latest tick."""
+        """The last tick of the history."""
         return self._course.tick
 
     @property
@@ -96,20 +96,20 @@ class History:
         return self._imagined._faces.past(recording, self._imagined._path, then)
 
     def __getitem__(self, path: str) -> Any:
-        """Return a simulator of it in the end; `/` is what is the case in it."""
+        """Return a simulator at the end of the history; `/` is the history's world."""
         recording = self._imagined._recorded(self._course)
         whole_path = self._imagined._within(path)
         return self._imagined._faces.past(recording, whole_path, self._course.tick)
 
     def figure(self, against: str | None = None) -> "Figure":
-        """Draw it as it is in the end; compared with a belief path of the nest, if one is given."""
+        """Draw the end of the history; mark differences from a belief of the nest, if given."""
         figure: Figure = self["/"].figure(against)
         return figure
 
     def fork(self, name: str = "fork") -> Any:
-        """Return a simulator in which it goes on, on a branch of its own, in a scripted world.
+        """Return a simulator that continues the history on a branch, in a scripted world.
 
-        Programs run in it as in any other; nothing of it is recorded in the nest.
+        Programs run in it as in other simulators; the nest records nothing of it.
 
         Args:
             name: Name of the branch, which stays with the histories.
@@ -125,7 +125,7 @@ class History:
         return simulator
 
     def keep(self, name: str) -> None:
-        """Record it in the nest as a branch; see `Imagined.keep`."""
+        """Record the history in the nest as a branch; see `Imagined.keep`."""
         self._imagined.keep(self.number, name)
 
     def __repr__(self) -> str:
@@ -136,15 +136,15 @@ class History:
 class Imagined:
     """Weighted histories of a simulator, drawn by `imagine`.
 
-    If none agrees with what was perceived, `impossible` says at which tick the last one was lost;
-    the histories are then those that were lost last, as they were at that tick.
+    If no history agrees with the percepts, `impossible` names the tick at which the last ones
+    stopped agreeing. The result then contains these, as they were at that tick.
 
     Attributes:
         since: The tick at which they begin.
         until: The tick at which they end.
-        n: How many were drawn.
-        impossible: When and why the last one was lost; None: some agree.
-        log_evidence: Natural logarithm of the probability of what was perceived, estimated.
+        n: Number of drawn histories.
+        impossible: When and why the last ones stopped agreeing; None: some agree.
+        log_evidence: Estimated natural logarithm of the probability of the percepts.
     """
 
     def __init__(
@@ -187,9 +187,9 @@ class Imagined:
 
     @property
     def effective_size(self) -> float:
-        """The effective number of histories, counted as different ones at the first tick.
+        """The effective number of histories that were different at the first tick.
 
-        0 if none agrees with what was perceived.
+        0 if none agrees with the percepts.
         """
         return 0.0 if self.impossible is not None else self._drawing.effective_size
 
@@ -198,8 +198,8 @@ class Imagined:
 
         Args:
             condition: As in goals: `{"container": place, "items": {name: count}}`, `{"agent": name,
-                "at": place}`, `{"block": place, "state": text}` and so on. Its `path` is one inside
-                the histories: `/` is what is the case in them.
+                "at": place}`, `{"block": place, "state": text}` and so on. Its `path` is inside
+                the history: `/` is the history's world.
 
         Raises:
             InputError, PathError, UnknownNameError: The condition is malformed.

@@ -43,6 +43,6 @@ module.exports = {
     await settle(context)
     // Count in whole blocks, as the pathfinder does.
     const away = bot.entity.position.floored().distanceTo(body.position.floored())
-    if (away > near + SLACK) fail(`${otherName} is ${away.toFixed(1)} blocks away after ${duration} ticks. Follow longer, or there is no way on foot.`)
+    if (away > near + SLACK) fail(`${otherName} is ${away.toFixed(1)} blocks away after ${duration} ticks. Follow longer; if that does not help, there is no way on foot.`)
   }
 }

@@ -1,4 +1,4 @@
-"""Films acted out in nests, and what exact inference says of their agents."""
+"""Exact inference about the agents of films, which are acted out in nests."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ AGENT = "student"
 
 Lesion = Literal["true_belief", "no_cost"]
 LESIONS: tuple[Lesion, ...] = ("true_belief", "no_cost")
-"""Models without a part: an agent who knows the world, and one to whom acts cost nothing."""
+"""Models that lack a part: the agent has no false beliefs, or its actions cost nothing."""
 
 _COLOURS = (
     *("yellow", "lime", "light_blue", "red", "blue", "orange", "purple", "white"),
@@ -41,11 +41,11 @@ class Judgment:
 
     Attributes:
         film: The film.
-        model: By what it is about, then by name: the posterior mean of each goal's utility, that
-            of the initial credence in each event, and the probability of each event where the
-            observer does not know what is the case.
-        impossible: The first step that no hypothesis explains; what the model says is then the
-            posterior before it. None: every step is explained.
+        model: Judgments by kind and name: posterior means of the goals' utilities, posterior means
+            of the initial credences in the events, and, if the observer is in doubt, probabilities
+            of the events.
+        impossible: The first step that no hypothesis explains; the judgments are then those before
+            this step. None: every step is explained.
     """
 
     film: Film
@@ -54,9 +54,9 @@ class Judgment:
 
 
 def staged(film: Film) -> Nest:
-    """Act a film out in a nest: walls hide, goals are blocks to stand on.
+    """Act a film out in a nest. Walls block sight; goals are blocks of the floor.
 
-    Where the observer does not know what is the case, the places in doubt are empty.
+    If the observer is in doubt, the places in doubt are empty.
     """
     width, depth = film.size
     blocks: dict[Position, str] = {(x, 0, z): _FLOOR for x in range(width) for z in range(depth)}
@@ -71,7 +71,7 @@ def staged(film: Film) -> Nest:
         blocks[_floor(film.places[place])] = _block(film, goal)
     feet = [(x - 0.5, 1.0, z - 0.5) for x, z in film.path]
     world = ScriptedWorld(((0, 0, 0), (width - 1, 2, depth - 1)), blocks, agents={AGENT: feet[0]})
-    # The floor is as large as it is: what is not hidden is seen.
+    # No limit of distance: the agent sees everything that no wall hides.
     nest = Nest(world, perception=Perception(max_visible_distance=None))
     for place_feet in feet[1:]:
         world.place_agent(AGENT, place_feet)
@@ -88,10 +88,9 @@ def model_of(
 
     Args:
         film: The film.
-        parameters: Of the model.
-        lesion: The part that the model lacks; None: it is whole.
-        known: The alternative that is the case, which an agent without false beliefs knows;
-            needed for that lesion alone.
+        parameters: Parameters of the model.
+        lesion: The part that the model lacks; None: none.
+        known: For the lesion `true_belief`, the true alternative, which the agent knows.
     """
     names = list(film.alternatives)
     grid = grid_for(film, parameters) or 1
@@ -100,7 +99,7 @@ def model_of(
     if film.observer_doubts:
         actual = dict.fromkeys(film.actual, 1 / len(film.actual))
     if lesion == "true_belief" and known is not None:
-        # The corner of the grid at which the agent is surest of what is the case.
+        # Keep only the corner of the grid with the most credence in the true alternative.
         credences = credences[[int(credences[:, names.index(known)].argmax())]]
         actual = known if film.observer_doubts else None
     costs = lesion != "no_cost"
@@ -119,7 +118,7 @@ def model_of(
         credences=credences,
         actual=actual,
         rationality=parameters.rationality,
-        # To wait for a reward costs as well.
+        # Discounting is a cost of waiting.
         discount=parameters.discount if costs else 1.0,
         step_cost=parameters.step_cost if costs else 0.0,
         stay_cost=parameters.stay_cost if costs else 0.0,
@@ -128,12 +127,12 @@ def model_of(
 
 
 def judge(film: Film, parameters: FilmParameters, lesion: Lesion | None = None) -> Judgment:
-    """Act a film out and infer what its agent wants and believed, and what is the case.
+    """Act a film out; infer its agent's desires and beliefs, and the true alternative.
 
     Raises:
         InputError: The film does not fit the model; the message names the film.
     """
-    # An agent who knows the world knows another one under each alternative.
+    # An agent without false beliefs knows a different world under each alternative.
     cases = film.actual if lesion == "true_belief" else (None,)
     try:
         with staged(film) as nest:

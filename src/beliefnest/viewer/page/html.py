@@ -42,7 +42,7 @@ def page_html(title: str, content: Mapping[str, Any], *, served: bool) -> str:
     Args:
         title: Title of the browser's tab.
         content: Data of the page; it is compressed with deflate and encoded as base64.
-        served: Whether the page talks to the server it comes from.
+        served: True if the page communicates with the server that sent it.
 
     Raises:
         InputError: The page was not built with the package.

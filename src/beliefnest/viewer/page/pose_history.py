@@ -18,7 +18,7 @@ class Stand:
 
 
 class PoseBook:
-    """Poses of all agents in the world of one timeline, and earlier in that of its base.
+    """Poses of all agents in the world of one timeline; before its start, in that of its base.
 
     Args:
         agents: Number of agents.

@@ -101,7 +101,7 @@ class JavaScriptEngine:
         self.call("reseed", json.dumps(_words(seed)))
 
     def advance(self) -> bool:
-        """Run one pending job; return whether there was any. Raises `failed`."""
+        """Run one pending job. Return False if there was none. Raises `failed`."""
         return bool(self._context.execute_pending_job())
 
 
@@ -123,18 +123,18 @@ class Engines:
         return engine
 
     def give_back(self, engine: JavaScriptEngine) -> None:
-        """Take back the engine of such a program, which has ended."""
+        """Return an engine to the pool after the end of its program."""
         self._free.append(engine)
 
 
 def _words(seed: str) -> list[int]:
-    """Return the state with which a seed begins."""
+    """Return the first state of the random generator for a seed."""
     return list(struct.unpack("<4i", hashlib.sha256(seed.encode()).digest()[:16]))
 
 
 @cache
 def _text() -> str:
-    """Return JavaScript that calls a part of the prelude: a function of arguments as JSON.
+    """Return JavaScript of a function that calls a part of the prelude with arguments as JSON.
 
     The engine's own clock stays, because it measures real computing time. No function is in
     brackets: the engine reads text after an opening bracket twice, to find out whether an arrow

@@ -49,8 +49,8 @@ class ServerAddress:
         version: Minecraft version to speak; None to ask the server.
         operator: Name of the bot that sets up and observes the place. It must be an operator.
         at: Position of scenario (0, y, 0) in the server's world: x and z, multiples of 16.
-        overwrite: Whether blocks in the box that are not the scenario's may be replaced.
-        keep: Whether the box stays as it is at the end, instead of being restored.
+        overwrite: True if blocks in the box that are not the scenario's may be replaced.
+        keep: True if the box stays as it is at the end; False: it is restored.
         accounts: Folder with tokens of the Microsoft accounts with which players log in; None if
             the server is in offline mode.
         patience: Seconds to wait for a lost connection or for a server that hangs.

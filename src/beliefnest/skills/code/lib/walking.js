@@ -87,7 +87,7 @@ const SAMPLES = [[0, 0, 0], [0.45, 0, 0], [-0.45, 0, 0], [0, 0.45, 0], [0, -0.45
 
 /**
  * Return true if a block can easily be used from an eye: it is near enough, and nothing obstructs its centre or one of
- * its sides. The raycast leaves out the block that contains the eye; `canSee` does not, as the server does not.
+ * its sides. The raycast ignores the block that contains the eye. `canSee` tests this block, too, like the server.
  */
 function canUse (bot, eye, block) {
   if (eye.distanceTo(centreOf(block)) > REACH) return false

@@ -1,5 +1,5 @@
 'use strict'
-/** Player that looks in the operator's place at a distant area. Its commands are typed by the operator. */
+/** Player that observes a distant area for the operator. The operator types the commands for it. */
 const { Operator } = require('./operator')
 
 class Guide extends Operator {

@@ -235,7 +235,7 @@ class RemoteRegions {
     throw error
   }
 
-  /** Resolve when all players are connected. @throws {Unplayable} if the place was given up, or has to be */
+  /** Resolve when all players are connected. @throws {Unplayable} if the place was given up or must be given up */
   async present () {
     if (this.failure !== null) throw this.failure
     await this.open.agents.present().catch(error => this.fail(error))
