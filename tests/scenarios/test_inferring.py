@@ -58,9 +58,13 @@ def content(**infer):
 
 def played(scenario, world="scripted"):
     with bn.Nest.open(scenario, world) as nest:
-        return run_scenario(
-            nest, scenario, OfflineModel(), 0, time.perf_counter(), lambda what, done, total: None
-        )
+        return played_in(nest, scenario)
+
+
+def played_in(nest, scenario):
+    return run_scenario(
+        nest, scenario, OfflineModel(), 0, time.perf_counter(), lambda what, done, total: None
+    )
 
 
 def outcome_of(found):

@@ -1,22 +1,27 @@
 """The HTML page of a run, for `beliefnest show --html` and `beliefnest serve`."""
 
 from collections.abc import Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import stores_in
 from beliefnest.episodes.telling import told_episode
-from beliefnest.errors import InputError, TickError
+from beliefnest.errors import InputError, ScenarioError, TickError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.viewer.page.posteriors import told_inference
 from beliefnest.viewer.page.run import About
 from beliefnest.viewer.page.static import write_still_page
 from beliefnest.world.paths import parse_path, path_text
 
 __all__ = ["PageOptions", "about_run", "write_page"]
+
+_STEPS = 5
+"""Actions after which posteriors predict places."""
 
 _ENDINGS = (".html", ".htm")
 
@@ -98,4 +103,18 @@ def about_run(journal: SqliteJournal, nest: RecordedNest, paths: Sequence[str] =
         labels=scenario.labels,
         paths=tuple(dict.fromkeys(path for path in wanted if path)),
         episode=lambda: told_episode(nest),
+        inferences=lambda: _inferences(nest, scenario),
     )
+
+
+def _inferences(nest: RecordedNest, scenario: Scenario) -> list[dict[str, Any]]:
+    """Return the posteriors of the probes that infer; without those that do not fit the run."""
+    told = []
+    for number, probe in enumerate(scenario.probes, start=1):
+        # A run that was interrupted, or that still goes on, may lack the ticks to infer from.
+        with suppress(ScenarioError):
+            if probe.infer is not None:
+                inference = probe.infer.inference(nest[probe.path])
+                title = f"{probe.label or f'probe {number}'}, by {probe.path}"
+                told.append({**told_inference(inference, _STEPS), "title": title})
+    return told

@@ -2,9 +2,12 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
+from msgspec.structs import asdict
+
+from beliefnest.errors import InputError, PathError, ScenarioError, TickError
 from beliefnest.minds.mind_model import MindModel, simplex_grid
 from beliefnest.scenarios.checks import check_inside
 from beliefnest.scenarios.document import Document, KeyPath
@@ -18,6 +21,7 @@ from beliefnest.world.frames import Snapshot
 
 if TYPE_CHECKING:
     from beliefnest.minds.inference import Inference
+    from beliefnest.nest.face.shown import ShownSimulator
 
 __all__ = [
     "MOST_HYPOTHESES",
@@ -52,6 +56,23 @@ class Inferring:
     ended: bool
     smooth: bool
     where: str
+
+    def inference(self, simulator: "ShownSimulator") -> "Inference":
+        """Return what a simulator infers.
+
+        Raises:
+            ScenarioError: The inference does not fit the recorded events.
+        """
+        try:
+            return simulator.infer(
+                self.model,
+                since=self.since,
+                until=self.until,
+                ended=self.ended,
+                smooth=self.smooth,
+            )
+        except (InputError, PathError, TickError) as error:
+            raise ScenarioError(f"{self.where}: {error}") from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,14 +114,7 @@ def build_inferring(
     Raises:
         ScenarioError: The model is not consistent, or names something that does not exist.
     """
-    if entry.agent not in snapshot.agents:
-        known = ", ".join(snapshot.agents)
-        raise document.fault(
-            (*path, "agent"), f"there is no agent {entry.agent!r}; agents are {known}"
-        )
-    for name, goal in entry.goals.items():
-        if goal.at is not None:
-            check_inside(document, (*path, "goals", name, "at"), goal.at, snapshot.box)
+    _check(document, path, entry, snapshot)
     doubt = None
     if entry.doubt is not None:
         doubt = {
@@ -109,43 +123,47 @@ def build_inferring(
         }
     utilities = _utilities(document, (*path, "utilities"), entry)
     _check_count(document, path, entry)
-    credences: Any = entry.credences
-    if isinstance(credences, GridEntry):
-        with document.naming((*path, "credences")):
-            credences = simplex_grid(
-                1 if doubt is None else len(doubt), credences.grid, credences.smoothing
-            )
-    if entry.until is not None and entry.until < entry.since:
-        raise document.fault((*path, "until"), f"{entry.until} is before since, {entry.since}")
+    read = {
+        "goals": {
+            name: {key: value for key, value in asdict(goal).items() if value is not None}
+            for name, goal in entry.goals.items()
+        },
+        "utilities": utilities,
+        "doubt": doubt,
+        "credences": _credences(document, (*path, "credences"), entry),
+    }
+    plain = {
+        field.name: getattr(entry, field.name)
+        for field in fields(MindModel)
+        if field.init and field.name not in read
+    }
     with document.naming(path):
-        model = MindModel(
-            agent=entry.agent,
-            goals={
-                name: {
-                    key: value
-                    for key in ("at", "block", "item")
-                    if (value := getattr(goal, key)) is not None
-                }
-                for name, goal in entry.goals.items()
-            },
-            utilities=utilities,
-            doubt=doubt,
-            credences=credences,
-            actual=entry.actual,
-            prior=entry.prior,
-            rationality=entry.rationality,
-            discount=entry.discount,
-            step_cost=entry.step_cost,
-            stay_cost=entry.stay_cost,
-            act_cost=entry.act_cost,
-            diagonal=entry.diagonal,
-            step_ticks=entry.step_ticks,
-            stays=entry.stays,
-            lapse=entry.lapse,
-        )
+        model = MindModel(**read, **plain)
     return Inferring(
         model, entry.since, entry.until, entry.ended, entry.smooth, document.where(path)
     )
+
+
+def _check(document: Document, path: KeyPath, entry: InferEntry, snapshot: Snapshot) -> None:
+    """Refuse what is not in the scene, and an empty span of ticks."""
+    if entry.agent not in snapshot.agents:
+        known = ", ".join(snapshot.agents)
+        raise document.fault(
+            (*path, "agent"), f"there is no agent {entry.agent!r}; agents are {known}"
+        )
+    for name, goal in entry.goals.items():
+        if goal.at is not None:
+            check_inside(document, (*path, "goals", name, "at"), goal.at, snapshot.box)
+    if entry.until is not None and entry.until < entry.since:
+        raise document.fault((*path, "until"), f"{entry.until} is before since, {entry.since}")
+
+
+def _credences(document: Document, path: KeyPath, entry: InferEntry) -> Any:
+    given = entry.credences
+    if not isinstance(given, GridEntry):
+        return given
+    with document.naming(path):
+        return simplex_grid(len(entry.doubt or {}) or 1, given.grid, given.smoothing)
 
 
 def _utilities(document: Document, path: KeyPath, entry: InferEntry) -> Any:

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 
 from beliefnest.belief.view import State
-from beliefnest.errors import InputError, PathError, ScenarioError, TickError
 from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_program
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.nest.face.nest import Nest
@@ -107,17 +106,7 @@ def run_probe(
 
 def _infer(nest: Nest, probe: Probe, infer: Inferring) -> ProbeOutcome:
     """Infer what an agent wants and believes, and hold that against what was expected."""
-    try:
-        inference = nest[probe.path].infer(
-            infer.model,
-            since=infer.since,
-            until=infer.until,
-            ended=infer.ended,
-            smooth=infer.smooth,
-        )
-    except (InputError, PathError, TickError) as error:
-        raise ScenarioError(f"{infer.where}: {error}") from None
-    inferred = Inferred.of(inference)
+    inferred = Inferred.of(infer.inference(nest[probe.path]))
     verdicts = tuple(
         each.judge(inferred.means, inferred.impossible)
         for each in probe.expect

@@ -4,10 +4,13 @@ from pathlib import Path
 
 import pytest
 from tests.minds.lanes import lane, walk
+from tests.scenarios.test_inferring import FILE, played_in
 from tests.viewer.page.test_page import assert_accessible, assert_clean
 from tests.viewer.page.test_rounds import texts
 
 import beliefnest as bn
+from beliefnest.cli.page import about_run
+from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.page.posteriors import told_inference
 from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, opened_browser
 
@@ -75,6 +78,30 @@ def test_a_click_on_a_moment_shows_what_changed(
         browser.until(lambda: not texts(browser, ".heat"))
         assert_accessible(browser)
         assert_clean(browser, file.as_uri())
+
+
+def test_the_page_of_a_run_has_the_inferences_of_its_probes(tmp_path: Path) -> None:
+    (tmp_path / "lane.yaml").write_text(FILE)
+    scenario, file = bn.Scenario.load(str(tmp_path / "lane.yaml")), tmp_path / "run.bn"
+    with bn.Nest.open(scenario, "scripted", file) as nest:
+        expected = played_in(nest, scenario).probes[0].inferred
+    with bn.Nest.read(file) as run, SqliteJournal.read(file) as journal:
+        (told,) = about_run(journal, run).inferences()
+    assert expected is not None
+    assert told["title"] == "wish, by /bob"
+    means = {name: values[-1] for name, _, values in told["panels"][0]["series"]}
+    assert means == {
+        name: round(expected.means[f"utility.{name}"], 4) for name in ("left", "right")
+    }
+
+
+def test_a_run_that_lacks_the_ticks_of_a_probe_has_a_page_without_it(tmp_path: Path) -> None:
+    (tmp_path / "lane.yaml").write_text(FILE.replace("{grid: 2}", "{grid: 2}\n      since: 3"))
+    scenario, file = bn.Scenario.load(str(tmp_path / "lane.yaml")), tmp_path / "run.bn"
+    with bn.Nest.open(scenario, "scripted", file):
+        pass
+    with bn.Nest.read(file) as run, SqliteJournal.read(file) as journal:
+        assert about_run(journal, run).inferences() == []
 
 
 def test_a_page_without_inference_has_none(court: tuple[bn.Nest, bn.Inference]) -> None:

@@ -46,10 +46,12 @@ class PageView:
             InputError: The depth is not from 0 to 4, or the page was not built with the package.
         """
         setting = self.reader.setting
-        told = None if self.inference is None else told_inference(self.inference, self.steps)
-        about = About(self._title, labels=setting.labels, episode=self.episode, inference=told)
+        told = [] if self.inference is None else [told_inference(self.inference, self.steps)]
+        about = About(
+            self._title, labels=setting.labels, episode=self.episode, inferences=lambda: told
+        )
         # Predictions are drawn on the plan.
-        first = None if told is None else {"view": "plan"}
+        first = {"view": "plan"} if told else None
         return still_page([(self.reader, about)], self.depth, first)
 
     @property

@@ -40,6 +40,7 @@ class About:
             never come true, tick or None), `reached`, `violated` (ticks or None) and `parts`
             (`round`, `t`, `end`, `agents` with `agent`, `program`, `goes_on`, `fault`, `ended`,
             `message`, `reason`).
+        inferences: Function that returns the posteriors to show, as `told_inference` does.
     """
 
     title: str
@@ -48,7 +49,7 @@ class About:
     labels: Mapping[Position, str] = field(default_factory=dict)
     paths: tuple[BeliefPath, ...] = ()
     episode: Callable[[], Mapping[str, Any] | None] = field(default=lambda: None)
-    inference: Mapping[str, Any] | None = None
+    inferences: Callable[[], Sequence[Mapping[str, Any]]] = field(default=tuple)
 
 
 @dataclass
@@ -141,7 +142,7 @@ class RunData:
             "box": {"low": box.low, "shape": box.shape},
             "labels": [[*place, label] for place, label in sorted(about.labels.items())],
             "asked": [path_text(path) for path in about.paths],
-            "inference": about.inference,
+            "inferences": about.inferences(),
         }
 
     def _begin(self, info: TimelineInfo) -> _Line:

@@ -7,30 +7,46 @@ const HIGH = 44
 const DASHES = ['', '5 3', '2 2', '8 3']
 const HEAT = '#4a1486'
 
+/** Section with all posteriors of a run. */
 export class Posterior {
   constructor (choose) {
     this.choose = choose
-    this.about = element('p', { class: 'about' })
-    this.panels = element('div', {})
-    this.changes = element('ul', { class: 'changes', 'aria-label': 'what changed at this tick', 'aria-live': 'polite' })
-    this.heat = element('p', { class: 'about' })
-    this.element = element('section', { class: 'posterior', 'aria-label': 'inference', role: 'region', tabindex: '0', hidden: true }, element('h2', {}, 'Inferred'), this.about, this.changes, this.panels, this.heat)
-    this.shown = null
+    this.element = element('section', { class: 'posterior', 'aria-label': 'inference', role: 'region', tabindex: '0', hidden: true })
+    this.views = []
+    this.run = null
   }
 
   draw ({ run, timeline, tick }) {
-    const told = run.head.inference
-    this.element.hidden = !told || timeline.number !== 0
-    if (this.element.hidden) return
-    const version = `${run.number} ${tick}`
-    if (version === this.shown) return
-    this.shown = version
+    if (this.run !== run.number) {
+      this.run = run.number
+      this.views = run.head.inferences.map((told, number) => new PosteriorView(told, number === 0, this.choose))
+      refill(this.element, element('h2', {}, 'Inferred'), ...this.views.map(view => view.element))
+    }
+    this.element.hidden = this.views.length === 0 || timeline.number !== 0
+    if (!this.element.hidden) this.views.forEach(view => view.draw(tick))
+  }
+}
+
+/** One posterior; the plan is tinted by the first one of a run. */
+class PosteriorView {
+  constructor (told, isTinted, choose) {
+    Object.assign(this, { told, isTinted, choose })
+    this.about = element('p', { class: 'about' })
+    this.panels = element('div', {})
+    this.changes = element('ul', { class: 'changes', 'aria-label': 'what changed at this tick', 'aria-live': 'polite' })
+    this.element = element('div', {}, ...told.title ? [element('p', { class: 'title' }, element('strong', {}, told.title))] : [], this.about, this.changes, this.panels)
+    this.shown = null
+  }
+
+  draw (tick) {
+    if (tick === this.shown) return
+    this.shown = tick
+    const { told } = this
     const number = latest(told.ticks, tick)
-    refill(this.about, `What ${told.agent} wants and believes, by what happened up to tick ${tick}.`)
+    refill(this.about, `Goals and beliefs of ${told.agent}, inferred from what happened up to tick ${tick}.${this.isTinted ? ` The tint on the plan shows where ${told.agent} will be after ${told.steps} ${told.steps === 1 ? 'action' : 'actions'}.` : ''}`)
     refill(this.changes, ...told.changes.filter(([t]) => t === tick).map(([, text, factors]) => element('li', {},
       `${told.agent} ${text}: `, element('strong', {}, factors.length ? factors.slice(0, 4).map(([name, bits]) => `${name} ${bits.toFixed(2)} bits`).join(', ') : 'changes nothing'))))
     refill(this.panels, ...told.panels.map(panel => this.panel(told, panel, number, tick)))
-    refill(this.heat, `The tint on the plan shows where ${told.agent} will be after ${told.steps} ${told.steps === 1 ? 'action' : 'actions'}.`)
   }
 
   panel (told, panel, number, tick) {
@@ -88,7 +104,7 @@ function latest (ticks, tick) {
 
 /** Return squares on a plan, tinted by the root of the probability that the agent will be there. */
 export function heatOf ({ run, timeline, tick }, at, size) {
-  const told = timeline.number === 0 ? run.head.inference : null
+  const told = timeline.number === 0 ? run.head.inferences[0] : null
   const rows = told ? told.heats[latest(told.heats.map(([t]) => t), tick)]?.[1] ?? [] : []
   return rows.map(([x, z, share]) => {
     const [left, top] = at(x, z)
