@@ -1,9 +1,9 @@
-"""Alternatives as worlds: forks of one simulator, and what an eye tells of them apart.
+"""Alternatives as worlds: forks of one simulator, and the views that distinguish them.
 
-A percept is all that semantics, section 3, says of a look: blocks that are seen, agents and dropped
-items, contents where these are transparent, and what is absent. Two alternatives are alike from a
-place if the percept is the same in both. They differ in few elements, so that only what these can
-change is looked at: the elements, and what lies behind a block whose shape is in doubt.
+A percept contains everything that sight gives by semantics, section 3: visible blocks, agents and
+dropped items, transparent contents, and the absence of such things. Two alternatives are alike from
+a place if both give the same percept there. They differ in few elements, so the code compares only
+the doubted elements and the cells behind blocks whose shapes are in doubt.
 """
 
 import math
@@ -33,7 +33,7 @@ class World:
 
     Attributes:
         blocks: Block states, -1 unknown.
-        contents: What containers hold, as far as it is known.
+        contents: Known contents of containers.
         agents: Feet, yaw and pitch of agents whose pose is known.
     """
 
@@ -43,7 +43,7 @@ class World:
 
 
 def middle_of(cell: Position) -> Point:
-    """Feet of an agent that stands in the middle of a cell."""
+    """Return the feet of an agent in the middle of a cell."""
     return (cell[0] + 0.5, float(cell[1]), cell[2] + 0.5)
 
 
@@ -56,12 +56,12 @@ class Worlds:
     """All alternatives of a doubt at one moment.
 
     Args:
-        sight: How agents see.
+        sight: Rules of sight.
         box: The part of space.
-        worlds: The alternatives; where blocks are equal the same grid.
+        worlds: The alternatives; those with equal blocks share a grid.
         items: Dropped items.
         agent: The agent that looks.
-        transparent: Whether contents are perceived with the container's block.
+        transparent: True if agents that see a container perceive its contents.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Worlds:
 
     @cached_property
     def has_one_view(self) -> bool:
-        """Return whether all alternatives let the same lines of sight through."""
+        """Return True if lines of sight are the same in all alternatives."""
         return len({id(each) for each in self._geometry_of}) == 1
 
     @cached_property
@@ -150,17 +150,17 @@ class Worlds:
 
     @property
     def can_differ(self) -> bool:
-        """Return whether any look can tell alternatives apart."""
+        """Return True if some view can distinguish alternatives."""
         return bool(len(self._doubted) or self._doubted_contents or self._doubted_agents)
 
     def alike(self, feet: Point, yaw: float, pitch: float, *, all_round: bool) -> list[int]:
-        """Return by alternative those with the same percept from a pose, itself included.
+        """Return, for each alternative, the set of those with the same percept from a pose.
 
         Args:
-            feet: Where the agent stands.
+            feet: Position of the feet.
             yaw: Radians.
             pitch: Radians.
-            all_round: Whether it looks in all directions, whatever the field of view is.
+            all_round: True: ignore the field of view and look in all directions.
         """
         count = len(self.worlds)
         everyone = (1 << count) - 1
@@ -182,7 +182,7 @@ class Worlds:
         return _masks(percepts)
 
     def _alike_by_blocks(self, look: Pose, all_round: bool) -> list[int]:
-        """Return what `alike` does if only blocks differ, and none of them hides more."""
+        """Return the result of `alike` if only blocks differ, and all of them hide the same."""
         plain = self._geometry_of[0]
         seeing = self._round[id(plain)] if all_round else plain
         seen = seeing.sees_blocks(*look, self._doubted + np.array(self.box.low))
@@ -200,7 +200,7 @@ class Worlds:
     def _percepts(
         self, look: Pose, cells: npt.NDArray[np.int64], which: Sequence[int], all_round: bool
     ) -> list[object]:
-        """List what is perceived of cells, agents and items in some alternatives."""
+        """Return the percepts of cells, agents and items in some alternatives."""
         seen: dict[int, npt.NDArray[np.bool_]] = {}
         percepts: list[object] = []
         for number in which:

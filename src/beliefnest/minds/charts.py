@@ -113,7 +113,7 @@ def bars_of(inference: Posterior, tick: int | None) -> BarChart:
 
 
 def heat_of(inference: Posterior, steps: int, tick: int | None) -> dict[tuple[int, int], float]:
-    """Return by column where the agent will be after some actions, by the posterior at a tick."""
+    """Return the probability of each column after some actions, by the posterior at a tick."""
     heat: dict[tuple[int, int], float] = {}
     for (x, _, z), share in inference.predict(steps, tick)[-1].items():
         heat[x, z] = heat.get((x, z), 0.0) + share
@@ -157,7 +157,7 @@ def _panel(inference: Posterior, name: str) -> PosteriorPanel:
 
 
 def _notes(inference: Posterior) -> list[NotedAct]:
-    """Return the actions that told most, and the one that nothing explains."""
+    """Return the most informative actions, and the impossible one, if any."""
     told = [
         (max(bits.values()), change)
         for change in inference.explain()

@@ -18,17 +18,17 @@ class Moment:
     Attributes:
         tick: The tick.
         scene: The node in all alternatives, after the tick.
-        cell: Where the agent is; None: it is out of sight.
-        alike: By alternative, those with the same percept of the agent from where it is; empty
-            where it is out of sight.
-        claims: The alternatives in which each claim is true that the agent took up.
-        learnt: For each container in doubt that the agent used, by alternative those with the same
-            content.
-        opened: The container in doubt that the agent opened.
+        cell: Cell of the agent; None: it is out of sight.
+        alike: For each alternative, the set of alternatives that give the agent the same percept
+            from its place; empty if it is out of sight.
+        claims: For each claim that the agent took up, the alternatives in which it is true.
+        learnt: For each doubted container that the agent used, and for each alternative, the set
+            of alternatives with the same contents.
+        opened: The doubted container that the agent opened; None: none.
         act: Number of the goal that it acted on.
-        deed: Whether it did something else.
-        agrees: The alternatives that agree with what the node holds.
-        watch: Pose of the observer; None: it is not present, or is nobody.
+        deed: True if it did something else.
+        agrees: The alternatives that agree with the node.
+        watch: Pose of the observer; None: it is not present, or the node is reality.
     """
 
     tick: int

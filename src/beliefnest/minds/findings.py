@@ -14,9 +14,9 @@ class Impossible:
     """The first piece of evidence that no hypothesis explains.
 
     Attributes:
-        tick: When.
-        text: What the agent did, with the cells.
-        why: Why that is impossible.
+        tick: Tick of the evidence.
+        text: Action of the agent in words, with cells.
+        why: The reason.
     """
 
     tick: int
@@ -33,7 +33,7 @@ class SampledPath:
 
     Attributes:
         hypothesis: Values of the factors that explain it, with their probability.
-        cells: By tick where the agent is.
+        cells: Cell of the agent by tick.
     """
 
     hypothesis: Mapping[str, Any]
@@ -45,13 +45,13 @@ class Change:
     """Effect of one piece of evidence on the marginals.
 
     Attributes:
-        tick: When.
+        tick: Tick of the evidence.
         text: The evidence in words.
         bits: By factor, the divergence of its marginal after the step from that before
             (Kullback and Leibler), in bits.
-        is_action: Whether it is something that the agent did: it moved, stayed, opened a container
-            or acted on a goal, in sight or not. False: it only perceived something.
-        is_movement: Whether the agent was seen to change its cell.
+        is_action: True if the agent acted: it moved, stayed, opened a container or acted on a goal,
+            in sight or not. False: it only perceived something.
+        is_movement: True if the agent was seen to change its cell.
     """
 
     tick: int

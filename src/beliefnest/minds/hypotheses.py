@@ -1,6 +1,6 @@
-"""Hypotheses that are worked on together, and weights of states being added up.
+"""Groups of hypotheses that are processed together, and sums of weights by state.
 
-Weights are logarithms of probabilities; -inf stands for what is impossible alone.
+Weights are logarithms of probabilities; -inf means impossible.
 """
 
 from collections.abc import Iterable, Mapping
@@ -30,7 +30,7 @@ __all__ = [
 Floats = npt.NDArray[np.float64]
 
 State = tuple[Position, int, int, bool]
-"""A cell, the knowledge (possible, believed), and whether the course has ended."""
+"""Cell, knowledge (possible, believed), and True if the course has ended."""
 
 States = tuple[Mapping[State, Floats], ...]
 """By actual alternative and state, log weights (rationalities, utilities, credences)."""
@@ -38,7 +38,7 @@ States = tuple[Mapping[State, Floats], ...]
 
 @dataclass(frozen=True, eq=False)
 class Hypotheses:
-    """The part of a model's hypotheses that is worked on at once.
+    """Part of a model's hypotheses that is processed at once.
 
     Attributes:
         rules: Costs and discount.
@@ -47,7 +47,7 @@ class Hypotheses:
         credences: float64 (credences, alternatives).
         rationalities: Inverse temperatures.
         step_ticks: Ticks without movement that are a stay.
-        stays: Whether these are evidence.
+        stays: True if stays are evidence.
     """
 
     rules: PlanRules
@@ -102,7 +102,7 @@ class Hypotheses:
         """Log probabilities (actions, rationalities, utilities, credences or 1) in a state."""
         q = self.planner(stage).q(stage.index[cell], knowledge)
         betas = np.array(self.rationalities)[:, None, None]
-        # An action that there is not has no probability, however irrational the agent is.
+        # An unavailable action has probability 0, even for an irrational agent.
         there = np.logical_or.reduce(np.isfinite(q), axis=(1, 2))
         scaled = np.where(there[:, None, None], q, 0.0)[:, None] * betas
         scaled[~there] = -np.inf
@@ -111,7 +111,7 @@ class Hypotheses:
 
 
 def log_sum(parts: Floats) -> Floats:
-    """Log of the sum of exponentials along the first axis; -inf where all are."""
+    """Log of the sum of exponentials along the first axis; -inf if all are -inf."""
     top = parts.max(axis=0)
     safe = np.where(np.isfinite(top), top, 0.0)
     with np.errstate(divide="ignore"):
@@ -129,7 +129,7 @@ Action = tuple[Stage, Position, Knowledge, tuple[int, ...]]
 """A stage, a cell, a knowledge, and the numbers of actions."""
 
 Edge = tuple[State, State, Action | None]
-"""A state, the one that it becomes, and by which actions; None: by none."""
+"""State, next state, and the actions between them; None: no action."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,9 +137,9 @@ class Layer:
     """Transitions of states in one part of a tick, kept for looking back.
 
     Attributes:
-        tick: When.
-        edges: From which state to which.
-        before: The weights before.
+        tick: Tick of the transitions.
+        edges: The transitions.
+        before: Weights of the states before them.
     """
 
     tick: int
@@ -148,7 +148,7 @@ class Layer:
 
 
 class Sums:
-    """Weights being added up by state; edges are listed where a layer is kept."""
+    """Sums of weights by state. If a layer is kept, the edges are listed in it."""
 
     def __init__(self, layer: Layer | None = None) -> None:
         self._parts: dict[State, list[Floats]] = {}
@@ -177,12 +177,12 @@ class Sums:
 
 
 def conditioned(knowledge: Knowledge, mask: int) -> Knowledge:
-    """Knowledge after a percept that a set of alternatives agrees with; it overrides claims."""
+    """Return the knowledge after a percept that allows some alternatives; it overrides claims."""
     possible = knowledge[0] & mask
     return possible, knowledge[1] & mask or possible
 
 
 def told(knowledge: Knowledge, mask: int) -> Knowledge:
-    """Knowledge after a claim was taken up that is true in a set of alternatives."""
+    """Return the knowledge after a believed claim that is true in some alternatives."""
     possible, believed = knowledge
     return possible, believed & mask or possible & mask or believed

@@ -1,4 +1,4 @@
-"""Looking back: where an agent was while it was out of sight, given what was seen later.
+"""Smoothing: the places of an agent while it was out of sight, given later evidence.
 
 Works on the layers that a `Tracker` keeps (forward filtering, backward smoothing and sampling).
 """
@@ -19,7 +19,7 @@ Floats = npt.NDArray[np.float64]
 
 
 def smoothed_steps(tracker: Tracker) -> list[Step]:
-    """Return the steps of a filter, with the states of each given all evidence."""
+    """Return the steps of a filter, with their states conditioned on all evidence."""
     by_actual = [_smoothed(tracker, actual, layers) for actual, layers in enumerate(tracker.trail)]
     count = len(tracker.hypotheses.credences)
     found = []
@@ -40,13 +40,13 @@ def smoothed_steps(tracker: Tracker) -> list[Step]:
 def sampled_cells(
     tracker: Tracker, actual: int, hypothesis: tuple[int, int, int], random: np.random.Generator
 ) -> dict[int, Position]:
-    """Draw where the agent was at each tick with an action, given all evidence.
+    """Draw the cell of the agent at each tick with an action, given all evidence.
 
     Args:
         tracker: A filter with layers.
-        actual: What is the case.
+        actual: Number of the actual alternative.
         hypothesis: Numbers of rationality, utility and credence.
-        random: Where chance comes from.
+        random: Random generator.
 
     Returns:
         Cell by tick, from the first tick of the course.
@@ -76,7 +76,7 @@ def sampled_cells(
 def _smoothed(
     tracker: Tracker, actual: int, layers: Sequence[Layer]
 ) -> list[Mapping[State, Floats]]:
-    """Joint weights of states and all evidence, before each layer and after the last."""
+    """Return joint weights of states and all evidence, before each layer and after the last."""
     last = tracker.states[actual]
     ahead: dict[State, Floats] = {state: np.zeros_like(weight) for state, weight in last.items()}
     found: list[Mapping[State, Floats]] = [last]

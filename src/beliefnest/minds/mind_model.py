@@ -51,7 +51,7 @@ class Goal:
 
 @dataclass(frozen=True, eq=False)
 class Alternative:
-    """One way a world could be: the elements it sets.
+    """Possible version of a world: the elements that it sets.
 
     Attributes:
         name: Its name in the doubt.
@@ -67,7 +67,7 @@ class Alternative:
 
     @property
     def elements(self) -> frozenset[tuple[str, object]]:
-        """Elements that it sets, without the values."""
+        """The elements that it sets, without their values."""
         return frozenset(
             (kind, key)
             for kind, edits in (
@@ -131,11 +131,11 @@ class MindModel:
         step_cost: Cost of a step.
         stay_cost: Cost of staying.
         act_cost: Cost of acting on a goal and of opening a container.
-        diagonal: Whether steps also lead to the four diagonal neighbours.
+        diagonal: True if steps also lead to the four diagonal neighbours.
         step_ticks: Ticks without movement that are one stay; None: 1 in the scripted world, 5 in
             Minecraft.
-        stays: Whether ticks without movement are evidence.
-        lapse: Factor that is left of a contradicted alternative in reported credences.
+        stays: True if ticks without movement are evidence.
+        lapse: Share of its probability that a contradicted alternative keeps in reported credences.
 
     Raises:
         InputError: A value is out of range or of the wrong shape, or names do not fit together.
@@ -162,7 +162,7 @@ class MindModel:
     utility_rows: Floats = field(init=False, repr=False)
     """float64 (utilities, goals)."""
     alternatives: tuple[Alternative, ...] = field(init=False, repr=False)
-    """One without edits and an empty name where there is no doubt."""
+    """Without a doubt: one alternative without edits and with an empty name."""
     credence_rows: Floats = field(init=False, repr=False)
     """float64 (credences, alternatives)."""
     prior_weights: Floats = field(init=False, repr=False)
@@ -186,7 +186,7 @@ class MindModel:
 
     @property
     def alternative_names(self) -> tuple[str, ...]:
-        """Names of the alternatives in order; one empty name where there is no doubt."""
+        """Names of the alternatives in order; one empty name without a doubt."""
         return tuple(each.name for each in self.alternatives)
 
     @property
@@ -249,7 +249,7 @@ class MindModel:
 
 
 def credence_row(initial: npt.ArrayLike | None, names: Sequence[str]) -> Floats:
-    """Return one initial credence over alternatives, checked; None: the uniform one."""
+    """Check and return one initial credence over alternatives; None: the uniform one."""
     if initial is None:
         return np.full(len(names), 1 / len(names))
     row: Floats = _credence_rows([initial], names, True)[0]
@@ -257,7 +257,7 @@ def credence_row(initial: npt.ArrayLike | None, names: Sequence[str]) -> Floats:
 
 
 def read_doubt(doubt: Mapping[str, Mapping[str, Any]] | None) -> tuple[Alternative, ...]:
-    """Return the alternatives of a doubt, checked; one without edits for None.
+    """Check and return the alternatives of a doubt; None: one without edits.
 
     Raises:
         InputError: They do not set the same elements, two are equal, or an edit is malformed.

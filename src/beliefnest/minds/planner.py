@@ -1,10 +1,10 @@
-"""The planner: exact values of cells and knowledge, for many hypotheses at once.
+"""Planner: exact values of cells and knowledge, for many hypotheses at once.
 
-A state is a cell and a knowledge: the alternatives that are possible by percepts, and those of
-them that claims allow, which are believed. Knowledge only shrinks, so that values are computed
-set by set, smaller sets first, each by value iteration over the cells at which nothing more is
-perceived; from any other cell the next percept leads to a smaller set. What is certain has one
-value for all credences.
+A state is a cell and a knowledge. A knowledge consists of the alternatives that percepts leave
+possible, and those of them that claims allow (the believed ones). Percepts only remove
+alternatives, so the planner solves smaller sets first. For each set it uses value iteration over
+the cells at which the agent perceives nothing new; from all other cells the next percept leads to
+a smaller set. If only one alternative is believed, values do not depend on the credence.
 """
 
 import hashlib
@@ -23,12 +23,12 @@ __all__ = ["Knowledge", "PlanRules", "Planner", "count_values", "planner_for"]
 Floats = npt.NDArray[np.float64]
 
 Knowledge = tuple[int, int]
-"""Alternatives that are possible by percepts, and those that are believed: a part of them."""
+"""Alternatives that percepts leave possible, and the believed ones among them, as bits."""
 
 _MOST_COUNTED = 4096
 
 _ROOM = 256 * 2**20
-"""Bytes of values that all planners keep together."""
+"""Limit of the values of all planners together, in bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +43,11 @@ class PlanRules:
 
 @dataclass(frozen=True, eq=False)
 class _Values:
-    """Values of one knowledge, once for hypotheses that do not differ in it.
+    """Values of one knowledge, stored once for all hypotheses with equal values.
 
     Attributes:
-        rows: By cell its row in the table, or -1.
-        kinds: Which hypotheses share values.
+        rows: Row of each cell in the table, or -1.
+        kinds: Groups of hypotheses with equal values.
         table: float64 (rows, kinds of utilities, kinds of credences).
     """
 
@@ -56,7 +56,7 @@ class _Values:
     table: Floats
 
     def at(self, cells: npt.NDArray[np.int64], kinds: "_Kinds") -> Floats:
-        """Return values in some cells: (cells, utilities, credences) of some kinds."""
+        """Return values of some cells for some kinds: (cells, utilities, credences)."""
         mine = self.kinds
         utility, credence = mine.of_utility[kinds.utilities], mine.of_credence[kinds.credences]
         found: Floats = self.table[self.rows[cells]][:, utility][:, :, credence]
@@ -67,15 +67,15 @@ class _Values:
 class _Kinds:
     """Hypotheses that have the same values with one knowledge.
 
-    The utility of a goal that is nowhere in what is believed plays no part, and credences count
-    only by what they are on it.
+    The utility of a goal has no effect if no believed alternative contains the goal. Credences
+    count only on the believed alternatives.
 
     Attributes:
         utilities: One row of the utilities for each kind.
         of_utility: The kind of each row.
         credences: One row of the credences for each kind.
         of_credence: The kind of each row.
-        weights: float64 (members of what is believed, kinds of credences).
+        weights: float64 (believed alternatives, kinds of credences).
     """
 
     utilities: npt.NDArray[np.int64]
@@ -103,11 +103,11 @@ class Planner:
 
     @property
     def size(self) -> int:
-        """Bytes that its values take."""
+        """Size of its values in bytes."""
         return sum(each.table.nbytes for each in self._solved.values())
 
     def actions(self, cell: int, knowledge: Knowledge) -> npt.NDArray[np.bool_]:
-        """Return which actions are available: stay, steps, openings, acts on goals."""
+        """Return a mask of the available actions: stay, steps, openings, acts on goals."""
         stage, possible = self.stage, knowledge[0]
         free = np.ones(1 + stage.moves.shape[2], dtype=np.bool_)
         opens = [
@@ -118,7 +118,7 @@ class Planner:
         return np.concatenate([free, np.array(opens, dtype=np.bool_), acts])
 
     def q(self, cell: int, knowledge: Knowledge) -> Floats:
-        """Q of all actions: (actions, utilities, credences or 1); -inf where there is none."""
+        """Q of all actions: (actions, utilities, credences or 1); -inf for unavailable ones."""
         stage, rules = self.stage, self.rules
         possible, believed = knowledge
         kinds = self._kinds_of(believed)
@@ -190,7 +190,7 @@ class Planner:
         members, everyone = numbers_in(believed), numbers_in(possible)
         kinds = self._kinds_of(believed)
         weights, shape = kinds.weights, kinds.shape
-        # Only where all that is possible looks the same can the agent be with this knowledge.
+        # The agent can have this knowledge only where all possible alternatives look the same.
         cells = np.flatnonzero(stage.same[everyone[0]] & possible == possible)
         rows = np.full(len(stage.cells), -1, dtype=np.int64)
         rows[cells] = np.arange(len(cells))
@@ -246,7 +246,7 @@ class Planner:
 
 
 def _distinct(rows: Floats) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-    """Return the first of each kind of equal rows, in order, and by row the number of its kind."""
+    """Return the first row of each group of equal rows, and the group number of each row."""
     kinds: dict[bytes, int] = {}
     of_row = [kinds.setdefault(row.tobytes(), len(kinds)) for row in rows]
     first = [of_row.index(kind) for kind in range(len(kinds))]
@@ -254,7 +254,7 @@ def _distinct(rows: Floats) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64
 
 
 def count_values(stage: Stage, credences: int) -> int:
-    """Return how many values a utility takes, over all sets that percepts can lead to."""
+    """Return the number of values for one utility, over all sets to which percepts lead."""
     masks = sorted({*np.unique(stage.same).tolist(), *np.unique(stage.content).tolist()})
     everyone = (1 << len(stage.moves)) - 1
     sets, waiting, total = {everyone}, [everyone], 0
@@ -270,7 +270,7 @@ def count_values(stage: Stage, credences: int) -> int:
 
 
 class _Cache:
-    """Planners by content, the oldest dropped when their values take too much room."""
+    """Planners by content, which drops the oldest ones when their values exceed the limit."""
 
     def __init__(self) -> None:
         self._planners: OrderedDict[bytes, Planner] = OrderedDict()
@@ -299,5 +299,5 @@ def _cache() -> _Cache:
 
 
 def planner_for(stage: Stage, rules: PlanRules, utilities: Floats, credences: Floats) -> Planner:
-    """Return the planner of a stage and hypotheses; equal ones are worked out once."""
+    """Return the planner of a stage and hypotheses; equal ones are computed once."""
     return _cache().planner(stage, rules, utilities, credences)

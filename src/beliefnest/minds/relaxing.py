@@ -1,8 +1,7 @@
 """Value iteration over the cells of one knowledge: compiled, in place, for many hypotheses.
 
-Only the predecessors of cells whose values rose are looked at again, in the order in which they
-rose (a label-correcting search). The fixed point is that of sweeps over all cells: what is left
-out could change nothing.
+A label-correcting search: when the values of a cell have risen, a queue collects its predecessors,
+because only their values can rise next. The fixed point is that of sweeps over all cells.
 """
 
 from collections.abc import Sequence
@@ -17,7 +16,7 @@ __all__ = ["raise_values", "relax"]
 Floats = npt.NDArray[np.float64]
 
 _WIDTH = 64
-"""Hypotheses that are worked on at a time, so that their values stay in the processor's cache."""
+"""Number of hypotheses processed at a time, so that their values fit the processor's cache."""
 
 
 def relax(
@@ -31,13 +30,13 @@ def relax(
     """Raise values to the fixed point of the Bellman equation, from below.
 
     Args:
-        values: float64 (cells, hypotheses), what is to be had without a step inside; changed.
-        steps: int32 (cells, steps), the cell that a step leads to for certain, or -1.
+        values: float64 (cells, hypotheses), best values without a step inside; changed in place.
+        steps: int32 (cells, steps), the cell to which a step certainly leads, or -1.
         mixes: Steps that keep the knowledge with a probability: the cell, the expected value
-            (hypotheses,) of what leaves the knowledge, and cells with probabilities (hypotheses,).
-        discount: Of one step.
-        step_cost: Of one step.
-        start: Value of staying for ever, the least of all: no step to a cell with it pays.
+            (hypotheses,) of leaving the knowledge, and cells with probabilities (hypotheses,).
+        discount: Discount of one step.
+        step_cost: Cost of one step.
+        start: Value of staying forever, the smallest value: no step to a cell with this value pays.
     """
     count = values.shape[1]
     starts = np.cumsum([0, *(len(within) for _, _, within in mixes)]).astype(np.int32)
@@ -58,7 +57,7 @@ def relax(
 def _predecessors(
     steps: npt.NDArray[np.int32],
 ) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
-    """Return the cells from which steps lead to each cell: where each list starts, and all."""
+    """Return the predecessors of all cells: the start of each list, and the joined lists."""
     cells = np.broadcast_to(np.arange(len(steps), dtype=np.int32)[:, None], steps.shape)
     there = (steps >= 0) & (steps != cells)
     order = np.argsort(steps[there], kind="stable")
@@ -78,7 +77,7 @@ def raise_values(
     queue: npt.NDArray[np.int32],
     waits: npt.NDArray[np.bool_],
 ) -> None:
-    """Raise values in some columns until no step raises any by more than the tolerance."""
+    """Raise values in some columns until no step improves one by more than the tolerance."""
     at = mixed[0]
     head, length = 0, 0
     for cell in range(len(values)):
@@ -132,10 +131,10 @@ def _rises(
     columns: tuple[int, int],
     rules: tuple[float, float, float],
 ) -> bool:
-    """Raise the values of a cell by a step to another; return whether any rose."""
+    """Raise the values of a cell by a step to another; return True if any rose."""
     discount, step_cost, _ = rules
     rises = 0
-    # Two loops, of which the first is often all: LLVM uses vector instructions for each.
+    # Two loops; often the first one suffices. LLVM uses vector instructions for each.
     for h in range(columns[0], columns[1]):
         rises |= int(discount * values[other, h] - step_cost > values[cell, h])
     if rises:

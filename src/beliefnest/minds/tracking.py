@@ -1,10 +1,10 @@
-"""The filter: how well each hypothesis explains what an observer perceived of an agent.
+"""Filter that tracks how well each hypothesis explains an observer's percepts of an agent.
 
-For each alternative that may be actual, and each hypothesis, a weight is kept for every state in
-which the agent may be: its cell, its knowledge, and whether its course has ended. While the agent
-is in sight there is one state or few; in a gap the weights spread as the policy says, and those of
-states in which the observer would have seen the agent, or would not, vanish. Weights are logarithms
-of probabilities of all evidence so far; -inf stands for what is impossible alone.
+A state of the agent consists of its cell, its knowledge, and a flag for the end of its course. For
+each possible actual alternative and each hypothesis, the filter keeps the weights of all possible
+states. While the agent is in sight there are one or few states. In a gap (the agent is out of
+sight) the policy spreads the weights, and states that contradict the observer's percepts vanish.
+Weights are logarithms of the probability of all evidence so far; -inf means impossible.
 """
 
 from collections.abc import Mapping, Sequence
@@ -51,16 +51,16 @@ class Step:
     """The filter after a piece of evidence.
 
     Attributes:
-        tick: When.
+        tick: Tick of the evidence.
         text: The evidence in words.
         weights: float64 (actuals, rationalities, utilities, credences), log probability of all
             evidence so far.
-        states: By actual alternative and state, the same summed with the prior over rationalities
-            and utilities: log weights (credences,).
+        states: By actual alternative and state, these weights summed with the prior over
+            rationalities and utilities: log weights (credences,).
         agrees: The alternatives that have agreed with the node until then.
-        is_action: Whether it is something that the agent did.
-        is_movement: Whether the agent was seen to change its cell.
-        why: Why no hypothesis explains it, if none does.
+        is_action: True if the agent acted; False if it only perceived something.
+        is_movement: True if the agent was seen to change its cell.
+        why: The reason if no hypothesis explains the evidence.
     """
 
     tick: int
@@ -76,15 +76,15 @@ class Step:
 
 @dataclass
 class _Gap:
-    """The agent out of sight.
+    """Period in which the agent is out of sight.
 
     Attributes:
         start: The last tick at which it was seen.
-        cell: Where it was then.
-        before: The states then.
-        moments: The moments since, and the one before.
-        marks: By actual alternative how many layers there were then.
-        count: Actions that have ended since then.
+        cell: Its cell at that tick.
+        before: The states at that tick.
+        moments: The moment of that tick, and all moments since.
+        marks: By actual alternative, the number of layers at that tick.
+        count: Number of actions that have ended since.
     """
 
     start: int
@@ -97,16 +97,16 @@ class _Gap:
 
 @dataclass
 class Tracker:
-    """A filter under way; `again` makes a copy that goes on by itself.
+    """Filter at the current moment; `again` makes an independent copy.
 
     Attributes:
-        hypotheses: What is tracked.
-        log_prior: float64 (utilities, credences), with which `Step.states` are summed.
+        hypotheses: The tracked hypotheses.
+        log_prior: float64 (utilities, credences), the prior with which `Step.states` are summed.
         states: Weights after the latest evidence.
         steps: The filter after each piece of evidence.
-        tick: The last tick that was taken into account.
-        keeps: Whether layers are kept.
-        trail: By actual alternative its layers, if they are kept.
+        tick: The last processed tick.
+        keeps: True if layers are kept.
+        trail: Layers by actual alternative, if they are kept.
     """
 
     hypotheses: Hypotheses
@@ -125,7 +125,7 @@ class Tracker:
     _claims: tuple[int, ...] = ()
 
     def again(self) -> "Tracker":
-        """Return a copy that goes on by itself."""
+        """Return an independent copy."""
         gap = self._gap
         copied = (
             None
@@ -150,7 +150,7 @@ class Tracker:
         )
 
     def follow(self, moments: Sequence[Moment], until: int) -> None:
-        """Take moments into account that follow the latest one, and quiet ticks up to one."""
+        """Process the next moments, and then quiet ticks up to a tick."""
         for moment in moments:
             if self._moment is None:
                 if moment.cell is None:
@@ -163,7 +163,7 @@ class Tracker:
         self._pass_to(until)
 
     def finished(self, until: int, *, ended: bool) -> "Tracker":
-        """Return the filter as it is at a tick, with what counts only if it is the last one."""
+        """Return the filter at the last tick, with the evidence that counts only at the end."""
         last = self.again()
         gap = last._gap
         if gap is not None and not last._over:
@@ -220,7 +220,7 @@ class Tracker:
         self._see(moment)
 
     def _fork(self, moment: Moment) -> None:
-        """Go on in a fork, in which an agent out of sight stands where it was seen last."""
+        """Continue in a fork; there an agent out of sight stands at its last seen place."""
         if self._gap is not None and moment.cell is not None:
             self.states = self._gap.before
             for layers, mark in zip(self.trail, self._gap.marks, strict=True):
@@ -267,7 +267,7 @@ class Tracker:
             self._note(moment.tick, text, why, is_action=is_action, is_movement=cell != before)
 
     def _stays_now(self) -> bool:
-        """Count a tick without movement; whether it completes a stay."""
+        """Count a tick without movement; return True if it completes a stay."""
         if not self.hypotheses.stays:
             return False
         self._quiet += 1
@@ -277,7 +277,7 @@ class Tracker:
         return True
 
     def _pass_to(self, tick: int) -> None:
-        """Let quiet ticks pass up to one: nothing changes in them."""
+        """Process quiet ticks (ticks without changes) up to a tick."""
         while self.tick < tick and not self._over and self._moment is not None:
             self.tick += 1
             if self._gap is not None:
@@ -297,7 +297,7 @@ class Tracker:
         """Advance over a change of cell: one step, or several steps in one tick."""
         stage = self._stage(before)
         if cell not in stage.index:
-            # The observer did not know until now that one can stand there.
+            # The observer did not know before that an agent can stand there.
             stage = self._stage_of(moment.scene, before, cell)
         found: list[Mapping[State, Floats]] = []
         for actual, weights in enumerate(self.states):
@@ -316,7 +316,7 @@ class Tracker:
         steps: int,
         tick: int,
     ) -> Mapping[State, Floats]:
-        """Several actions of which only the last one's end is seen."""
+        """Advance over several actions; only the end of the last one is seen."""
         for _ in range(steps - 1):
             sums = self._sums(actual, tick, weights)
             self._spread(stage, actual, weights, sums)
@@ -344,7 +344,7 @@ class Tracker:
         cell: Position,
         sums: Sums,
     ) -> None:
-        """One action without a perceived event, after which the agent is seen in a cell."""
+        """Advance over one action without an event; then the agent is seen in a cell."""
         for state, weight in weights.items():
             place, possible, believed, has_ended = state
             if has_ended or place not in stage.index:
@@ -368,7 +368,7 @@ class Tracker:
                 sums.add((cell, *knowledge, True), weight, state, policy, by)
 
     def _unmarked(self, stage: Stage, policy: Floats) -> list[int]:
-        """Acts on goals that there are, and that nobody perceives as events."""
+        """Return the available acts on goals that leave no event."""
         first = 1 + stage.moves.shape[2] + len(stage.boxes)
         return [
             first + goal
@@ -424,12 +424,12 @@ class Tracker:
     # Gaps
 
     def _due(self, tick: int) -> bool:
-        """Return whether the next action of a gap has ended at a tick."""
+        """Return True if the next action of a gap has ended at a tick."""
         assert self._gap is not None
         return tick >= self._gap.start + (self._gap.count + 1) * self.hypotheses.step_ticks
 
     def _act_unseen(self, tick: int) -> None:
-        """One action of an agent that is not seen at its end."""
+        """Advance over one action whose end is not seen."""
         assert self._gap is not None and self._moment is not None
         before = self._gap.moments[-2] if self._moment.tick == tick else self._moment
         self.states = self._unseen_action(before.scene, self._moment, self.states)
@@ -464,7 +464,7 @@ class Tracker:
     def _spread(
         self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: Sums
     ) -> None:
-        """One action of an agent out of sight."""
+        """Advance over one action of an agent out of sight."""
         steps = stage.moves.shape[2]
         for state, weight in weights.items():
             place, possible, believed, has_ended = state
@@ -505,7 +505,7 @@ class Tracker:
         return {state: weight for state, weight in weights.items() if state[0] not in visible}
 
     def _reappear(self, moment: Moment) -> None:
-        """Explain where the agent is when it is seen again."""
+        """Explain the cell in which the agent is seen again."""
         gap = self._gap
         assert gap is not None and moment.cell is not None
         self.tick = moment.tick
@@ -513,7 +513,7 @@ class Tracker:
         usual = round(ticks / self.hypotheses.step_ticks)
         last = gap.moments[-1]
         if not last.scene.can_stand(moment.cell):
-            # The observer did not know until now that one can stand there.
+            # The observer did not know before that an agent can stand there.
             last = replace(last, scene=moment.scene)
             gap.moments[-1] = last
         found: list[Mapping[State, Floats]] = []
@@ -549,7 +549,7 @@ class Tracker:
     def _again_through(
         self, gap: _Gap, actual: int, count: int, moment: Moment
     ) -> Mapping[State, Floats]:
-        """Advance over a gap, with a number of actions spread evenly over its ticks."""
+        """Advance over a gap again, with a given number of evenly spread actions."""
         assert moment.cell is not None
         weights = gap.before[actual]
         del self.trail[actual][gap.marks[actual] :]
@@ -573,7 +573,7 @@ class Tracker:
     # Percepts
 
     def _perceive(self, moment: Moment) -> bool:
-        """Let the agent in sight perceive; whether that changed what it may know."""
+        """Let the visible agent perceive; return True if its knowledge changed."""
         before = [set(weights) for weights in self.states]
         found = []
         for actual, weights in enumerate(self.states):
@@ -593,7 +593,7 @@ class Tracker:
         return before != [set(weights) for weights in self.states]
 
     def _agree(self, moment: Moment) -> None:
-        """Drop the alternatives that do not agree with what the observer's node holds."""
+        """Drop the alternatives that do not agree with the observer's node."""
         self._agrees &= moment.agrees
         self.states = tuple(
             weights if self._agrees >> actual & 1 else {}
@@ -649,7 +649,7 @@ class Tracker:
     # Records
 
     def foresee(self) -> None:
-        """Let the agent act once more, with nobody looking."""
+        """Let the agent do one more action without observation."""
         assert self._moment is not None
         found = []
         for actual, weights in enumerate(self.states):
@@ -730,9 +730,10 @@ def _last_until(moments: Sequence[Moment], tick: int) -> Moment:
 
 
 def known_after(moments: Sequence[Moment], alternatives: int) -> list[Knowledge]:
-    """Return by actual alternative what an agent knows after moments, from its percepts alone.
+    """Return an agent's knowledge by actual alternative, from its percepts at some moments.
 
-    While it is out of the observer's sight it is credited with no percepts (semantics, section 5).
+    While the agent is out of the observer's sight, it is credited with no percepts (semantics,
+    section 5).
     """
     everyone = (1 << alternatives) - 1
     found = []

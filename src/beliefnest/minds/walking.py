@@ -24,13 +24,13 @@ _MOST_POLICIES = 512
 
 @dataclass(frozen=True, slots=True)
 class Draw:
-    """One hypothesis that was drawn, by numbers.
+    """Drawn hypothesis, as indices.
 
     Attributes:
         rationality: Number of the rationality.
         utility: Row of the utilities.
         credence: Row of the initial credences.
-        actual: Number of the alternative that is the case.
+        actual: Number of the actual alternative.
     """
 
     rationality: int
@@ -41,11 +41,11 @@ class Draw:
 
 @dataclass(frozen=True, slots=True)
 class Changes:
-    """Changes of a history since it began.
+    """Changes in a history since its start.
 
     Attributes:
         blocks: Indices into the grid with the new block states.
-        moved: Container, item and the number that came in since then.
+        moved: Container, item, and the change of the item's count since then.
     """
 
     blocks: tuple[tuple[tuple[int, int, int], int], ...] = ()
@@ -54,7 +54,7 @@ class Changes:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step into a cell; the own cell: the agent stays, or bumps into something."""
+    """Step into a cell. Into its own cell: the agent stays or is blocked."""
 
     cell: Position
 
@@ -68,21 +68,21 @@ class Open:
 
 @dataclass(frozen=True, slots=True)
 class Act:
-    """An act on a goal, which ends the course; the item that it takes, if it does."""
+    """Act on a goal, which ends the course, and the item that it takes, if any."""
 
     item: str | None
 
 
 class Strategy:
-    """Choices of the agent of a model, for all hypotheses and all changes.
+    """Policy of a model's agent, for all hypotheses and all changes of its world.
 
     Args:
         model: The hypotheses.
-        scene: All alternatives where histories begin.
+        scene: All alternatives at the start of the histories.
         agrees: The alternatives that agree with the observer's node, as a set of bits.
         step_ticks: Ticks that an action takes.
-        sight: How agents see.
-        transparent: Whether contents are perceived with the container's block.
+        sight: Rules of sight.
+        transparent: True if agents that see a container perceive its contents.
     """
 
     def __init__(
@@ -110,7 +110,7 @@ class Strategy:
         self._looks: dict[tuple[int, Pose], list[int]] = {}
 
     def draw_actual(self, chance: Random) -> int:
-        """Draw the number of the alternative that is the case."""
+        """Draw the number of the actual alternative."""
         return chance.choices(range(len(self._actual)), self._actual)[0]
 
     def draw(self, chance: Random, actual: int) -> Draw:

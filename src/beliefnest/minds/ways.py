@@ -1,8 +1,8 @@
 """Cells in which an agent can stand, and the steps between them, in all alternatives of a doubt.
 
-A cell is walkable if it and the cell above are free and a known block below holds. What is above
-the box is air; what is unknown is free but holds nobody. Doors and gates that open by hand are
-free, shut or not. Steps lead to a neighbour that is at most one higher or lower.
+A cell is walkable if it and the cell above are free and a known block below holds. Above
+the box is air. Unknown cells are free but give no floor. Doors and gates that open by hand are
+free, shut or open. Steps lead to a neighbour that is at most one higher or lower.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ Flags = npt.NDArray[np.bool_]
 
 
 def walkable(registry: Registry, blocks: BlockGrid) -> Flags:
-    """Return in which cells of a grid an agent can stand."""
+    """Return a mask of the cells of a grid in which an agent can stand."""
     states, places = np.unique(blocks, return_inverse=True)
     listed = [state < 0 or _lets_through(registry, state) for state in states.tolist()]
     free = np.array(listed, dtype=np.bool_)[places].reshape(blocks.shape)
@@ -42,7 +42,7 @@ def _lets_through(registry: Registry, state: int) -> bool:
 
 
 class Ways:
-    """Cells that can be got to from one, and where steps lead in each alternative.
+    """Reachable cells, and the destinations of steps in each alternative.
 
     Attributes:
         cells: The cells, in order of position.
@@ -60,13 +60,13 @@ def ways_from(
     *,
     diagonal: bool,
 ) -> Ways:
-    """Return all cells that can be got to from some, if only in one of the alternatives.
+    """Return all cells that are reachable from some cells in at least one alternative.
 
     Args:
-        box: What the walks are of.
-        walks: By alternative where an agent can stand; where that is equal the same array.
-        starts: Cells that are listed whether or not one can stand in them.
-        diagonal: Whether steps lead to diagonal neighbours too, both cells at the corner being
+        box: The part of space.
+        walks: Mask of walkable cells for each alternative; equal ones may share an array.
+        starts: The first cells; they are listed even if they are not walkable.
+        diagonal: True if steps also lead to diagonal neighbours, with both cells at the corner
             free.
     """
     anywhere = np.logical_or.reduce(walks)
@@ -107,7 +107,7 @@ def _step(
     own: npt.NDArray[np.int32],
     side: tuple[int, int],
 ) -> npt.NDArray[np.int32]:
-    """Return the number of the cell that a step to a side leads to, from each cell."""
+    """Return the number of the cell to which a step to a side leads, from each cell."""
     to = own.copy()
     for up in (-1, 1, 0):
         aside = cells + np.array([side[0], up, side[1]])
