@@ -1,7 +1,7 @@
-"""Courses with the best expected outcome, where the goals of others are not known.
+"""Courses with the best expected outcome, if the goals of others are not known.
 
-A supposition is one way things may be: a goal for each other agent, and a place for each item that
-the agent seeks and knows nowhere. `search` finds a course for each; each course is tried in all of
+A supposition assigns a goal to each other agent, and a place to each item whose place the agent
+must know and does not. `search` finds a course for each; each course is tried in all of
 them, and the one with the best expected outcome is chosen.
 """
 
@@ -30,21 +30,21 @@ GoalShares = Mapping[str, Mapping[str, float]]
 """Probability of each possible goal, by agent and name of the goal."""
 
 _LEAST = 0.02
-"""Probability below which combinations of goals are not looked at."""
+"""Probability below which combinations of goals are ignored."""
 
 _PER_DEED = 10.0
-"""Ticks by which a goal that stays open is worse for each deed that is missing."""
+"""Penalty of an open goal for each missing action, in ticks."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Supposition:
-    """One way things may be.
+    """Assumed goals of others and places of items.
 
     Attributes:
         weight: Its probability.
-        planner: Plans where all know the supposed goals.
+        planner: Planner for agents that all know the supposed goals.
         brief: The task with these goals.
-        mind: What is the case.
+        mind: World of the supposition.
     """
 
     weight: float
@@ -57,7 +57,7 @@ class Expecting:
     """Choice of a course for one round.
 
     Args:
-        view: What the agent knows.
+        view: View of the agent.
         order: Its order of Theory of Mind.
         bounds: How much it looks at.
     """

@@ -1,8 +1,8 @@
-"""Policy `infer:ORDER`: infers goals of others from their deeds, their claims and their traces.
+"""Policy `infer:ORDER`: infer goals of others from their actions, claims and traces.
 
-Deeds are explained by inverse planning (`Simulator.infer`) in what the agent takes the other to
-believe; of order 0 in its own belief. A goal that the planner cannot express, such as one about
-beliefs or about what somebody else has, keeps its prior probability whatever the other does.
+Inverse planning (`Simulator.infer`) explains actions in the agent's belief about the other's
+belief; of order 0 in the agent's own belief. A goal that the planner cannot express, such as one
+about beliefs or another agent's items, keeps its prior probability.
 """
 
 import math
@@ -39,11 +39,11 @@ _RATIONALITY = 1.0
 
 @dataclass(frozen=True)
 class Infer:
-    """Plans by trying, and infers from deeds and claims what others are after.
+    """Policy that plans by trying, and infers the goals of others from actions and claims.
 
     Attributes:
         order: Order of Theory of Mind.
-        bounds: How much it looks at.
+        bounds: Limits of the planner.
     """
 
     order: int
@@ -60,11 +60,11 @@ class Infer:
 
 
 def posterior(view: AgentView, order: int, bounds: Bounds = USUAL) -> GoalShares:
-    """Return how likely the possible goals of the others are, by all that the agent perceived.
+    """Return the probabilities of the others' possible goals, given the agent's percepts.
 
     Args:
-        view: What the agent knows.
-        order: 0: others are taken to believe what the agent believes.
+        view: View of the agent.
+        order: Order of Theory of Mind; 0: others are assumed to share the agent's belief.
         bounds: Limits of the planner that explains traces.
     """
     found = {}
@@ -82,7 +82,7 @@ def posterior(view: AgentView, order: int, bounds: Bounds = USUAL) -> GoalShares
 
 
 def _by_traces(view: AgentView, order: int, bounds: Bounds, prior: GoalShares) -> GoalShares:
-    """Return the shares of goals by what the others left behind, given those by all else."""
+    """Update the probabilities of goals by the traces that the others left."""
     combined = list(combinations(prior))
     likely = likelihoods_of_traces(view, order, bounds, [goals for _, goals in combined])
     weights = [share * each for (share, _), each in zip(combined, likely, strict=True)]
@@ -102,12 +102,12 @@ def _by_traces(view: AgentView, order: int, bounds: Bounds, prior: GoalShares) -
 
 
 def goals_of_planner(goal: Goal, agent: str, state: State) -> list[Mapping[str, object]]:
-    """Return what the planner of `MindModel` can pursue of a goal; empty: nothing.
+    """Return the parts of a goal that the planner of `MindModel` can pursue; empty: none.
 
     Args:
-        goal: What the agent may be after.
+        goal: Possible goal of the agent.
         agent: The agent.
-        state: What it is taken to believe.
+        state: Its assumed belief.
     """
     mine = state.agents[agent].inventory
     return [
@@ -130,7 +130,7 @@ def _is_somewhere(item: str, state: State) -> bool:
 
 
 def _in_reach(place: Position, state: State) -> list[Position]:
-    """Return cells on the level of a block from which a hand reaches it."""
+    """Return cells on the level of a block from which it is in reach."""
     x, y, z = place
     span = range(-math.ceil(REACH), math.ceil(REACH) + 1)
     met = InReach(place, REACH, beside=True)
@@ -145,7 +145,7 @@ def _by_deeds(
     goals: Mapping[str, Goal],
     prior: Mapping[str, float],
 ) -> Mapping[str, float]:
-    """Return the posterior by the course of another agent; the prior where it says nothing."""
+    """Return the posterior given another agent's course; the prior if that is no evidence."""
     below = (other,) if order else ()
     state = view.about(*below)
     pursued = {name: goals_of_planner(goal, other, state) for name, goal in goals.items()}
@@ -179,7 +179,7 @@ def _by_deeds(
     try:
         found = view.infer(model, *below).posterior()
     except InputError:
-        # None of the goals can be reached from where it is: its course tells nothing.
+        # It cannot reach any of the goals, so its course is no evidence.
         return prior
     shares = found.sum(axis=(0, 1, 3))
     known = sum(prior[name] for name in expressed)
@@ -188,7 +188,7 @@ def _by_deeds(
 
 
 def _judged_claims(view: AgentView, speaker: str) -> Iterator[bool]:
-    """Yield of each claim of a speaker that can be judged whether it turned out to be true."""
+    """Yield True or False for each claim of a speaker that proved true or false."""
     for tick, who, claim in view.claims:
         if who == speaker and claim.kind in (ClaimKind.LOCATED, ClaimKind.ABSENT):
             held = _was_in(view.state, str(claim.item), claim.cell, tick)
@@ -197,7 +197,7 @@ def _judged_claims(view: AgentView, speaker: str) -> Iterator[bool]:
 
 
 def _was_in(state: State, item: str, place: Position, tick: int) -> bool | None:
-    """Return whether an item was in a container at a tick; None: nobody has looked since."""
+    """Return True if an item was in a container at a tick; None: nobody has looked since."""
     for event in state.events:
         if event.tick <= tick or event.detail.get("position") != place:
             continue

@@ -1,6 +1,6 @@
-"""Inference from traces: goals of others, by what they left behind where nobody saw them.
+"""Inference of goals from traces that others left unseen.
 
-A trace is a block or a content that the agent finds changed without having perceived the change.
+A trace is a block, or contents, that the agent finds changed without having perceived the change.
 If there is one, the agent imagines what the others did since the beginning, once for each
 combination of their possible goals, with the planner of `search`. Goals that would have left the
 world as the agent found it are more probable (Jara-Ettinger and Schachner 2024).
@@ -23,7 +23,7 @@ from beliefnest.world.values import EventKind, Items, Position
 __all__ = ["likelihoods_of_traces"]
 
 _MISTAKEN = 0.1
-"""Probability that a block or a content is not as a course leaves it."""
+"""Probability that a block or contents differ from the end of the true course."""
 
 _PERCEIVED = (Source.SEEN, Source.WITNESSED)
 _CHANGES_NOTHING = (EventKind.MOVE_TO, EventKind.OPEN_CONTAINER)
@@ -41,11 +41,11 @@ class _Moment:
 def likelihoods_of_traces(
     view: AgentView, order: int, bounds: Bounds, supposed: Sequence[Mapping[str, str]]
 ) -> list[float]:
-    """Return how likely combinations of goals make what the agent found; all 1 without a trace.
+    """Return the likelihood of the found world for combinations of goals; 1 without a trace.
 
     Args:
-        view: What the agent knows.
-        order: Order of Theory of Mind; 0: others are taken to believe what the agent believes.
+        view: View of the agent.
+        order: Order of Theory of Mind; 0: others are assumed to share the agent's belief.
         bounds: Limits of the planner.
         supposed: Names of the goals of other agents, by agent.
     """
@@ -64,12 +64,12 @@ class _Found:
     """Blocks and contents as an agent found them.
 
     Args:
-        state: What the agent believes.
-        start: What it believed in the beginning.
+        state: Present belief of the agent.
+        start: Its belief at the start.
 
     Attributes:
-        first: The world as it believed it to be in the beginning.
-        now: The world as it believes it to be.
+        first: World of its belief at the start.
+        now: World of its present belief.
     """
 
     def __init__(self, state: State, start: Imagination) -> None:
@@ -84,7 +84,7 @@ class _Found:
         }
 
     def changed(self, moment: _Moment) -> set[Position]:
-        """Return the places at which a moment differs from what the agent knew at first."""
+        """Return the places at which a moment differs from the agent's first belief."""
         x, y, z = self._state.box.low
         differ = (self.first.blocks >= 0) & (moment.blocks != self.first.blocks)
         blocks = {
@@ -97,7 +97,7 @@ class _Found:
         return blocks | {at for at, items in self.first.containers.items() if held[at] != items}
 
     def mismatches(self, course: Sequence[_Moment], places: Collection[Position]) -> int:
-        """Return the number of blocks and contents that the agent found other than in a course."""
+        """Return the number of blocks and contents that differ from a course."""
         return sum(
             self._block_differs(course, place) + self._content_differs(course, place)
             for place in places
@@ -118,7 +118,7 @@ class _Found:
         if found.basis.source not in _PERCEIVED:
             return False
         then = _at(course, found.basis.observed_at).containers[place]
-        # Of a container with unknown contents, count only what was known and what was done to it.
+        # For a container with unknown contents, count only known items and known changes.
         names = found.items.keys() | then.keys() if known.complete else known.items.keys() | then
         return any(found.items.get(name, 0) != then.get(name, 0) for name in names)
 
@@ -126,7 +126,7 @@ class _Found:
 def _course(
     view: AgentView, start: Imagination, order: int, bounds: Bounds, supposed: Mapping[str, str]
 ) -> list[_Moment]:
-    """Return what the others do from the beginning until now if they have some goals."""
+    """Return the course of the others from the start until now, given their goals."""
     possible = view.brief.possible_goals
     brief = view.brief.supposing({name: possible[name][goal] for name, goal in supposed.items()})
     planner, ticks = Planner(brief), (view.tick - start.tick) // brief.pace

@@ -1,4 +1,4 @@
-"""Agreement of a course with what an observer perceived."""
+"""Agreement of a course with the percepts of an observer."""
 
 from collections import Counter
 from collections.abc import Collection, Sequence
@@ -19,11 +19,11 @@ _MOST_GRIDS = 4096
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """Differences that are allowed.
+    """Allowed differences.
 
     Attributes:
-        cells: Greatest distance of an agent from where it was seen, in cells along each axis.
-        ticks: Ticks by which something may have happened earlier or later.
+        cells: Greatest distance of an agent from its seen place, in cells along each axis.
+        ticks: Greatest shift of an event in time, in ticks.
     """
 
     cells: int = 0
@@ -32,19 +32,19 @@ class Tolerance:
 
 @dataclass(frozen=True, eq=False)
 class Witness:
-    """Percepts of an observer, and all that they are compared by.
+    """Percepts of an observer, and the rules of their comparison.
 
     Attributes:
-        owner: The observer; None: it is nobody, and everything is perceived.
-        percepts: What it perceived, oldest first.
-        agents: The agents that are in question.
-        ignored: Flat cells of blocks that are drawn whatever was perceived of them.
-        ignored_contents: Containers whose contents are.
-        unknown_contents: Containers whose contents it did not know when courses begin.
-        items: Dropped items when courses begin.
+        owner: The observer; None: reality, where everything is perceived.
+        percepts: Its percepts, oldest first.
+        agents: The agents in question.
+        ignored: Flat cells of blocks that are drawn and not compared.
+        ignored_contents: Containers whose contents are drawn and not compared.
+        unknown_contents: Containers whose contents it did not know at the start of courses.
+        items: Dropped items at the start of courses.
         box: The part of space.
-        sight: How agents see.
-        tolerance: What may differ.
+        sight: Rules of sight.
+        tolerance: Allowed differences.
     """
 
     owner: str | None
@@ -61,10 +61,10 @@ class Witness:
 
 @dataclass(eq=False)
 class Agreement:
-    """Compares courses with what was perceived, tick by tick.
+    """Comparison of courses with percepts, tick by tick.
 
     Args:
-        witness: What was perceived.
+        witness: The percepts.
     """
 
     witness: Witness
@@ -99,7 +99,7 @@ class Agreement:
         return tick in self._numbers
 
     def holds(self, course: Course, glimpse: Glimpse) -> bool:
-        """Return True if a course looks at a tick as was perceived."""
+        """Return True if a course agrees with the percept of a tick."""
         if course.contradiction is not None:
             return False
         number = self.expected(glimpse.tick)
@@ -110,7 +110,7 @@ class Agreement:
         return self.fits(course, glimpse, number) and self._deeds_fit(glimpse, percept, deeds)
 
     def holds_within(self, course: Course, glimpses: Sequence[Glimpse], tick: int) -> bool:
-        """Return True if a course looked as was perceived at a tick, at one of some ticks."""
+        """Return True if a course agrees with the percept of a tick, at one of some ticks."""
         if course.contradiction is not None:
             return False
         number = self._numbers[tick]
@@ -120,7 +120,7 @@ class Agreement:
         return mine <= seen and any(self.fits(course, each, number) for each in glimpses)
 
     def fits(self, course: Course, glimpse: Glimpse, number: int) -> bool:
-        """Return True if what is the case at a tick could have been perceived as a percept says."""
+        """Return True if the facts of a course at a tick could give a percept."""
         percept = self.witness.percepts[number]
         if not percept.present:
             return True
@@ -140,7 +140,7 @@ class Agreement:
         return self._witnessed(glimpse, percept) == expected
 
     def _witnessed(self, glimpse: Glimpse, percept: Percept) -> tuple[object, ...]:
-        """Return the deeds of a tick that the observer would have seen."""
+        """Return the actions of a tick that the observer would have seen."""
         if not glimpse.deeds or not percept.present:
             return ()
         grid = self._grid(glimpse.blocks)

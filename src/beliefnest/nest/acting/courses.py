@@ -1,8 +1,8 @@
-"""Courses: one way in which things may have gone on from a moment, in a scripted world of its own.
+"""Courses: possible continuations from a moment, each in a scripted world of its own.
 
-Agents follow programs, policies or models of minds; those who are not in question do what they were
-perceived to do. A course is a function of what it begins with and of its seeds, so that it can be
-run again up to any tick.
+Agents in question follow candidates: programs, policies or models of minds. All other agents repeat
+their perceived actions. A course is a function of its start and its seeds, so it can be run again
+up to any tick.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -30,10 +30,10 @@ from beliefnest.worlds.scripted.world import ScriptedWorld
 __all__ = ["Candidate", "Course", "CoursePlan", "Glimpse", "PolicyProgram", "Seeds"]
 
 PolicyProgram = Callable[["Course", str], str]
-"""Returns the next program of an agent in a course; empty: it does nothing more."""
+"""Function that returns the next program of an agent in a course; empty: nothing more."""
 
 Seeds = tuple[tuple[int, str], ...]
-"""From which tick on which seed decides."""
+"""Seeds, each with the tick from which it is used."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Candidate:
     Attributes:
         name: Its name.
         program: JavaScript; empty: nothing.
-        strategy: Of a model of its mind.
-        policy: Of a policy.
+        strategy: Strategy, if the candidate is a model of its mind.
+        policy: Function, if the candidate is a policy.
     """
 
     name: str
@@ -54,7 +54,7 @@ class Candidate:
 
     @property
     def is_fixed(self) -> bool:
-        """Return True if it is a program, which draws nothing unless it says so."""
+        """Return True if it is a program; only calls for random numbers vary its course."""
         return self.strategy is None and self.policy is None
 
 
@@ -63,10 +63,10 @@ class CoursePlan:
     """Things that all courses of one call have in common.
 
     Attributes:
-        agents: Those that are in question, in order.
-        percepts: What the observer perceived, oldest first; what the others did is among it.
-        speech_ticks: Ticks that it takes somebody to say something.
-        starts: What courses begin with, by the edits that were drawn.
+        agents: The agents in question, in order.
+        percepts: Percepts of the observer, oldest first; they contain the actions of other agents.
+        speech_ticks: Duration of an utterance in ticks.
+        starts: Starts of courses, by drawn edits.
     """
 
     agents: tuple[str, ...]
@@ -81,7 +81,7 @@ class CoursePlan:
 
     @cached_property
     def engines(self) -> Engines:
-        """Engines of programs that may be used again."""
+        """Pool of reusable JavaScript engines."""
         return Engines()
 
     @cached_property
@@ -99,7 +99,7 @@ class CoursePlan:
         return {percept.tick: percept for percept in self.percepts}
 
     def world(self, drawn: tuple[int, ...]) -> ScriptedWorld:
-        """Return a new world at the beginning."""
+        """Return a new world at the start."""
         if drawn not in self._worlds:
             self._worlds[drawn] = ScriptedWorld.from_snapshot(self.starts(drawn))
         return self._worlds[drawn].again()
@@ -110,12 +110,12 @@ class Glimpse:
     """Perceptible facts of a course at one tick.
 
     Attributes:
-        tick: When.
-        blocks: Block states; a grid does not change once it was handed out.
+        tick: The tick.
+        blocks: Block states; a returned grid never changes.
         agents: All agents.
-        containers: What containers hold.
-        deeds: What was done at containers in this tick.
-        is_new: False: nothing of it differs from the tick before.
+        containers: Contents of containers.
+        deeds: Actions at containers in this tick.
+        is_new: False: equal to the tick before.
     """
 
     tick: int
@@ -127,23 +127,23 @@ class Glimpse:
 
 
 class Course:
-    """A course under way.
+    """Course at its latest tick.
 
     Args:
-        plan: What it has in common with others.
-        drawn: The alternatives that are the case, by doubt.
-        candidates: By agent.
-        draws: The hypotheses of agents whose candidate is a model.
-        seeds: Which seed decides from when on.
+        plan: The part that all courses share.
+        drawn: The actual alternatives, by doubt.
+        candidates: Candidates by agent.
+        draws: Hypotheses of agents whose candidate is a model.
+        seeds: Seeds with their first ticks.
 
     Attributes:
-        frames: What has happened, without quiet ticks.
+        frames: Frames so far, without quiet ticks.
         touched: Containers whose contents changed.
-        contradiction: What others were seen to do that is not possible in it; None: nothing.
-        faults: Why programs failed, by agent.
+        contradiction: Perceived action of another agent that is impossible here; None: none.
+        faults: Reasons of failed programs, by agent.
         is_fixed: True if all candidates are programs.
-        shared_from: How many random numbers had been drawn when histories began to share it; they
-            can as long as no other is drawn.
+        shared_from: Number of random numbers drawn before histories began to share the course. They
+            can share it until another one is drawn.
     """
 
     def __init__(
@@ -190,7 +190,7 @@ class Course:
         return self._ended_draws + sum(each.draws for each in self._programs.values())
 
     def again(self, seeds: Seeds) -> "Course":
-        """Return the same course, which goes on with other seeds that begin as its own do."""
+        """Return a copy that continues with other seeds; they must begin like its own."""
         if self._programs or any(each.policy is not None for each in self.candidates.values()):
             other = Course(self.plan, self.drawn, self.candidates, self.draws, seeds)
             other.run_to(self.tick)
@@ -209,13 +209,13 @@ class Course:
         return other
 
     def reseed(self) -> None:
-        """Let the seed decide that begins at the latest tick."""
+        """Use the seed that begins at the latest tick."""
         tick, seed = self.seeds[-1]
         if tick == self.tick and len(self.seeds) > 1:
             self._seed(seed)
 
     def run_to(self, tick: int) -> None:
-        """Go on up to a tick, with the seeds that decided."""
+        """Run up to a tick with the recorded seeds."""
         later = dict(self.seeds[1:])
         while self.tick < tick and self.contradiction is None:
             if self.tick in later:
@@ -241,7 +241,7 @@ class Course:
         return self._glimpse()
 
     def glimpse(self) -> Glimpse:
-        """Return what can be perceived at the beginning."""
+        """Return the perceptible facts at the start."""
         return self._glimpse()
 
     # Seeds
@@ -323,7 +323,7 @@ class Course:
             walker.arrive((state.position, state.yaw, state.pitch), cell)
 
     def _take_item(self, walker: Walker, item: str) -> None:
-        """Take an item out of the nearest container; one that lies about stays where it is."""
+        """Take an item out of the nearest container; dropped items stay where they are."""
         x, y, z = walker.cell
         held = [
             (abs(place[0] - x) + abs(place[2] - z), abs(place[1] - y), place)
@@ -334,10 +334,10 @@ class Course:
             if aside <= 1 + walker.strategy.model.diagonal and up <= 1:
                 self.world.withdraw(walker.name, place, {item: 1})
 
-    # Those who are not in question
+    # Agents that are not in question
 
     def _let_in(self, now: Percept) -> None:
-        """Let those be there who are seen, with what they are seen to hand out."""
+        """Add the agents that are seen, with the items that they are seen to give or put in."""
         agents = dict(self.world.agents)
         for name, (feet, _, _) in now.agents.items():
             if name not in self.plan.agents and name not in agents:
@@ -446,4 +446,4 @@ _AS_SEEN: Mapping[EventKind, Callable[[ScriptedWorld, str, Mapping[str, Any]], N
     EventKind.CHAT: _spoken,
     EventKind.GIVE_ITEM_TO_OTHER: lambda w, name, d: w.give(name, d["other"], d["items"]),
 }
-"""Acts by which an agent that is not in question repeats what it was seen to do."""
+"""Calls that repeat the perceived acts of agents that are not in question."""

@@ -21,13 +21,13 @@ OnTick = Callable[[int, int], None]
 
 @dataclass(eq=False)
 class Particle:
-    """One history under way.
+    """Weighted history at its latest tick.
 
     Attributes:
-        ancestor: Number of the history that it was at the beginning.
-        course: Its course, which it may share.
+        ancestor: Number of the first history from which it was copied.
+        course: Its course; histories may share one.
         seeds: Its seeds.
-        weight: Its weight; those of all sum to 1.
+        weight: Its weight; all weights sum to 1.
     """
 
     ancestor: int
@@ -38,7 +38,7 @@ class Particle:
 
 @dataclass(frozen=True)
 class Drawn:
-    """Things drawn for one history at the beginning."""
+    """Draws for one history at its start."""
 
     alternatives: tuple[int, ...]
     candidates: Mapping[str, Candidate]
@@ -47,11 +47,11 @@ class Drawn:
 
 @dataclass(frozen=True, slots=True)
 class Lost:
-    """The tick at which no history agreed any more.
+    """Tick from which on no history agrees.
 
     Attributes:
-        tick: When.
-        text: What the last ones did not explain.
+        tick: The tick.
+        text: The percept that the last ones did not explain.
     """
 
     tick: int
@@ -66,15 +66,15 @@ class Drawing:
     """Histories being drawn.
 
     Args:
-        plan: What their courses have in common.
-        drawn: What was drawn for each.
-        agreement: Compares them with what was perceived; None: that does not count.
-        seed: Decides about all that is random.
+        plan: The part that all courses share.
+        drawn: Draws for each history.
+        agreement: Comparison with percepts; None: percepts do not count.
+        seed: Seed of all random numbers.
 
     Attributes:
-        particles: The histories, or after the last was lost those that were lost last.
-        log_evidence: Natural logarithm of the probability of what was perceived.
-        lost: When the last one was lost; None: some are left.
+        particles: The histories that agree. If none is left: those that agreed longest.
+        log_evidence: Natural logarithm of the probability of the percepts.
+        lost: Tick from which on no history agrees; None: some agree.
     """
 
     plan: CoursePlan
@@ -121,7 +121,7 @@ class Drawing:
             self.particles.append(Particle(number, course, seeds, weight))
 
     def _split(self, glimpses: dict[Course, Glimpse]) -> None:
-        """Give each history a course of its own whose program has drawn a number."""
+        """Give each history of a course its own course if a program has drawn a random number."""
         sharing = Counter(particle.course for particle in self.particles)
         split = {
             course
@@ -169,7 +169,7 @@ class Drawing:
             )
 
     def _keep(self, holds: Mapping[Course, bool], tick: int) -> None:
-        """Keep the histories that agree, and resample if they are of too few ancestors."""
+        """Keep the histories that agree; resample if they have too few ancestors."""
         kept = [particle for particle in self.particles if holds[particle.course]]
         if not kept:
             self.lost = self._lost(tick)
@@ -220,12 +220,14 @@ class Drawing:
 
 
 def spread(weights: Sequence[float], count: int, chance: Random) -> list[int]:
-    """Return numbers of weights by systematic sampling: each as often as it weighs, but for one.
+    """Return indices of weights by systematic sampling.
+
+    The count of each index differs from its expected count by less than 1.
 
     Args:
-        weights: From 0, with a sum above 0.
-        count: How many numbers.
-        chance: Gives the one random number that is drawn.
+        weights: Weights from 0, with a sum above 0.
+        count: Number of indices.
+        chance: Generator of the single random number.
     """
     total = math.fsum(weights)
     start, number, reached = chance.random(), 0, weights[0] / total

@@ -1,1 +1,1 @@
-"""Reading from one node and its timeline what inference needs."""
+"""Reader of the data that inference needs from one node and its timeline."""

@@ -1,4 +1,4 @@
-"""Inference on one node: reads its timeline, filters, and gives the result."""
+"""Inference on one node: read its timeline, run the filter, return the result."""
 
 import hashlib
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from beliefnest.world.paths import BeliefPath, path_text
 __all__ = ["ModelStart", "credence_in", "infer_in", "start_of_model"]
 
 _ROOM = 2**27
-"""Bytes that values may take in one chunk of utilities."""
+"""Limit of the values of one chunk of utilities, in bytes."""
 
 _MOST_READINGS, _MOST_FILTERS = 8, 4
 
@@ -39,7 +39,7 @@ def infer_in(
     ended: bool,
     smooth: bool,
 ) -> Inference:
-    """Infer what an agent wants and believes from what a node holds of its course.
+    """Infer an agent's desires and beliefs from the record of its course in a node.
 
     Raises:
         InputError: The model does not fit the node.
@@ -63,8 +63,8 @@ class ModelStart:
 
     Attributes:
         model: The model.
-        scene: All alternatives then.
-        agrees: The alternatives that agree with what the node holds from then on.
+        scene: All alternatives at that tick.
+        agrees: The alternatives that agree with the node from that tick on.
         step_ticks: Ticks that an action takes.
     """
 
@@ -77,7 +77,7 @@ class ModelStart:
 def start_of_model(
     recording: Recording, path: BeliefPath, model: MindModel, since: int, until: int
 ) -> ModelStart:
-    """Return what a model begins with at a tick, known up to another one what agrees.
+    """Return the start of a model at a tick; agreement is tested up to another tick.
 
     Raises:
         InputError, PathError, TickError: As for `infer_in`.
@@ -89,9 +89,9 @@ def start_of_model(
 
 @dataclass
 class _Work:
-    """A reading of a node, and the filters that have followed it so far, by model.
+    """Reading of a node, and the filters that have processed it so far, by model.
 
-    An inference at a later tick goes on with them.
+    An inference at a later tick continues with them.
     """
 
     reading: Reading
@@ -99,7 +99,7 @@ class _Work:
     filters: dict[bytes, tuple[int, list[Tracker]]] = field(default_factory=dict)
 
     def goes_on(self, recording: Recording, until: int) -> bool:
-        """Return whether the timeline has no new entries at ticks that were read."""
+        """Return True if the timeline has no new entries at ticks that were read."""
         same = recording.history.generation == self.generation
         return same and self.reading.latest <= until and self.reading.is_whole
 
@@ -121,7 +121,7 @@ class _Work:
 def _work_on(
     recording: Recording, path: BeliefPath, model: MindModel, since: int, until: int | None
 ) -> _Work:
-    """Return the reading of a node up to a tick, gone on with where there is one."""
+    """Return the reading of a node up to a tick; continue an earlier one if possible."""
     moment = recording.moment(path, until)
     question = _question(recording, path, model, since)
     if question.since > moment.tick:
@@ -163,7 +163,7 @@ def _question(recording: Recording, path: BeliefPath, model: MindModel, since: i
 
 
 def _check_goals(model: MindModel, moments: Sequence[Moment]) -> None:
-    """Refuse goals of which none can be reached in any alternative."""
+    """Raise InputError if no goal can be reached in any alternative."""
     cells = [moment for moment in moments if moment.cell is not None]
     for moment in cells:
         assert moment.cell is not None
@@ -176,7 +176,7 @@ def _check_goals(model: MindModel, moments: Sequence[Moment]) -> None:
 
 
 def _digest(model: MindModel, step_ticks: int) -> bytes:
-    """Digest of what a filter depends on besides what was read."""
+    """Return a digest of the inputs of a filter other than the reading."""
     rules = Hypotheses.of(model, step_ticks).rules
     digest = hashlib.blake2b(repr((rules, model.rationalities, step_ticks, model.stays)).encode())
     for table in (model.utility_rows, model.credence_rows, model.prior_weights):
@@ -188,7 +188,7 @@ def _digest(model: MindModel, step_ticks: int) -> bytes:
 def _trackers(
     model: MindModel, moments: Sequence[Moment], step_ticks: int, *, keeps: bool = False
 ) -> list[Tracker]:
-    """Return filters at the beginning, one for each chunk of utilities."""
+    """Return filters at their start, one for each chunk of utilities."""
     trackers = []
     for part in _chunks(model, moments):
         with np.errstate(divide="ignore"):
@@ -224,7 +224,7 @@ def _told(
 
 
 def _chunks(model: MindModel, moments: Sequence[Moment]) -> list[slice]:
-    """Parts of the utilities whose values fit into memory."""
+    """Return chunks of the utilities whose values fit into memory."""
     first = next(moment for moment in moments if moment.cell is not None)
     assert first.cell is not None
     values = count_values(first.scene.stage(first.cell), len(model.credence_rows))
@@ -243,11 +243,11 @@ def credence_in(
     """Return the credence of an agent in alternatives, by its percepts alone, without a planner.
 
     Args:
-        recording: Where the node is.
+        recording: Record with the node.
         path: The node that attributes the credence.
-        model: Its doubt, its first credence, `actual` and `lapse` count.
-        since: The tick just before whose percept the initial credence stands.
-        tick: When; None: now.
+        model: Only its doubt, its first credence, `actual` and `lapse` are used.
+        since: Tick whose percept is the first to update the initial credence.
+        tick: Tick of the answer; None: the latest.
 
     Raises:
         InputError, PathError, TickError: As for `infer_in`.

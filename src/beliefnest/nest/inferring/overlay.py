@@ -1,8 +1,7 @@
-"""The alternatives of a doubt laid over what a node holds, entry by entry.
+"""Overlay of the alternatives of a doubt on the state of a node, entry by entry.
 
-Edits hold until the node perceives a change of the element, which is then the same in all
-alternatives: a block that becomes another, items that are seen to go in or out, an agent that
-moves in sight.
+An edit holds until the node perceives a change of its element: a block changes, items are seen
+going in or out, an agent moves in sight. The element is then the same in all alternatives.
 """
 
 import hashlib
@@ -25,12 +24,12 @@ from beliefnest.world.values import Box, EventKind, Items, Point, Position
 __all__ = ["Overlay"]
 
 _NEAR = 0.5
-"""From so far on a place is another one, in blocks."""
+"""Distance from which two places count as different, in blocks."""
 
 
 @dataclass(frozen=True)
 class _Held:
-    """Doubted elements as the node held them."""
+    """Doubted elements in the state of the node."""
 
     blocks: Mapping[Position, int]
     contents: Mapping[Position, ContainerBelief | None]
@@ -38,7 +37,7 @@ class _Held:
 
 
 class Overlay:
-    """The doubted elements in each alternative, as they are at one entry of a timeline.
+    """Doubted elements in each alternative, at one entry of a timeline.
 
     Args:
         alternatives: The alternatives.
@@ -90,7 +89,7 @@ class Overlay:
         return self._claimed
 
     def content_masks(self, place: Position) -> tuple[int, ...]:
-        """By alternative, those in which a container in doubt holds the same."""
+        """Return, for each alternative, the set of those with equal contents of a container."""
         contents = self._contents[place]
         return tuple(
             sum(1 << b for b, other in enumerate(contents) if other == mine) for mine in contents
@@ -116,7 +115,7 @@ class Overlay:
         return sum(1 << a for a, is_true in enumerate(true) if is_true)
 
     def follow(self, view: NodeView, events: Sequence[PerceivedEvent]) -> None:
-        """Take over what the node perceived to change since it was looked at last."""
+        """Apply the changes that the node has perceived since the last call."""
         now = self._read(view)
         before = self._held
         self._held = now
@@ -150,7 +149,7 @@ class Overlay:
                 self._feet.pop(name, None)
 
     def agreeing(self) -> int:
-        """Return the alternatives that agree with what the node holds."""
+        """Return the alternatives that agree with the node."""
         assert self._held is not None
         agrees = [True] * len(self._names)
         for place, state in self._held.blocks.items():
@@ -168,7 +167,7 @@ class Overlay:
         return sum(1 << a for a, does in enumerate(agrees) if does)
 
     def worlds(self, view: NodeView) -> list[World]:
-        """Return what the node holds, with the edits of each alternative."""
+        """Return the state of the node with the edits of each alternative."""
         count = len(self._names)
         contents: dict[Position, Items] = {
             place: dict(held.items)
@@ -194,7 +193,7 @@ class Overlay:
         return found
 
     def digest(self, view: NodeView) -> bytes:
-        """Digest of what `worlds` and the items of a node depend on."""
+        """Return a digest of everything on which `worlds` and the node's items depend."""
         digest = hashlib.blake2b(np.ascontiguousarray(view.blocks).tobytes())
         parts = (
             self._box,
@@ -224,7 +223,7 @@ class Overlay:
         )
 
     def _is(self, text: str, state: int) -> bool:
-        """Return whether a state has the name and the properties of a text."""
+        """Return True if a state has the name and the properties of a text."""
         if state < 0:
             return False
         name, chosen = parse_state(text)

@@ -32,10 +32,10 @@ class Question:
     Attributes:
         path: The observer's node.
         agent: The modelled agent.
-        goals: What it may want.
-        alternatives: What it may be in doubt about.
-        ignores: Whether the node's own values of the doubted elements are ignored.
-        diagonal: Whether steps lead to diagonal neighbours too.
+        goals: Its possible goals.
+        alternatives: The alternatives of its doubt.
+        ignores: True if the node's own values of the doubted elements are ignored.
+        diagonal: True if steps also lead to diagonal neighbours.
         since: The tick from which on evidence counts.
     """
 
@@ -50,10 +50,10 @@ class Question:
 
 @dataclass
 class Reading:
-    """Moments that have been read of one timeline; it can be gone on with.
+    """Moments read from one timeline; `read` continues it.
 
     Attributes:
-        moments: What was read, oldest first.
+        moments: The moments, oldest first.
         latest: The last tick that was read.
     """
 
@@ -70,11 +70,11 @@ class Reading:
     _scene: tuple[bytes, Scene] | None = None
 
     def read(self, until: int | None) -> None:
-        """Read on, up to a tick; None: to the latest.
+        """Continue to read up to a tick; None: the latest.
 
         Raises:
             TickError: The tick is in the future, or before the start.
-            InputError: No alternative agrees with what the node holds.
+            InputError: No alternative agrees with the node.
         """
         recording, question = self.recording, self.question
         agent = question.agent
@@ -101,14 +101,14 @@ class Reading:
 
     @property
     def is_whole(self) -> bool:
-        """True if all entries of the ticks that were read are in it."""
+        """True if it contains all entries of the ticks that were read."""
         if self._key is None:
             return False
         return self.recording.journal.entries_until(self._key, self.latest) == self._position
 
     @property
     def agrees(self) -> int:
-        """The alternatives that have agreed with what the node holds."""
+        """The alternatives that have agreed with the node at all ticks."""
         return self._agrees
 
     @property
@@ -165,7 +165,7 @@ class Reading:
                     yield claim
 
     def _take(self, tick: int, claims: Sequence[Claim], before: int) -> None:
-        """Read the node as it is after a tick."""
+        """Read the state of the node after a tick."""
         forest, overlay, question = self._forest, self._overlay, self.question
         assert forest is not None and overlay is not None
         view = NodeView(forest, question.path)
@@ -199,7 +199,7 @@ class Reading:
         )
 
     def _learnt(self, events: Sequence[PerceivedEvent]) -> tuple[tuple[int, ...], ...]:
-        """Return what the agent learns of the containers in doubt that it uses."""
+        """Return the information from the doubted containers that the agent uses."""
         assert self._overlay is not None
         used = {
             _place(event)
@@ -214,7 +214,7 @@ class Reading:
         )
 
     def _done(self, events: Sequence[PerceivedEvent]) -> tuple[Position | None, int | None, bool]:
-        """Return what the agent opens, the goal it acts on, and whether it does more."""
+        """Return the opened container, the goal acted on, and True for other actions."""
         assert self._overlay is not None
         opened, act, deed = None, None, False
         for event in events:
@@ -273,7 +273,7 @@ class Reading:
         return scene
 
     def _cell(self, scene: Scene, pose: Pose, *, on_ground: bool) -> Position:
-        """Return the cell of an agent: in a jump or over an edge, the cell that it comes from."""
+        """Return the cell of an agent; during a jump or over an edge, its previous cell."""
         x, y, z = (math.floor(part) for part in pose[0])
         for cell in ((x, y, z), (x, y - 1, z)):
             if scene.can_stand(cell):

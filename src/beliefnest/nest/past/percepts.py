@@ -1,8 +1,8 @@
-"""Percepts: what the owner of a node perceived, tick by tick, read from its timeline.
+"""Percepts of a node's owner, tick by tick, read from the node's timeline.
 
-A percept is what was current in the node (semantics, section 5): blocks, contents, dropped items,
-and agents by the cell they were in. Ticks at which nothing changed for the owner have none of their
-own: the percept before goes on.
+A percept contains the current elements of the node (semantics, section 5): blocks, contents,
+dropped items, and agents with their cells. If nothing changed for the owner at a tick, the
+percept before still holds.
 """
 
 import math
@@ -31,10 +31,10 @@ HANDLING = (
     EventKind.GET_ITEM_FROM_CHEST,
     EventKind.DEPOSIT_ITEM_INTO_CHEST,
 )
-"""Events by which somebody who looks on learns about contents."""
+"""Events from which an observer learns about contents."""
 
 Deed = tuple[str, str, Position, tuple[tuple[str, int], ...]]
-"""Kind, actor, container, and the items that were seen to be moved."""
+"""Kind, actor, container, and the items that were seen being moved."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,15 +42,15 @@ class Percept:
     """Percept of the owner of a node at one tick.
 
     Attributes:
-        tick: When; it goes on until the next one.
+        tick: Its first tick; it holds until the next percept.
         present: False: the owner is credited with no percept (semantics, section 5.1).
         cells: int64 (n,), flat cells of the blocks that it saw.
         states: int32 (n,), their block states.
         contents: Complete contents that it perceived.
         agents: Feet, yaw and pitch of the agents that it perceived, its own included.
         items: Names and cells of the dropped items that it saw, with their numbers.
-        deeds: What it saw done at containers in this very tick.
-        events: All that it perceived in this very tick.
+        deeds: Actions at containers that it saw in this very tick.
+        events: All events that it perceived in this very tick.
     """
 
     tick: int
@@ -64,7 +64,7 @@ class Percept:
     events: tuple[PerceivedEvent, ...]
 
     def is_new_after(self, before: "Percept") -> bool:
-        """Return True if it differs from the percept before, or something was perceived."""
+        """Return True if it differs from the percept before, or has events."""
         return bool(
             self.events
             or self.present != before.present
@@ -77,12 +77,12 @@ class Percept:
 
 
 def cell_in(point: Point) -> Position:
-    """Return the cell that a point lies in."""
+    """Return the cell that contains a point."""
     return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
 
 
 def deed_of(kind: EventKind, actor: str, detail: Mapping[str, Any]) -> Deed:
-    """Return what somebody is seen to do at a container."""
+    """Return the visible part of an action at a container."""
     place = detail["position"]
     items: Mapping[str, int] = detail.get("items", {})
     at = (int(place[0]), int(place[1]), int(place[2]))
@@ -95,10 +95,10 @@ def percepts_of(
     """Return the percepts of a node's owner, each with the blocks that it believed.
 
     Args:
-        recording: Where the node is.
+        recording: Record with the node.
         path: The node.
         start: The moment of the first percept.
-        until: The moment after which none is read.
+        until: The moment of the last percept.
     """
     found: list[tuple[Percept, BlockGrid]] = []
     for percept, blocks in _read(recording, path, start, until):

@@ -1,4 +1,4 @@
-"""One film: a floor, what may stand where, the path of an agent, and judgments of people."""
+"""One film: a floor with places, the path of an agent, and judgments of people."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,10 +14,10 @@ Cell = tuple[int, int]
 
 About = Literal["desires", "beliefs", "locations"]
 ABOUT: tuple[About, ...] = ("desires", "beliefs", "locations")
-"""Kinds of judgments: wanted goals, initial beliefs, and what stands where in fact."""
+"""Kinds of judgments: wanted goals, initial beliefs, and real contents of places."""
 
 NOTHING = "none"
-"""Name of what a place without a goal holds."""
+"""Name for the content of a place without a goal."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +28,11 @@ class FilmParameters:
         rewards: Utilities to consider for each goal.
         rewards_by_goal: Utilities to consider for some goals, instead of `rewards`.
         discount: As for `MindModel`.
-        step_cost: Of moving and of acting on a goal.
+        step_cost: Cost of moving and of acting on a goal.
         stay_cost: As for `MindModel`.
         rationality: As for `MindModel`.
         grid: Steps of the grid of credences.
-        smoothing: Of the grid of credences.
+        smoothing: Smoothing of the grid of credences.
     """
 
     rewards: tuple[float, ...] = (-20, 0, 20, 40, 60, 80, 100)
@@ -57,17 +57,17 @@ class Film:
         name: Its number in the file.
         size: Cells of the floor along x and y.
         walls: Cells that cannot be entered or seen through.
-        places: Cells at which something may be, by name.
+        places: Cells at which goals may be, by name.
         known: Goal at each place that is not in doubt; None: nothing.
         alternatives: By name, the goal at each place in doubt; None: nothing.
-        actual: Alternatives that the observer holds possible; one: it knows what is the case.
+        actual: Alternatives that the observer considers possible; one: it knows the truth.
         goals: Names of the goals.
         path: Cells, one for each tick.
-        ended: Whether the agent acts on the goal at the end of its path.
-        scored: Whether it counts.
-        people: Mean judgments of people, by what they are about, then by goal or alternative.
-        errors: Standard errors of these means, where the file has them.
-        group: What it is about; empty: the file does not say.
+        ended: True if the agent acts on the goal at the end of its path.
+        scored: True if it counts.
+        people: Mean judgments of people, by kind, then by goal or alternative.
+        errors: Standard errors of these means, if the file has them.
+        group: Its group; empty: the file names none.
     """
 
     name: str
@@ -87,14 +87,14 @@ class Film:
 
     @property
     def observer_doubts(self) -> bool:
-        """True if the observer does not know which alternative is the case."""
+        """True if the observer does not know the actual alternative."""
         return len(self.actual) > 1
 
     @property
     def events(self) -> Mapping[str, frozenset[str]]:
-        """Return the events of beliefs and locations: the alternatives that each name means.
+        """Return the events of beliefs and locations: sets of alternatives by name.
 
-        These are the alternatives and, where several places are in doubt, `PLACE=GOAL`.
+        Each alternative is an event. If several places are in doubt, so is each `PLACE=GOAL`.
         """
         found = {name: frozenset([name]) for name in self.alternatives}
         doubted = next(iter(self.alternatives.values()), {})
@@ -106,16 +106,16 @@ class Film:
 
 
 def event_name(place: str, goal: str | None) -> str:
-    """Return the name of the event that a place holds a goal; None: nothing."""
+    """Return the name of the event that a goal is at a place; None: no goal."""
     return f"{place}={goal or NOTHING}"
 
 
 _MOST_WEIGHTS = 60_000_000
-"""Weights of hypotheses at all steps that are kept in memory; about 500 MB."""
+"""Limit of weights of hypotheses in memory, at all steps; about 500 MB."""
 
 
 def grid_for(film: Film, parameters: FilmParameters) -> int | None:
-    """Return the steps of the grid of credences, fewer where more do not fit into memory.
+    """Return the steps of the grid of credences, reduced until the grid fits into memory.
 
     Returns:
         At most `parameters.grid`; None: not even the grid of certain beliefs fits.
