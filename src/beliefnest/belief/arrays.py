@@ -67,8 +67,8 @@ class Senses(NamedTuple):
         cos_half: Cosine of half the field of view; -2: in all directions.
         hearing: One of `HEAR_ALL`, `HEAR_SEEN`, `HEAR_NEAR`.
         radius: Greatest distance of hearing, blocks, for `HEAR_NEAR`.
-        negative: Whether a pose becomes unknown when its place is seen empty.
-        weighs: Whether hearers weigh claims, so that what they watch is counted.
+        negative: True if a pose becomes unknown when its place is seen empty.
+        weighs: True if hearers weigh claims, so that what they watch is counted.
     """
 
     far: float

@@ -1,4 +1,4 @@
-"""Conditions on what is the case or believed: a container's items, an agent's place, a block.
+"""Conditions on facts or beliefs: a container's items, an agent's place, a block.
 
 The language of goals, of `share` and of evidence; `conditions_of` reads it from plain values. Each
 kind of fact is a class that reads, judges and describes itself, and tells planners what it takes.
@@ -142,7 +142,7 @@ class Fact(ABC):
 
     @property
     def items(self) -> tuple[str, ...]:
-        """Return the items that somebody is to have or to put somewhere."""
+        """Return the items that an agent must have or put somewhere."""
         return ()
 
     @property
@@ -612,7 +612,7 @@ def _acts_at(
 
 
 def _beyond_reach(feet: Point | None, place: Position) -> float:
-    """Return how many blocks an agent is beyond reach of a place; 0: within reach."""
+    """Return by how many blocks a place is out of an agent's reach; 0: within reach."""
     if feet is None:
         return FAR
     middle = tuple(value + 0.5 for value in place)

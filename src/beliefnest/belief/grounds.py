@@ -56,9 +56,9 @@ class ContainerBelief:
 
     Attributes:
         items: Known items, name to count.
-        complete: Whether the container is known to hold nothing else.
+        complete: True if the container is known to hold nothing else.
         basis: Ground of the entry.
-        current: Whether a perception in this tick backs the entry.
+        current: True if a perception in this tick backs the entry.
     """
 
     items: Items
@@ -75,14 +75,14 @@ class AgentBelief:
         position: Middle of the feet when last perceived, blocks; None: unknown.
         yaw: Radians, Mineflayer's convention; 0 where the position is unknown.
         pitch: Radians, positive upwards; 0 where the position is unknown.
-        on_ground: Whether the agent stood on something.
+        on_ground: True if the agent stood on something.
         equipment: Slot to item name as last seen; None: never seen.
         inventory: Known possessions, item name to count.
-        inventory_complete: Whether the agent is known to have nothing else.
+        inventory_complete: True if the agent is known to have nothing else.
         health: Half hearts; None: unknown.
         food: Half drumsticks; None: unknown.
         basis: Ground of the pose; None where the position is unknown.
-        current: Whether a perception in this tick backs the pose.
+        current: True if a perception in this tick backs the pose.
     """
 
     position: Point | None = None
@@ -114,9 +114,9 @@ class InitialBelief:
 
     Attributes:
         path: Agent names from the outermost believer inwards. `**` at the end means the node and
-            everything below it. `**` alone means what everybody takes for granted, and takes for
-            granted that everybody does. If several initial beliefs speak of the same element, the
-            longest path counts, and among equals the one without `**`.
+            everything below it. `**` alone means all beliefs: common knowledge. If several initial
+            beliefs set the same element, the longest path counts, and among equals the one
+            without `**`.
         containers: Position to (items, complete).
         blocks: Position to block; -1 makes one unknown.
         agents: Agent name to believed feet position.

@@ -48,12 +48,12 @@ class Content:
 
     Attributes:
         items: Known items.
-        complete: Whether these are known to be all.
+        complete: True if these are known to be all.
         basis: Ground of the content. If the content is no longer current, its tick is the last one
             at which it was.
-        in_sight: Whether the content is seen, in a transparent container, since the tick of the
+        in_sight: True if the content is seen, in a transparent container, since the tick of the
             basis.
-        by_act: Whether an act showed the content in the last entry, at the tick of the basis.
+        by_act: True if an act showed the content in the last entry, at the tick of the basis.
     """
 
     items: Items

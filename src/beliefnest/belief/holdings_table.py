@@ -368,7 +368,7 @@ class HoldingsTable:
             node: Number of the node; its contents, possessions and items are those after the tick.
             item: Name of the item.
             tick: The tick.
-            is_moved: Whether the owner perceives acts with the item.
+            is_moved: True if the owner perceives acts with the item.
         """
         holdings, seen = self._holdings[node], self._perceived_places(node, item, tick)
         if seen:

@@ -60,7 +60,7 @@ class NodeTable:
 
     Attributes:
         index: Number of each node by path; a node's number is above its parent's.
-        count: How many nodes there are.
+        count: Number of nodes.
         context: The part that all nodes of the nest share.
         poses: The pose table to which the nodes' pose ids refer.
         edited_cells: Pairs of node and cell of blocks that were changed by hand since the node
@@ -154,8 +154,8 @@ class NodeTable:
         Args:
             other: The other table.
             source: Number of the node in the other table.
-            is_root: Whether the copy becomes node 0.
-            recorded: Whether poses that the other's timeline recorded count as recorded by this
+            is_root: True if the copy becomes node 0.
+            recorded: True if poses that the other's timeline recorded count as recorded by this
                 one's.
         """
         path = other.path(source)

@@ -119,7 +119,7 @@ class PoseTable:
         Args:
             other: The other table.
             numbers: Ids of the poses in the other table.
-            recorded: Whether poses that the other's timeline recorded count as recorded by this
+            recorded: True if poses that the other's timeline recorded count as recorded by this
                 one's.
         """
         table = {0: 0}

@@ -53,7 +53,7 @@ class FilmOptions:
         rows: Ids of the films to judge; None: all.
         limit: Judge no more films than this; None: all.
         seed: Drives the bootstrap.
-        as_json: Whether to print one JSON object instead of tables.
+        as_json: True to print one JSON object instead of tables.
         out: Folder of the figure and the tables; None: a new one in `suites`.
     """
 

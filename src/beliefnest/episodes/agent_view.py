@@ -211,7 +211,7 @@ class AgentView:
         return [each for each in self._own.heard_claims if each[1] != self.agent]
 
     def infer(self, model: "MindModel", *agents: str) -> "Inference":
-        """Infer what an agent wants from what the agent of the view perceived of its course.
+        """Infer an agent's goals from its course as the agent of the view perceived it.
 
         Args:
             model: The hypotheses.
@@ -219,7 +219,7 @@ class AgentView:
                 does who believes what Bob is believed to believe.
 
         Raises:
-            InputError: The model does not fit what it perceived.
+            InputError: The model does not fit its percepts.
             PathError: There is no such agent.
         """
         return self._below(agents).infer(model)

@@ -1,4 +1,4 @@
-"""Stages: what a planner needs of a map, in all alternatives of a doubt, as tables.
+"""Stages: tables of a map for a planner, in all alternatives of a doubt.
 
 Cells are positions of feet. A set of alternatives is a number whose bit `a` is set if it contains
 alternative `a`.
@@ -26,7 +26,7 @@ Masks = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """Cells that an agent can get to, and what it can do and perceive there.
+    """Reachable cells, with the actions and percepts that are possible there.
 
     Attributes:
         cells: The cells.

@@ -21,15 +21,15 @@ _MOST_STAGES = 64
 
 
 class Scene:
-    """All alternatives at one moment, with what an agent may want in them.
+    """All alternatives at one moment, with the goals of an agent in them.
 
     Args:
         registry: Names and shapes of blocks.
         worlds: The alternatives.
         goals: Goals by name.
         doubted: Containers whose contents the alternatives set.
-        diagonal: Whether steps lead to diagonal neighbours too.
-        key: Digest of all of these and of what the look of agents depends on.
+        diagonal: True if steps also lead to diagonal neighbours.
+        key: Digest of all of these, and of the inputs of agents' sight.
     """
 
     def __init__(

@@ -19,7 +19,7 @@ def check_world(name: str, *, servers: bool = True) -> None:
 
     Args:
         name: The name.
-        servers: Whether it may be a world in real time, which plays one run at a time.
+        servers: True if it may be a world in real time, which plays one run at a time.
 
     Raises:
         UnknownNameError: There is no world of that name.

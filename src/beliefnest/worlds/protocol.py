@@ -168,7 +168,7 @@ class ProgramResult:
 
     Attributes:
         agent: Agent that ran it.
-        ok: Whether it ended without an error.
+        ok: True if it ended without an error.
         error: Reason of its failure; None if it did not fail.
         ticks: Number of ticks that it ran.
         happened: All events in the simulator during the run, by any agent, in order: (tick, event).
@@ -272,7 +272,7 @@ class RunRules:
 
     Attributes:
         speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
-        remembers: Whether results contain the calls of programs, so that these can be resumed.
+        remembers: True if results contain the calls of programs, so that these can be resumed.
         past: Records of the programs that are resumed, by agent.
     """
 

@@ -168,7 +168,7 @@ class Planner:
             mind: As for `plan`, as all others.
             agent: Who plans.
             order: Its order of Theory of Mind.
-            ticks: How many are left before the round.
+            ticks: Ticks that are left before the round.
             bounds: How much is looked at.
             calls: What it does in the round, as far as the round is long enough.
         """
@@ -247,7 +247,7 @@ class _Planning:
         return node.score
 
     def _begun(self, mind: Imagination) -> tuple[Imagination, _Node]:
-        """Return what the agent takes for real, and the course in which it has done nothing."""
+        """Return the world that the agent believes in, and the course without actions."""
         if self._order and self._opponents:
             # A planner of order 1 or more does not believe what its opponents claim.
             mind, self._doubted = mind.doubting(self._opponents)

@@ -70,7 +70,7 @@ class Expecting:
 
         Args:
             shares: How likely the goals of the others are.
-            learns: Whether the agent reckons with learning. A course is then worth what the best
+            learns: True if the agent reckons with learning. A course is then worth what the best
                 courses reach after its first round, if that tells which supposition holds.
         """
         supposed = sorted(self._suppositions(shares), key=lambda each: -each.weight)

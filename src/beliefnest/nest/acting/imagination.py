@@ -54,7 +54,7 @@ class Performer:
 
     Attributes:
         calls: The remaining calls, the present one first.
-        failed: Whether the latest call failed.
+        failed: True if the latest call failed.
         doing: Generator of the present call, one step a tick; None: no call is under way.
     """
 

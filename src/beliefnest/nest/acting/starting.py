@@ -48,7 +48,7 @@ def start_of(
         path: Path of the node: the timeline's own simulator or one below it.
         moment: Moment of a timeline. If the timeline is not the node's own, the node is about to be
             forked from it.
-        has_physics: Whether agents in the body stand, fall and are stopped by blocks.
+        has_physics: True if agents in the body stand, fall and are stopped by blocks.
     """
     reading = history.reading(moment.timeline, path, moment.entries, moment.tick)
     is_own = moment.timeline.path == path

@@ -144,7 +144,7 @@ class _Finding:
         since: Tick since which the node has held that value.
         stood: The owner's feet in the parent node at that tick.
         parent: Value in the parent node at that tick.
-        was_known: Whether the node ever held another value.
+        was_known: True if the node ever held another value.
         missed: First later change in the parent node that did not reach the node.
         grounds: Grounds of the belief.
     """

@@ -86,7 +86,7 @@ class Grounds:
             step: The forest after the entry.
             old: Contents before it.
             new: Contents after it.
-            is_moved: Whether claims or unique items elsewhere changed the contents.
+            is_moved: True if claims or unique items elsewhere changed the contents.
         """
         tick, owner, basis = step.forest.tick, self.path[-1], new.basis
         acts = self.seen[0].get(tick, ()) if isinstance(step.entry, Frame) else ()

@@ -33,7 +33,7 @@ class Contents:
 
     Attributes:
         items: Item name to count.
-        complete: Whether it is known to hold nothing else.
+        complete: True if it is known to hold nothing else.
     """
 
     items: Mapping[str, int]
@@ -118,11 +118,11 @@ class Missed:
         before: Value in the parent node before the change.
         after: Value in the parent node after the change.
         acts: Acts on the element at that tick, as perceived in the parent node.
-        edited: Whether the parent node was changed by hand.
+        edited: True if the parent node was changed by hand.
         stood: The perceiver's feet in the parent node; None: unknown.
         absence: The reason, if the perceiver was not present.
         sightings: The looks that would have shown the change, if the perceiver was present.
-        saw_acts: Whether the perceiver perceived the acts, which did not show the change.
+        saw_acts: True if the perceiver perceived the acts, which did not show the change.
     """
 
     tick: int
@@ -165,7 +165,7 @@ class SeenElsewhere:
         item: Name of the item.
         where: Position of another container, name of the agent that has the item, or point of the
             floor; None: the holder saw the item moved, but not to which place.
-        edited: Whether the holder's belief was edited by hand so.
+        edited: True if the holder's belief was edited by hand so.
     """
 
     tick: int
@@ -182,9 +182,9 @@ class Ground:
         basis: Its source and tick.
         since: Tick at which the holder took it up.
         stood: The holder's feet in the parent node at that tick; None: unknown.
-        handed_on: Whether the holder perceived a value that was not current in the parent node, and
+        handed_on: True if the holder perceived a value that was not current in the parent node, and
             took over its basis with it.
-        is_change: Whether it shows a change of contents and not all of them: somebody else put
+        is_change: True if it shows a change of contents and not all of them: somebody else put
             items in or took some out.
         found: Known contents of the container then; None: it is no container, or only a change of
             its contents was perceived.
@@ -212,7 +212,7 @@ Reason = Ground | HeardClaim | SeenElsewhere
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """Element as it is in the world of the timeline from which all beliefs follow.
+    """Element in the world of the timeline from which all beliefs follow.
 
     Attributes:
         path: Belief path of that world, agent names; empty for the real world.
@@ -221,7 +221,7 @@ class Fact:
         block: Name of the block at its position; None for an agent, or if unknown.
         since: Tick of its last change on this branch; None: it has not changed on it.
         acts: Acts on the element at that tick.
-        edited: Whether the element was changed by hand at that tick.
+        edited: True if the element was changed by hand at that tick.
         forked_at: Tick at which the branch forked from another; None: it did not.
     """
 
@@ -245,13 +245,13 @@ class Level:
         value: Believed value.
         block: Name of the believed block at the position; None: unknown, or an agent.
         basis: Ground of the value; None if nothing is known.
-        current: Whether a perception in this tick backs the value.
+        current: True if a perception in this tick backs the value.
         since: Tick since which the belief has had this value. It is later than the tick of the
             basis if the holder took over a stale value. None: nothing was ever known.
         stood: The holder's feet in the parent node at tick `since`; None: unknown.
         missed: The first later change that did not reach the belief. For an element that was never
             known, the reason why it is not perceived now. None: there is none.
-        weighed: Whether hearers weigh claims (`testimony: informed`).
+        weighed: True if hearers weigh claims (`testimony: informed`).
         reasons: What the value rests on, in the order in which it came; empty if nothing is known.
     """
 

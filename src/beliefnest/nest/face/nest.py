@@ -53,7 +53,7 @@ class Nest(Joining, Visiting):
         store: File to record in; None: memory.
         claims_from: Function or model that reads claims out of utterances without claims
             (docs/claims.md); None: nobody reads them.
-        unique: Items of which everybody knows that there is only one. An agent that perceives such
+        unique: Items that everybody knows to be unique. An agent that perceives such
             an item in one place believes it to be nowhere else.
     """
 
@@ -109,7 +109,7 @@ class Nest(Joining, Visiting):
             limits: Memory and time that the world's process may use, if one is started.
             claims_from: Function or model that reads claims out of utterances; None: nobody does.
             renderer: Renderer of prompts, shared by several nests; None: a new one.
-            realtime: Whether the embedded world runs in real time, so that people can join
+            realtime: True if the embedded world runs in real time, so that people can join
                 (docs/people.md).
             listen: Address at which people join: a port of this machine, or HOST:PORT; 0: any free
                 port; None: Minecraft's port 25565.

@@ -128,18 +128,18 @@ class ShownSimulator(ABC):
         ended: bool = False,
         smooth: bool = False,
     ) -> "Inference":
-        """Infer what an agent wants and believes from the course that this simulator knows of it.
+        """Infer an agent's desires and beliefs from its course in this simulator.
 
         Args:
             model: The hypotheses.
             since: First tick of the evidence.
             until: Last tick of the evidence; None: the tick that the simulator shows.
-            ended: Whether the agent acted, after the last tick, on the goal at its position.
-            smooth: Whether marginals of `cell` and `credence_now` use later evidence too.
+            ended: True if the agent acted, after the last tick, on the goal at its position.
+            smooth: True if marginals of `cell` and `credence_now` use later evidence too.
 
         Raises:
             InputError: The model does not fit: no goal can be reached in any alternative, no
-                alternative agrees with what the simulator holds, or the agent was never seen.
+                alternative agrees with the simulator, or the agent was never seen.
             PathError: There is no such agent.
             TickError: A tick is in the future or before the start.
         """
@@ -457,7 +457,7 @@ class ShownNest:
         Args:
             a: Belief path of one simulator.
             b: Belief path of the other.
-            unknown: Whether to list elements that one of them does not know or have.
+            unknown: True to list elements that one of them does not know or have.
 
         Raises:
             TickError: The tick of this view is in the future or before the start.

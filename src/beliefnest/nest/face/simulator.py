@@ -119,7 +119,7 @@ class Simulator(ShownSimulator):
 
         Args:
             name: Name of the branch.
-            recursive: Whether to delete all timelines that were forked from it as well, including
+            recursive: True to delete all timelines that were forked from it as well, including
                 branches of beliefs.
 
         Raises:

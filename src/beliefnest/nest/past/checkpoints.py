@@ -28,7 +28,7 @@ from beliefnest.world.paths import BeliefPath
 __all__ = ["Checkpoints", "Pace"]
 
 _ROOMS = ("world", "perception", "belief", "nest/past")
-"""Folders of the package whose source decides what a forest holds."""
+"""Folders of the package whose source code determines forests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +162,7 @@ class Checkpoints:
 
 @cache
 def _program() -> bytes:
-    """Return a digest of the source files that decide what a forest holds."""
+    """Return a digest of the source files that determine forests."""
     digest = blake2b(VERSION.encode(), digest_size=16)
     for room in _ROOMS:
         for source in _sources(files("beliefnest").joinpath(room)):

@@ -1,4 +1,4 @@
-"""Judgments of a model beside those of people: correlations and their intervals."""
+"""Agreement of a model's judgments with those of people: correlations with intervals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -120,7 +120,7 @@ def _standardised(values: Floats) -> Floats:
 def _pearson(sums: Floats) -> Floats:
     n, x, y, xx, yy, xy = np.moveaxis(sums, -1, 0)
     spread = (n * xx - x * x) * (n * yy - y * y)
-    # A resample of one film only may have no spread but that of rounding.
+    # A resample of one film only may have no spread except by rounding.
     told = np.where(spread > 1e-20, spread, np.nan)
     with np.errstate(invalid="ignore"):
         coefficients: Floats = (n * xy - x * y) / np.sqrt(told)

@@ -278,7 +278,7 @@ class _Reader:
     def known(
         self, places: Sequence[str], goals: Sequence[str], named: Iterable[str]
     ) -> dict[str, str | None]:
-        """Return what the places hold that are not in doubt.
+        """Return the contents of the places that are not in doubt.
 
         Goals that nothing else places stand there in order; without such goals each place holds
         one of its own, named after it.
@@ -372,7 +372,7 @@ class _Reader:
         return people, errors
 
     def judged(self, film: Film, key: str, found: re.Match[str], about: About) -> list[str]:
-        """Return what the values of a key are about: goals, alternatives, or places' contents."""
+        """Return the subject of a key's values: goals, alternatives, or contents of places."""
         words, place = found["names"].split("_"), found["place"]
         if about == "desires":
             names: list[str] | None = self.spelled(words, film.goals)

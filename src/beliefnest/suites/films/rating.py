@@ -1,6 +1,6 @@
-"""A course in words, and ratings from 1 to 7 of what an agent wants and believed.
+"""Courses in words, and ratings of an agent's desires and beliefs from 1 to 7.
 
-The words are those of one simulator: what it holds of the floor, and where it perceived the agent.
+The words describe one simulator: its known floor, and the perceived places of the agent.
 """
 
 import re
@@ -245,7 +245,7 @@ def _edits_words(alternative: Alternative) -> str:
 
 
 def _actual_words(model: MindModel, state: State) -> str:
-    """Return what the observer knows of the doubt."""
+    """Return the observer's knowledge about the doubt."""
     if isinstance(model.actual, str) and model.actual != "unknown":
         return f"In fact it is {model.actual}."
     if model.observer_doubts:

@@ -92,7 +92,7 @@ class TrackRecorder:
         key: Key of the timeline.
         paths: Paths of its nodes; its own comes first.
         book: Poses of agents in the world of the timeline; filled here if `fills`.
-        fills: Whether this recorder fills the book and records claims.
+        fills: True if this recorder fills the book and records claims.
         onlooker: Called with the nodes at the beginning and after each entry.
 
     Attributes:

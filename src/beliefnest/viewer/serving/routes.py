@@ -38,7 +38,7 @@ class _News:
 
     Args:
         host: Host whose updates are checked.
-        is_ending: Whether the server has been told to stop.
+        is_ending: True if the server has been told to stop.
     """
 
     def __init__(self, host: Host, is_ending: Callable[[], bool]) -> None:

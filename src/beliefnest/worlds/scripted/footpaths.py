@@ -55,7 +55,7 @@ class InReach:
     Attributes:
         block: Position of the block.
         reach: Largest distance between the eyes and the block's middle.
-        beside: Whether feet and head must be outside the block.
+        beside: True if feet and head must be outside the block.
         has_free_line: Function of eyes and a block that returns whether the line between them is
             free; None if lines are always free.
     """
@@ -104,7 +104,7 @@ class Ground:
         registry: Shapes of blocks.
         box: The known part of space.
         blocks: Block state ids, -1 is unknown.
-        opens: Whether doors and gates that can be opened by hand count as open.
+        opens: True if doors and gates that can be opened by hand count as open.
     """
 
     def __init__(

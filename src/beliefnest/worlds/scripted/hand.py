@@ -106,8 +106,8 @@ class Doors:
     """Treatment of doors and gates that can be moved by hand.
 
     Attributes:
-        opens: Whether to open shut ones if no other path exists.
-        closes: Whether to shut them afterwards, including those that stood open.
+        opens: True to open shut ones if no other path exists.
+        closes: True to shut them afterwards, including those that stood open.
     """
 
     opens: bool = True
