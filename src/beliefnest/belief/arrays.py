@@ -87,8 +87,8 @@ class Space(NamedTuple):
         starts: int32, rows of each shape (see `perception.rays`).
         boxes: float64 (n, 6), shapes' boxes.
         reaches: uint8 by code, bit set of the sides on which a shape reaches out of its cell.
-        codes: uint16 by block number, and at the end that of unknown.
-        holds: bool by block number, and at the end that of unknown: whether it is a container.
+        codes: uint16, code of each block number; the last entry is for unknown blocks.
+        holds: bool, True for each block number of a container; the last entry is for unknown.
         origin: float64 (3,), added to scenario coordinates to get the grid's.
         senses: Limits of what agents can perceive.
         beam, shadows: Work arrays from `beams.beam_room` and `shadows.no_shadows`.

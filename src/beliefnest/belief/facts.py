@@ -46,7 +46,7 @@ class PlanFacts(GoalFacts, Protocol):
 
 
 Look = Callable[[BeliefPath], GoalFacts]
-"""Function from a belief path to the state there; `()` is reality, as the caller takes it."""
+"""Function from a belief path to the state there; `()` is the caller's reality."""
 
 
 class _View(Protocol):

@@ -9,7 +9,7 @@ from beliefnest.world.values import Point, Position
 __all__ = ["container_name", "named_place", "point_text", "titled"]
 
 _NEAR = 3.0
-"""Distance in blocks from a named place within which an agent is said to be there."""
+"""Distance in blocks up to which an agent counts as being at a named place."""
 
 
 def container_name(place: Position, setting: Setting) -> str:

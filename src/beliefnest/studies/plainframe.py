@@ -43,8 +43,8 @@ class Typed:
 def plain_frame(columns: Mapping[str, Typed]) -> "pandas.DataFrame":
     """Make a data frame of plain types: `object` for texts, `bool`, `int64`, `float64`.
 
-    A missing text is None. The plain types of truth values and whole numbers have no missing
-    value: a column with one is `float64`, with NaN if missing, and 1 and 0 for True and False.
+    A missing text is None. Plain `bool` and `int64` have no missing value. So
+    a column with missing values is `float64`: NaN if missing, 1 and 0 for True and False.
 
     Raises:
         MissingExtraError: pandas is not installed.

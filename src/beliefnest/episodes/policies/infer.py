@@ -150,8 +150,8 @@ def _by_deeds(
     state = view.about(*below)
     pursued = {name: goals_of_planner(goal, other, state) for name, goal in goals.items()}
 
-    # An item that the agent misses may have been taken unseen. Then the other went on to where it
-    # wants the item, while the planner's course ends where the item was taken.
+    # If the agent misses an item, the other may have taken it unseen and carried it on. The planner
+    # cannot explain the rest of this course, because its course ends when the item is taken.
     def is_judged(wants: list[Mapping[str, object]]) -> bool:
         items = [str(each["item"]) for each in wants if "item" in each]
         return bool(wants) and all(_is_somewhere(item, view.state) for item in items)

@@ -136,7 +136,7 @@ def _is_weight(value: object) -> bool:
 def goal_conditions(
     recording: Recording, given: Mapping[str, Any] | Sequence[Mapping[str, Any]]
 ) -> list[GoalCondition]:
-    """Return a condition in the language of goals, or several, as conditions."""
+    """Parse one condition, or a list of conditions, written as in goals."""
     listed = [given] if isinstance(given, Mapping) else list(given)
     return [
         condition

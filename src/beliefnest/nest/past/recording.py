@@ -107,7 +107,7 @@ class Recording:
         return self.journal.info(self.controller(path))
 
     def place_of(self, key: TimelineKey, tick: int) -> tuple[TimelineKey, int]:
-        """Return the timeline and the number of entries that hold a tick, back through the bases.
+        """Return the timeline or base that contains a tick, and its number of entries until then.
 
         Raises:
             TickError: The tick lies before the first one.

@@ -97,7 +97,7 @@ function areas ({ ticks }, panel, last, x, y) {
   })
 }
 
-/** Return the number of the last tick that is not after a tick, or -1. @returns {number} */
+/** Return the index of the last of some ticks at or before a tick, or -1. @returns {number} */
 function latest (ticks, tick) {
   return ticks.findLastIndex(each => each <= tick)
 }
