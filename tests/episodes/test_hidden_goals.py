@@ -154,8 +154,8 @@ def test_a_goal_that_the_planner_cannot_express_keeps_its_share(tmp_path: Path) 
         found = posterior(episode.view("ann"), 1)["bob"]
         state = episode.view("ann").about("bob")
         goals = task.possible_goals["bob"]
-        assert goals_of_planner(goals["belief"], "bob", state) == []
-        assert goals_of_planner(goals["north"], "bob", state) == [{"at": (11, 1, 1)}]
+        assert goals_of_planner(goals["belief"], "bob", state, state) == []
+        assert goals_of_planner(goals["north"], "bob", state, state) == [{"at": (11, 1, 1)}]
     assert found["belief"] == pytest.approx(1 / 3)
     assert found["north"] > 0.6
 
@@ -184,8 +184,8 @@ def test_a_door_opened_unseen_tells_who_went_through(
         assert old in text
         text = text.replace(old, new)
     with bn.Episode(bn.Task.from_mapping(yaml.safe_load(text)), {"dan": "infer:1"}) as episode:
-        view = episode.play(0).view("dan")
-        found = likelihoods_of_traces(view, order, USUAL, [{"ann": "down"}, {"ann": "out"}])
+        view, supposed = episode.play(0).view("dan"), [{"ann": "down"}, {"ann": "out"}]
+        found = likelihoods_of_traces(view, view.imagine(order, 0), order, USUAL, supposed)
     # Found is what a goal leads to with probability 0.9; of likelihoods only the ratio counts.
     assert [each / max(found) for each in found] == pytest.approx(expected)
 

@@ -74,7 +74,7 @@ class ConditionEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, om
 
 @dataclass(frozen=True, slots=True)
 class Pursuit:
-    """What an agent can walk to or take to bring a fact about.
+    """Places and items that an agent can go to or take to bring a fact about.
 
     Attributes:
         at: Cells to stand in.

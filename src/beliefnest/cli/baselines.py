@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.studies.accuracy_figure import plot_accuracy
 from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
+from beliefnest.version import VERSION
 
 __all__ = ["BaselineOptions", "page_of", "run_baselines"]
 
@@ -141,10 +143,11 @@ def page_of(names: Sequence[str], found: Sequence[Group], seeds: int) -> str:
         "`infer` of that order solves the task; `search` succeeds only by chance.",
         f"`beliefnest play --baselines --seeds {seeds} --page docs/tasks.md` writes this page.",
         "",
-        f"The table shows {seeds} seeds in the scripted world. Agents without a policy follow the",
-        "task's script. Success has a 95 % Wilson interval. Ticks are the mean over successful",
-        "episodes. Messages (of players) and false beliefs (of all agents, over the rounds) are",
-        "means over all episodes. Intervals of means are 95 % bootstrap intervals.",
+        f"The table shows {seeds} seeds in the scripted world, with BeliefNest {VERSION}, on",
+        f"{date.today()}. Agents without a policy follow the task's script. Success has a 95 %",
+        "Wilson interval. Ticks are the mean over successful episodes. Messages (of players) and",
+        "false beliefs (of all agents, over the rounds) are means over all episodes. Intervals of",
+        "means are 95 % bootstrap intervals.",
         "",
         "![Success by task and policy, with intervals](img/baselines.png)",
         "",

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from beliefnest.belief.conditions import Pursuit
 from beliefnest.belief.grounds import Source
+from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.policies.course_planner import USUAL, Bounds
@@ -19,6 +20,7 @@ from beliefnest.episodes.policies.search import Search
 from beliefnest.episodes.policies.traces import likelihoods_of_traces
 from beliefnest.errors import InputError
 from beliefnest.minds.mind_model import MindModel
+from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.claims import ClaimKind
 from beliefnest.world.values import EventKind, Position
@@ -32,6 +34,12 @@ _WORTH = 100.0
 
 _HONEST = 0.9
 """Probability that a claim is true if the speaker's goal fits the hearer's, false if it does not.
+"""
+
+_WANTED = 0.9
+"""Probability that an item which an agent is seen to take is part of its goal.
+
+The planner reaches one cell far and hands four, so that a taking may have no place in its course.
 """
 
 _RATIONALITY = 1.0
@@ -67,24 +75,32 @@ def posterior(view: AgentView, order: int, bounds: Bounds = USUAL) -> GoalShares
         order: Order of Theory of Mind; 0: others are assumed to share the agent's belief.
         bounds: Limits of the planner that explains traces.
     """
+    start = view.imagine(order, tick=0)
     found = {}
     for other, prior in uniform(view.brief).items():
         goals = view.brief.possible_goals[other]
-        weights = dict(_by_deeds(view, order, other, goals, prior))
+        first = start.view((other,) if order else ())
+        weights = dict(_by_deeds(view, order, other, goals, prior, first))
         for is_true in _judged_claims(view, other):
             for name, goal in goals.items():
                 supposed = view.brief.supposing({other: goal}).goals
                 is_opposed = supposed[other].differs(supposed[view.agent])
                 weights[name] *= _HONEST if is_true != is_opposed else 1 - _HONEST
+        for item in _taken(view.state, other):
+            for name, goal in goals.items():
+                is_wanted = any(item in one.fact.items for one in goal.reach)
+                weights[name] *= _WANTED if is_wanted else 1 - _WANTED
         total = sum(weights.values())
         found[other] = {name: weight / total for name, weight in weights.items()}
-    return _by_traces(view, order, bounds, found)
+    return _by_traces(view, start, order, bounds, found)
 
 
-def _by_traces(view: AgentView, order: int, bounds: Bounds, prior: GoalShares) -> GoalShares:
+def _by_traces(
+    view: AgentView, start: Imagination, order: int, bounds: Bounds, prior: GoalShares
+) -> GoalShares:
     """Update the probabilities of goals by the traces that the others left."""
     combined = list(combinations(prior))
-    likely = likelihoods_of_traces(view, order, bounds, [goals for _, goals in combined])
+    likely = likelihoods_of_traces(view, start, order, bounds, [goals for _, goals in combined])
     weights = [share * each for (share, _), each in zip(combined, likely, strict=True)]
     total = math.fsum(weights)
     return {
@@ -101,30 +117,42 @@ def _by_traces(view: AgentView, order: int, bounds: Bounds, prior: GoalShares) -
     }
 
 
-def goals_of_planner(goal: Goal, agent: str, state: State) -> list[Mapping[str, object]]:
+def goals_of_planner(
+    goal: Goal, agent: str, state: State, first: State | NodeView
+) -> list[Mapping[str, object]]:
     """Return the parts of a goal that the planner of `MindModel` can pursue; empty: none.
 
     Args:
         goal: Possible goal of the agent.
         agent: The agent.
         state: Its assumed belief.
+        first: Its assumed belief in the beginning, before it took anything.
     """
-    mine = state.agents[agent].inventory
+    mine = first.agents[agent].inventory
     return [
         each
         for one in goal.reach
         if not one.path
-        for each in _pursued(one.fact.pursuit(agent, mine), state)
+        for each in _pursued(one.fact.pursuit(agent, mine), state, first)
     ]
 
 
-def _pursued(pursuit: Pursuit, state: State) -> Iterator[Mapping[str, object]]:
+def _pursued(
+    pursuit: Pursuit, state: State, first: State | NodeView
+) -> Iterator[Mapping[str, object]]:
     near = {at for place in pursuit.near for at in _in_reach(place, state)}
     yield from ({"at": at} for at in (*pursuit.at, *sorted(near)))
-    yield from ({"item": item} for item in pursuit.items if _is_somewhere(item, state))
+    for item in pursuit.items:
+        if _is_somewhere(item, first) or _is_somewhere(item, state):
+            yield {"item": item}
 
 
-def _is_somewhere(item: str, state: State) -> bool:
+def _is_missed(item: str, state: State) -> bool:
+    held = any(agent.inventory.get(item, 0) for agent in state.agents.values())
+    return not held and not _is_somewhere(item, state)
+
+
+def _is_somewhere(item: str, state: State | NodeView) -> bool:
     dropped = any(each.name == item for each in state.items.values())
     return dropped or any(held.items.get(item, 0) for held in state.containers.values())
 
@@ -144,17 +172,18 @@ def _by_deeds(
     other: str,
     goals: Mapping[str, Goal],
     prior: Mapping[str, float],
+    first: NodeView,
 ) -> Mapping[str, float]:
     """Return the posterior given another agent's course; the prior if that is no evidence."""
     below = (other,) if order else ()
     state = view.about(*below)
-    pursued = {name: goals_of_planner(goal, other, state) for name, goal in goals.items()}
+    pursued = {name: goals_of_planner(goal, other, state, first) for name, goal in goals.items()}
 
     # If the agent misses an item, the other may have taken it unseen and carried it on. The planner
     # cannot explain the rest of this course, because its course ends when the item is taken.
     def is_judged(wants: list[Mapping[str, object]]) -> bool:
         items = [str(each["item"]) for each in wants if "item" in each]
-        return bool(wants) and all(_is_somewhere(item, view.state) for item in items)
+        return bool(wants) and not any(_is_missed(item, view.state) for item in items)
 
     expressed = [name for name in goals if is_judged(pursued[name])]
     if len(expressed) < 2 or state.agents[other].position is None:
@@ -185,6 +214,16 @@ def _by_deeds(
     known = sum(prior[name] for name in expressed)
     inferred = dict(zip(expressed, (shares / shares.sum() * known).tolist(), strict=True))
     return {name: inferred.get(name, share) for name, share in prior.items()}
+
+
+def _taken(state: State, agent: str) -> list[str]:
+    """Return the items that an agent was seen to take, sorted."""
+    takings = (
+        event.detail["items"]
+        for event in state.events
+        if event.actor == agent and event.kind is EventKind.GET_ITEM_FROM_CHEST
+    )
+    return sorted({item for items in takings for item in items})
 
 
 def _judged_claims(view: AgentView, speaker: str) -> Iterator[bool]:

@@ -39,17 +39,21 @@ class _Moment:
 
 
 def likelihoods_of_traces(
-    view: AgentView, order: int, bounds: Bounds, supposed: Sequence[Mapping[str, str]]
+    view: AgentView,
+    start: Imagination,
+    order: int,
+    bounds: Bounds,
+    supposed: Sequence[Mapping[str, str]],
 ) -> list[float]:
     """Return the likelihood of the found world for combinations of goals; 1 without a trace.
 
     Args:
         view: View of the agent.
+        start: Belief of the agent in the beginning.
         order: Order of Theory of Mind; 0: others are assumed to share the agent's belief.
         bounds: Limits of the planner.
         supposed: Names of the goals of other agents, by agent.
     """
-    start = view.imagine(order, tick=0)
     found = _Found(view.state, start)
     places = found.changed(found.now)
     if not found.mismatches([found.first], places):

@@ -4,7 +4,7 @@ Dan leaves Amy and Ben in a hall. One of them takes a treasure out of the vault 
 storeroom, the other fetches something to eat; each has a storeroom at one end of the hall. Dan
 comes back, finds the vault empty, and has only time to look into one storeroom. The doors tell who
 it was: thieves enter the vault by the door nearer to them, leave it on the side of their storeroom,
-and leave doors open. Whoever does not infer it has to guess.
+and leave doors open. If Dan does not infer who it was, he has to guess.
 """
 
 import random
