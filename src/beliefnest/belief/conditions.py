@@ -584,7 +584,10 @@ def conditions_of(entry: ConditionEntry, agents: Collection[str]) -> list[GoalCo
             raise InputError(f"a condition is about {name!r}, who is no agent")
     if any(len(site) != len(entry.agents) for site in entry.sites):
         raise InputError("each site of a condition must have as many levers as there are `agents`")
-    given = msgspec.to_builtins(entry)
+    # msgspec omits a default by its identity, which a number loses on its way to another process.
+    default = msgspec.structs.asdict(ConditionEntry())
+    named = msgspec.structs.asdict(entry).items()
+    given = {name: value for name, value in named if value != default[name]}
     keys = given.keys() - {"path"}
     kinds = [kind for kind in KINDS if {*kind.keys} <= keys <= {*kind.keys, *kind.more}]
     facts = [fact for kind in kinds for fact in kind.read(entry)]
