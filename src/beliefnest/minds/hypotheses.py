@@ -3,14 +3,16 @@
 Weights are logarithms of probabilities; -inf means impossible.
 """
 
+import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.minds.mind_model import MindModel
-from beliefnest.minds.planner import Knowledge, Planner, PlanRules, planner_for
+from beliefnest.minds.planner import Knowledge, Planner, PlanRules, log_sum, planner_for
 from beliefnest.minds.stage import Stage
 from beliefnest.world.values import Position
 
@@ -96,27 +98,23 @@ class Hypotheses:
 
     def planner(self, stage: Stage) -> Planner:
         """Return the planner of a stage."""
-        return planner_for(stage, self.rules, self.utilities, self.credences)
+        return planner_for(stage, self._key, self._new_planner)
+
+    def _new_planner(self, stage: Stage) -> Planner:
+        return Planner(stage, self.rules, self.utilities, self.credences)
+
+    @cached_property
+    def _key(self) -> bytes:
+        shapes = (self.rules, self.utilities.shape, self.credences.shape)
+        digest = hashlib.blake2b(repr(shapes).encode())
+        digest.update(np.ascontiguousarray(self.utilities).tobytes())
+        digest.update(np.ascontiguousarray(self.credences).tobytes())
+        return digest.digest()
 
     def log_policy(self, stage: Stage, cell: Position, knowledge: Knowledge) -> Floats:
         """Log probabilities (actions, rationalities, utilities, credences or 1) in a state."""
-        q = self.planner(stage).q(stage.index[cell], knowledge)
-        betas = np.array(self.rationalities)[:, None, None]
-        # An unavailable action has probability 0, even for an irrational agent.
-        there = np.logical_or.reduce(np.isfinite(q), axis=(1, 2))
-        scaled = np.where(there[:, None, None], q, 0.0)[:, None] * betas
-        scaled[~there] = -np.inf
-        policy: Floats = scaled - log_sum(scaled)
-        return policy
-
-
-def log_sum(parts: Floats) -> Floats:
-    """Log of the sum of exponentials along the first axis; -inf if all are -inf."""
-    top = parts.max(axis=0)
-    safe = np.where(np.isfinite(top), top, 0.0)
-    with np.errstate(divide="ignore"):
-        total: Floats = safe + np.log(np.exp(parts - safe).sum(axis=0))
-    return total
+        planner = self.planner(stage)
+        return planner.log_policy(stage.index[cell], knowledge, self.rationalities)
 
 
 def joined(parts: Iterable[Floats]) -> Floats:

@@ -7,8 +7,8 @@ the cells at which the agent perceives nothing new; from all other cells the nex
 a smaller set. If only one alternative is believed, values do not depend on the credence.
 """
 
-import hashlib
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -18,7 +18,7 @@ import numpy.typing as npt
 from beliefnest.minds.relaxing import relax
 from beliefnest.minds.stage import Stage, numbers_in
 
-__all__ = ["Knowledge", "PlanRules", "Planner", "count_values", "planner_for"]
+__all__ = ["Knowledge", "PlanRules", "Planner", "count_values", "log_sum", "planner_for"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -26,6 +26,9 @@ Knowledge = tuple[int, int]
 """Alternatives that percepts leave possible, and the believed ones among them, as bits."""
 
 _MOST_COUNTED = 4096
+
+_POLICY_ROOM = 32 * 2**20
+"""Bytes of policies that a planner keeps."""
 
 _ROOM = 256 * 2**20
 """Limit of the values of all planners together, in bytes."""
@@ -91,7 +94,11 @@ class _Kinds:
 
 
 class Planner:
-    """Values of one stage for utilities (u, goals) and credences (w, alternatives)."""
+    """Values of one stage for utilities (u, goals) and credences (w, alternatives).
+
+    Attributes:
+        size: Bytes that values and policies take.
+    """
 
     def __init__(
         self, stage: Stage, rules: PlanRules, utilities: Floats, credences: Floats
@@ -99,12 +106,28 @@ class Planner:
         self.stage, self.rules = stage, rules
         self._utilities, self._credences = utilities, credences
         self._solved: dict[Knowledge, _Values] = {}
+        self.size = 0
         self._kinds: dict[int, _Kinds] = {}
+        self._policies: dict[tuple[int, Knowledge, tuple[float, ...]], Floats] = {}
 
-    @property
-    def size(self) -> int:
-        """Size of its values in bytes."""
-        return sum(each.table.nbytes for each in self._solved.values())
+    def log_policy(
+        self, cell: int, knowledge: Knowledge, rationalities: tuple[float, ...]
+    ) -> Floats:
+        """Log probabilities (actions, rationalities, utilities, credences or 1) in a state."""
+        key = (cell, knowledge, rationalities)
+        found = self._policies.get(key)
+        if found is None:
+            q = self.q(cell, knowledge)
+            betas = np.array(rationalities)[:, None, None]
+            # An unavailable action has probability 0, even for an irrational agent.
+            there = np.logical_or.reduce(np.isfinite(q), axis=(1, 2))
+            scaled = np.where(there[:, None, None], q, 0.0)[:, None] * betas
+            scaled[~there] = -np.inf
+            found = self._policies[key] = scaled - log_sum(scaled)
+            self.size += found.nbytes
+            while len(self._policies) * found.nbytes > _POLICY_ROOM:
+                self.size -= self._policies.pop(next(iter(self._policies))).nbytes
+        return found
 
     def actions(self, cell: int, knowledge: Knowledge) -> npt.NDArray[np.bool_]:
         """Return a mask of the available actions: stay, steps, openings, acts on goals."""
@@ -182,6 +205,7 @@ class Planner:
         found = self._solved.get(knowledge)
         if found is None:
             found = self._solved[knowledge] = self._computed(knowledge)
+            self.size += found.table.nbytes
         return found
 
     def _computed(self, knowledge: Knowledge) -> _Values:
@@ -269,21 +293,24 @@ def count_values(stage: Stage, credences: int) -> int:
     return max(1, total)
 
 
+def log_sum(parts: Floats) -> Floats:
+    """Log of the sum of exponentials along the first axis; -inf if all are -inf."""
+    top = parts.max(axis=0)
+    safe = np.where(np.isfinite(top), top, 0.0)
+    with np.errstate(divide="ignore"):
+        total: Floats = safe + np.log(np.exp(parts - safe).sum(axis=0))
+    return total
+
+
 class _Cache:
     """Planners by content, which drops the oldest ones when their values exceed the limit."""
 
     def __init__(self) -> None:
         self._planners: OrderedDict[bytes, Planner] = OrderedDict()
 
-    def planner(
-        self, stage: Stage, rules: PlanRules, utilities: Floats, credences: Floats
-    ) -> Planner:
-        digest = hashlib.blake2b(stage.key)
-        digest.update(repr((rules, utilities.shape, credences.shape)).encode())
-        digest.update(np.ascontiguousarray(utilities).tobytes())
-        digest.update(np.ascontiguousarray(credences).tobytes())
-        key = digest.digest()
-        found = self._planners.pop(key, None) or Planner(stage, rules, utilities, credences)
+    def planner(self, stage: Stage, key: bytes, make: Callable[[Stage], Planner]) -> Planner:
+        key = stage.key + key
+        found = self._planners.pop(key, None) or make(stage)
         room = _ROOM - found.size
         for other in reversed(list(self._planners)):
             room -= self._planners[other].size
@@ -298,6 +325,6 @@ def _cache() -> _Cache:
     return _Cache()
 
 
-def planner_for(stage: Stage, rules: PlanRules, utilities: Floats, credences: Floats) -> Planner:
-    """Return the planner of a stage and hypotheses; equal ones are computed once."""
-    return _cache().planner(stage, rules, utilities, credences)
+def planner_for(stage: Stage, key: bytes, make: Callable[[Stage], Planner]) -> Planner:
+    """Return the planner of a stage and of hypotheses with a digest; equal ones are shared."""
+    return _cache().planner(stage, key, make)

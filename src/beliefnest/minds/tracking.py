@@ -14,7 +14,6 @@ from math import ceil
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.minds.alternatives import middle_of
 from beliefnest.minds.evidence import Moment
 from beliefnest.minds.hypotheses import (
     Hypotheses,
@@ -27,12 +26,22 @@ from beliefnest.minds.hypotheses import (
     log_sum,
     told,
 )
-from beliefnest.minds.planner import Knowledge
 from beliefnest.minds.stage import Stage, shortest
 from beliefnest.minds.surroundings import Scene
-from beliefnest.world.values import EYE_HEIGHT, Position
+from beliefnest.minds.transitions import (
+    act,
+    arrive,
+    by_stage,
+    goal_acts,
+    learn,
+    look_round,
+    spread,
+    stage_of,
+    unseen,
+)
+from beliefnest.world.values import Position
 
-__all__ = ["Step", "Tracker", "known_after"]
+__all__ = ["Step", "Tracker"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -212,7 +221,10 @@ class Tracker:
                 self._act_unseen(moment.tick)
             self._hear(moment)
             if not due:
-                self.states = self._planned(moment.scene, self.states)
+                self.states = tuple(
+                    self._look_round(moment.scene, actual, weights, self.tick)
+                    for actual, weights in enumerate(self.states)
+                )
             return
         if self._gap is not None:
             self._reappear(moment)
@@ -298,7 +310,7 @@ class Tracker:
         stage = self._stage(before)
         if cell not in stage.index:
             # The observer did not know before that an agent can stand there.
-            stage = self._stage_of(moment.scene, before, cell)
+            stage = stage_of(moment.scene, before, cell)
         found: list[Mapping[State, Floats]] = []
         for actual, weights in enumerate(self.states):
             steps = shortest(stage, actual, before, cell)
@@ -319,104 +331,46 @@ class Tracker:
         """Advance over several actions; only the end of the last one is seen."""
         for _ in range(steps - 1):
             sums = self._sums(actual, tick, weights)
-            self._spread(stage, actual, weights, sums)
+            spread(self.hypotheses, stage, actual, weights, sums)
             weights = sums.total()
             sums = self._sums(actual, tick, weights)
-            self._perceived_by_plan(stage, actual, weights, sums)
+            look_round(stage, actual, weights, sums)
             weights = sums.total()
         sums = self._sums(actual, tick, weights)
-        self._arrived(stage, actual, weights, cell, sums)
+        arrive(self.hypotheses, stage, actual, weights, cell, sums)
         return sums.total()
 
     def _seen(self, stage: Stage, states: States, cell: Position) -> States:
         found = []
         for actual, weights in enumerate(states):
             sums = self._sums(actual, self.tick, weights)
-            self._arrived(stage, actual, weights, cell, sums)
+            arrive(self.hypotheses, stage, actual, weights, cell, sums)
             found.append(sums.total())
         return tuple(found)
 
-    def _arrived(
-        self,
-        stage: Stage,
-        actual: int,
-        weights: Mapping[State, Floats],
-        cell: Position,
-        sums: Sums,
-    ) -> None:
-        """Advance over one action without an event; then the agent is seen in a cell."""
-        for state, weight in weights.items():
-            place, possible, believed, has_ended = state
-            if has_ended or place not in stage.index:
-                if place == cell:
-                    sums.add(state, weight, state)
-                continue
-            goal = stage.index.get(cell, -1)
-            moves = stage.moves[actual, stage.index[place]].tolist()
-            leading = [step + 1 for step, to in enumerate(moves) if to == goal]
-            if place == cell:
-                leading.insert(0, 0)
-            if not leading:
-                continue
-            knowledge = (possible, believed)
-            policy = self.hypotheses.log_policy(stage, place, knowledge)
-            by = (stage, place, knowledge, tuple(leading))
-            sums.add((cell, *knowledge, False), weight, state, policy, by)
-            acts = self._unmarked(stage, policy) if place == cell else ()
-            if acts:
-                by = (stage, place, knowledge, tuple(acts))
-                sums.add((cell, *knowledge, True), weight, state, policy, by)
-
-    def _unmarked(self, stage: Stage, policy: Floats) -> list[int]:
-        """Return the available acts on goals that leave no event."""
-        first = 1 + stage.moves.shape[2] + len(stage.boxes)
-        return [
-            first + goal
-            for goal in range(stage.acts.shape[1])
-            if not stage.marked[goal] and np.isfinite(policy[first + goal]).any()
-        ]
-
     def _did(self, stage: Stage, moment: Moment) -> States:
         """Advance over a perceived opening or act on a goal."""
-        steps = stage.moves.shape[2]
         if moment.act is not None:
-            action = 1 + steps + len(stage.boxes) + moment.act
+            action = goal_acts(stage)[moment.act]
         elif moment.opened is not None and moment.opened in stage.box_index:
-            action = 1 + steps + stage.box_index[moment.opened]
+            action = 1 + stage.moves.shape[2] + stage.box_index[moment.opened]
         else:
             return tuple({} for _ in self.states)
         found = []
         for actual, weights in enumerate(self.states):
             sums = self._sums(actual, moment.tick, weights)
-            for state, weight in weights.items():
-                place, possible, believed, has_ended = state
-                if has_ended or place not in stage.index:
-                    continue
-                knowledge = (possible, believed)
-                policy = self.hypotheses.log_policy(stage, place, knowledge)
-                if np.isfinite(policy[action]).any():
-                    by = (stage, place, knowledge, (action,))
-                    sums.add((place, *knowledge, moment.act is not None), weight, state, policy, by)
+            act(self.hypotheses, stage, weights, (action,), sums, ends=moment.act is not None)
             found.append(sums.total())
         return tuple(found)
 
     def _end(self, tick: int) -> None:
         """Advance over the act after the last tick."""
+        assert self._moment is not None
         found = []
         for actual, weights in enumerate(self.states):
             sums = self._sums(actual, tick, weights)
-            for state, weight in weights.items():
-                place, possible, believed, has_ended = state
-                stage = self._stage(place)
-                if has_ended or place not in stage.index:
-                    continue
-                knowledge = (possible, believed)
-                policy = self.hypotheses.log_policy(stage, place, knowledge)
-                first = 1 + stage.moves.shape[2] + len(stage.boxes)
-                acts = tuple(range(first, len(policy)))
-                if np.isfinite(policy[first:]).any():
-                    by = (stage, place, knowledge, acts)
-                    sums.add((place, *knowledge, True), weight, state, policy, by)
+            for stage, part in by_stage(self._moment.scene, weights):
+                act(self.hypotheses, stage, part, goal_acts(stage), sums, ends=True)
             found.append(sums.total())
         self.states = tuple(found)
         self._note(tick, f"acts on a goal where it is, at {self._cell}, and ends", _ENDS)
@@ -439,8 +393,8 @@ class Tracker:
     def _unseen_action(self, scene: Scene, moment: Moment, states: States) -> States:
         found = []
         for actual, weights in enumerate(states):
-            spread = self._spread_all(scene, actual, weights, self.tick)
-            hidden = self._hidden(moment, actual, spread)
+            moved = self._spread_all(scene, actual, weights, self.tick)
+            hidden = unseen(moment, actual, moved)
             found.append(self._look_round(moment.scene, actual, hidden, self.tick))
         return tuple(found)
 
@@ -448,61 +402,9 @@ class Tracker:
         self, scene: Scene, actual: int, weights: Mapping[State, Floats], tick: int
     ) -> Mapping[State, Floats]:
         sums = self._sums(actual, tick, weights)
-        for stage, part in self._by_stage(scene, weights):
-            self._spread(stage, actual, part, sums)
+        for stage, part in by_stage(scene, weights):
+            spread(self.hypotheses, stage, actual, part, sums)
         return sums.total()
-
-    def _by_stage(
-        self, scene: Scene, weights: Mapping[State, Floats]
-    ) -> list[tuple[Stage, dict[State, Floats]]]:
-        parts: dict[int, tuple[Stage, dict[State, Floats]]] = {}
-        for state, weight in weights.items():
-            stage = self._stage_of(scene, state[0])
-            parts.setdefault(id(stage), (stage, {}))[1][state] = weight
-        return list(parts.values())
-
-    def _spread(
-        self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: Sums
-    ) -> None:
-        """Advance over one action of an agent out of sight."""
-        steps = stage.moves.shape[2]
-        for state, weight in weights.items():
-            place, possible, believed, has_ended = state
-            if has_ended or place not in stage.index:
-                sums.add(state, weight, state)
-                continue
-            number = stage.index[place]
-            knowledge = (possible, believed)
-            policy = self.hypotheses.log_policy(stage, place, knowledge)
-            leading: dict[int, list[int]] = {number: [0]}
-            for step, to in enumerate(stage.moves[actual, number].tolist()):
-                leading.setdefault(to, []).append(step + 1)
-            for to, actions in leading.items():
-                by = (stage, place, knowledge, tuple(actions))
-                sums.add((stage.cells[to], *knowledge, False), weight, state, policy, by)
-            there = np.isfinite(policy[1 + steps :]).any(axis=(1, 2, 3))
-            for action in (np.flatnonzero(there) + 1 + steps).tolist():
-                by = (stage, place, knowledge, (action,))
-                box = action - 1 - steps
-                is_opening = box < len(stage.boxes)
-                after = knowledge
-                if is_opening:
-                    after = conditioned(knowledge, int(stage.content[box, actual]))
-                sums.add((place, *after, not is_opening), weight, state, policy, by)
-
-    def _hidden(
-        self, moment: Moment, actual: int, weights: Mapping[State, Floats]
-    ) -> Mapping[State, Floats]:
-        """Return the states in which the observer, if it is present, does not see the agent."""
-        if moment.watch is None or not weights:
-            return weights
-        feet, yaw, pitch = moment.watch
-        cells = sorted({state[0] for state in weights})
-        eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])
-        geometry = moment.scene.worlds.geometry(actual)
-        seen = geometry.sees_agents(eye, yaw, pitch, [middle_of(cell) for cell in cells])
-        visible = {cell for cell, is_seen in zip(cells, seen.tolist(), strict=True) if is_seen}
-        return {state: weight for state, weight in weights.items() if state[0] not in visible}
 
     def _reappear(self, moment: Moment) -> None:
         """Explain the cell in which the agent is seen again."""
@@ -518,7 +420,7 @@ class Tracker:
             gap.moments[-1] = last
         found: list[Mapping[State, Floats]] = []
         for actual in range(self.hypotheses.alternatives):
-            stage = self._stage_of(last.scene, gap.cell, moment.cell)
+            stage = stage_of(last.scene, gap.cell, moment.cell)
             steps = shortest(stage, actual, gap.cell, moment.cell)
             if steps is None:
                 found.append({})
@@ -531,7 +433,7 @@ class Tracker:
         self._quiet = 0
         self._cell = moment.cell
         if (moment.act is not None or moment.opened is not None) and not self._is_impossible():
-            self.states = self._did(self._stage_of(moment.scene, moment.cell), moment)
+            self.states = self._did(stage_of(moment.scene, moment.cell), moment)
             self._over = moment.act is not None
         self._perceive(moment)
         text = f"is seen again at {moment.cell}, last seen at {gap.cell}"
@@ -542,8 +444,8 @@ class Tracker:
     ) -> Mapping[State, Floats]:
         assert moment.cell is not None
         sums = self._sums(actual, moment.tick, weights)
-        for stage, part in self._by_stage(scene, weights):
-            self._arrived(stage, actual, part, moment.cell, sums)
+        for stage, part in by_stage(scene, weights):
+            arrive(self.hypotheses, stage, actual, part, moment.cell, sums)
         return sums.total()
 
     def _again_through(
@@ -563,7 +465,7 @@ class Tracker:
             weights = self._spread_all(before.scene, actual, weights, ends[number])
             now = _last_until(gap.moments, ends[number])
             if ends[number] < moment.tick and ends[number] != ends[number + 1]:
-                weights = self._hidden(now, actual, weights)
+                weights = unseen(now, actual, weights)
             weights = self._look_round(now.scene, actual, weights, ends[number])
             while heard < len(gap.moments) and gap.moments[heard].tick <= ends[number]:
                 weights = self._told_of(actual, weights, gap.moments[heard])
@@ -578,14 +480,8 @@ class Tracker:
         found = []
         for actual, weights in enumerate(self.states):
             sums = self._sums(actual, moment.tick, weights)
-            for state, weight in weights.items():
-                place, possible, believed, has_ended = state
-                knowledge = (possible, believed)
-                if not has_ended:
-                    for learnt in moment.learnt:
-                        knowledge = conditioned(knowledge, learnt[actual])
-                    knowledge = conditioned(knowledge, moment.alike[actual])
-                sums.add((place, *knowledge, has_ended), weight, state)
+            masks = [same[actual] for same in (*moment.learnt, moment.alike)]
+            learn(weights, conditioned, masks, sums)
             found.append(self._told_of(actual, sums.total(), moment))
         self.states = tuple(found)
         self._moment, self.tick = moment, max(self.tick, moment.tick)
@@ -612,50 +508,25 @@ class Tracker:
         if not moment.claims:
             return weights
         sums = self._sums(actual, moment.tick, weights)
-        for state, weight in weights.items():
-            place, possible, believed, has_ended = state
-            knowledge = (possible, believed)
-            for mask in () if has_ended else moment.claims:
-                knowledge = told(knowledge, mask)
-            sums.add((place, *knowledge, has_ended), weight, state)
+        learn(weights, told, moment.claims, sums)
         return sums.total()
-
-    def _planned(self, scene: Scene, states: States) -> States:
-        return tuple(
-            self._look_round(scene, actual, weights, self.tick)
-            for actual, weights in enumerate(states)
-        )
 
     def _look_round(
         self, scene: Scene, actual: int, weights: Mapping[State, Floats], tick: int
     ) -> Mapping[State, Floats]:
         """Let an agent out of sight perceive from the middle of its cell."""
         sums = self._sums(actual, tick, weights)
-        for stage, part in self._by_stage(scene, weights):
-            self._perceived_by_plan(stage, actual, part, sums)
+        for stage, part in by_stage(scene, weights):
+            look_round(stage, actual, part, sums)
         return sums.total()
-
-    def _perceived_by_plan(
-        self, stage: Stage, actual: int, weights: Mapping[State, Floats], sums: Sums
-    ) -> None:
-        for state, weight in weights.items():
-            place, possible, believed, has_ended = state
-            if has_ended or place not in stage.index:
-                sums.add(state, weight, state)
-                continue
-            same = int(stage.same[actual, stage.index[place]])
-            sums.add((place, *conditioned((possible, believed), same), False), weight, state)
 
     # Records
 
     def foresee(self) -> None:
         """Let the agent do one more action without observation."""
         assert self._moment is not None
-        found = []
-        for actual, weights in enumerate(self.states):
-            spread = self._spread_all(self._moment.scene, actual, weights, self.tick)
-            found.append(self._look_round(self._moment.scene, actual, spread, self.tick))
-        self.states = tuple(found)
+        nobody = replace(self._moment, watch=None)
+        self.states = self._unseen_action(nobody.scene, nobody, self.states)
 
     def masses(self) -> tuple[Mapping[State, Floats], ...]:
         """Return log weights of the states by credence, summed with the prior over the rest."""
@@ -670,11 +541,7 @@ class Tracker:
 
     def _stage(self, cell: Position) -> Stage:
         assert self._moment is not None
-        return self._stage_of(self._moment.scene, cell)
-
-    def _stage_of(self, scene: Scene, *cells: Position) -> Stage:
-        inside = [cell for cell in cells if cell in scene.worlds.box]
-        return scene.stage(*inside)
+        return stage_of(self._moment.scene, cell)
 
     def _is_impossible(self) -> bool:
         return not any(
@@ -726,25 +593,4 @@ def _last_until(moments: Sequence[Moment], tick: int) -> Moment:
     for moment in moments:
         if moment.tick <= tick:
             found = moment
-    return found
-
-
-def known_after(moments: Sequence[Moment], alternatives: int) -> list[Knowledge]:
-    """Return an agent's knowledge by actual alternative, from its percepts at some moments.
-
-    While the agent is out of the observer's sight, it is credited with no percepts (semantics,
-    section 5).
-    """
-    everyone = (1 << alternatives) - 1
-    found = []
-    for actual in range(alternatives):
-        knowledge = (everyone, everyone)
-        for moment in moments:
-            for learnt in moment.learnt:
-                knowledge = conditioned(knowledge, learnt[actual])
-            if moment.alike:
-                knowledge = conditioned(knowledge, moment.alike[actual])
-            for mask in moment.claims:
-                knowledge = told(knowledge, mask)
-        found.append(knowledge)
     return found

@@ -19,8 +19,6 @@ from beliefnest.world.values import Items, Position
 
 __all__ = ["Act", "Changes", "Draw", "Open", "Step", "Strategy", "Walker"]
 
-_MOST_POLICIES = 512
-
 
 @dataclass(frozen=True, slots=True)
 class Draw:
@@ -105,7 +103,6 @@ class Strategy:
         ]
         self._prior = np.cumsum(model.prior_weights.reshape(-1))
         self._scenes: dict[Changes, Scene] = {Changes(): scene}
-        self._policies: dict[tuple[Stage, Position, Knowledge], npt.NDArray[np.float64]] = {}
         self._sums: dict[tuple[Stage, Position, Knowledge, int, int, int], list[float]] = {}
         self._looks: dict[tuple[int, Pose], list[int]] = {}
 
@@ -133,7 +130,7 @@ class Strategy:
         key = (stage, cell, knowledge, draw.rationality, draw.utility, draw.credence)
         found = self._sums.get(key)
         if found is None:
-            policy = self._policy(stage, cell, knowledge)
+            policy = self._hypotheses.log_policy(stage, cell, knowledge)
             credence = draw.credence if policy.shape[3] > 1 else 0
             column = policy[:, draw.rationality, draw.utility, credence]
             found = self._sums[key] = np.cumsum(np.exp(column)).tolist()
@@ -165,17 +162,6 @@ class Strategy:
         if len(model.rationalities) > 1:
             told["rationality"] = model.rationalities[draw.rationality]
         return told
-
-    def _policy(
-        self, stage: Stage, cell: Position, knowledge: Knowledge
-    ) -> npt.NDArray[np.float64]:
-        key = (stage, cell, knowledge)
-        found = self._policies.get(key)
-        if found is None:
-            found = self._policies[key] = self._hypotheses.log_policy(stage, cell, knowledge)
-            while len(self._policies) > _MOST_POLICIES:
-                del self._policies[next(iter(self._policies))]
-        return found
 
     def _changed(self, changes: Changes) -> Scene:
         before = self._scene.worlds

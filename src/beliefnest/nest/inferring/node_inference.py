@@ -13,7 +13,8 @@ from beliefnest.minds.inference import Inference, reported_credence
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.planner import count_values
 from beliefnest.minds.surroundings import Scene
-from beliefnest.minds.tracking import Tracker, known_after
+from beliefnest.minds.tracking import Tracker
+from beliefnest.minds.transitions import known_after
 from beliefnest.nest.inferring.perceived_course import Question, Reading
 from beliefnest.nest.past.recording import Recording
 from beliefnest.world.paths import BeliefPath, path_text

@@ -3,8 +3,10 @@
 from typing import Any
 
 from beliefnest.minds.charts import heat_of, panels_of
+from beliefnest.minds.findings import Change
 from beliefnest.minds.inference import Inference
 from beliefnest.pictures.plan import LEAST_HEAT
+from beliefnest.pictures.posterior import PosteriorPanel
 
 __all__ = ["told_inference"]
 
@@ -29,50 +31,44 @@ def told_inference(inference: Inference, steps: int) -> dict[str, Any]:
     Raises:
         InputError: steps is below 1.
     """
-    panels = panels_of(inference)
-    ticks = inference.ticks
-    gap = -(-len(ticks) // _MOST_PREDICTIONS)
     return {
         "agent": inference.model.agent,
         "steps": steps,
-        "ticks": ticks,
-        "panels": [
-            {
-                "title": panel.title,
-                "low": panel.low,
-                "high": panel.high,
-                "stacked": panel.stacked,
-                "series": [
-                    [name, panel.colours[name], [round(value, 4) for value in values]]
-                    for name, values in panel.series.items()
-                ],
-            }
-            for panel in panels
-        ],
-        "changes": [
-            [
-                change.tick,
-                change.text,
-                sorted(
-                    (
-                        [name, round(bits, 2)]
-                        for name, bits in change.bits.items()
-                        if bits >= _LEAST_BITS
-                    ),
-                    key=lambda pair: -pair[1],
-                ),
-            ]
-            for change in inference.explain()
-        ],
-        "heats": [
-            [
-                tick,
-                [
-                    [x, z, round(share, 3)]
-                    for (x, z), share in sorted(heat_of(inference, steps, tick).items())
-                    if share >= LEAST_HEAT
-                ],
-            ]
-            for tick in ticks[::gap]
+        "ticks": inference.ticks,
+        "panels": [_told_panel(panel) for panel in panels_of(inference)],
+        "changes": [_told_change(change) for change in inference.explain()],
+        "heats": _heats(inference, steps),
+    }
+
+
+def _told_panel(panel: PosteriorPanel) -> dict[str, Any]:
+    return {
+        "title": panel.title,
+        "low": panel.low,
+        "high": panel.high,
+        "stacked": panel.stacked,
+        "series": [
+            [name, panel.colours[name], [round(value, 4) for value in values]]
+            for name, values in panel.series.items()
         ],
     }
+
+
+def _told_change(change: Change) -> list[Any]:
+    factors = [[name, round(b, 2)] for name, b in change.bits.items() if b >= _LEAST_BITS]
+    return [change.tick, change.text, sorted(factors, key=lambda pair: -pair[1])]
+
+
+def _heats(inference: Inference, steps: int) -> list[list[Any]]:
+    gap = -(-len(inference.ticks) // _MOST_PREDICTIONS)
+    return [
+        [
+            tick,
+            [
+                [x, z, round(share, 3)]
+                for (x, z), share in sorted(heat_of(inference, steps, tick).items())
+                if share >= LEAST_HEAT
+            ],
+        ]
+        for tick in inference.ticks[::gap]
+    ]
