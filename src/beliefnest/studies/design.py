@@ -114,6 +114,11 @@ class Design:
             **({} if self.claims_from is None else {"claims_from": self.claims_from}),
         }
 
+    @property
+    def asked(self) -> tuple[str, ...]:
+        """Names of all models that are asked, also those that extract claims."""
+        return (*self.models, *filter(None, [self.claims_from]))
+
     def plain(self) -> dict[str, Any]:
         """Return the design as plain values for the study's plan."""
         return {

@@ -19,8 +19,6 @@ __all__ = [
     "Order",
     "Player",
     "Policies",
-    "check_episodes_alone",
-    "check_scenarios_alone",
     "listed",
     "policy_named",
     "seeds_of",
@@ -144,6 +142,11 @@ class EpisodeDesign:
         """Return the settings that affect the results of all cells."""
         return {"world": self.world, **({"help": True} if self.help else {})}
 
+    @property
+    def asked(self) -> tuple[str, ...]:
+        """Names of all models that are asked."""
+        return self.models
+
     def plain(self) -> dict[str, Any]:
         """Return the design as plain values for the study's plan."""
         return {
@@ -192,38 +195,3 @@ def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
             raise StudyKeyError("seeds", f"seeds is {seeds!r}; give at least 1, or a list of seeds")
         return tuple(range(first, first + seeds))
     return tuple(seeds)
-
-
-def check_scenarios_alone(policies: object, orders: object, seeds: object, help: object) -> None:
-    """Refuse keys that only studies of tasks have.
-
-    Raises:
-        StudyKeyError: Such a key is given.
-    """
-    given = {"policies": policies, "orders": orders, "seeds": seeds != 1, "help": help}
-    for name, value in given.items():
-        if value:
-            told = "policies, orders, seeds and help are for tasks; name tasks to play episodes"
-            raise StudyKeyError(name, told)
-
-
-def check_episodes_alone(
-    scenarios: Sequence[str] | str,
-    templates: Sequence[str] | str | None,
-    constraints: object,
-    claims_from: str | None,
-) -> None:
-    """Refuse keys that only studies of scenarios have.
-
-    Raises:
-        StudyKeyError: Such a key is given.
-    """
-    given = {
-        "scenarios": scenarios,
-        "templates": templates,
-        "constraints": constraints,
-        "claims_from": claims_from,
-    }
-    for name, value in given.items():
-        if value:
-            raise StudyKeyError(name, f"{name} cannot stand beside tasks; make two studies")

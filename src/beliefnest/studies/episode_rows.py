@@ -3,130 +3,106 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from beliefnest.episodes.measures import Measures
 from beliefnest.studies.cells import variation_id
-from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.episode_design import policy_named
-from beliefnest.studies.rows import FAILED, plain_value, variation_columns
-from beliefnest.studies.study_folder import StudyFolder
-from beliefnest.studies.table import Table
+from beliefnest.studies.table import (
+    FAILED,
+    Column,
+    Kind,
+    Source,
+    Table,
+    of_key,
+    of_result,
+    plain_value,
+)
 
 __all__ = ["EPISODES"]
 
-_COLUMNS = {
-    "variation": "string",
-    "player": "string",
-    "order": "string",
-    "policy": "string",
-    "instance": "int64",
-    "repeat": "int64",
-    "seed": "int64",
-    "needs": "int64",
-    "ok": "bool",
-    "outcome": "string",
-    "why_not": "string",
-    "ticks": "int64",
-    "rounds": "int64",
-    "messages": "int64",
-    "claims": "int64",
-    "true_claims": "int64",
-    "false_claims": "int64",
-    "lies": "int64",
-    "taken_up": "int64",
-    "not_taken_up": "int64",
-    "help_needed": "int64",
-    "help_given": "int64",
-    "help_superfluous": "int64",
-    "acted_on_false": "int64",
-    "false_beliefs": "int64",
-    "false_beliefs_mean": "float64",
-    "false_beliefs_over_time": "string",
-    "lost_rounds": "int64",
-    "failed_programs": "int64",
-    "failures": "string",
-    "requests": "int64",
-    "tokens": "int64",
-    "cost": "float64",
-    "policies": "string",
-    "run": "string",
-    "cell": "string",
-    "copy_of": "string",
-}
-"""Columns after `task`, `condition` and those of variations, and their types. `Measures` documents
-most of them. `variation` names the independent variation of a row; each instance of a built-in task
-is one. `needs` is the order that the task needs, `order` the order of the player."""
+
+def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """Yield the measures of the episode, or the reason why there are none."""
+    if found["error"] is not None:
+        yield {"outcome": FAILED, "why_not": found["error"]}
+        return
+    ok = found["measures"]["success"]
+    told = {"outcome": "ok" if ok else "wrong", "why_not": found["why_not"]}
+    yield {**found["measures"], **told}
 
 
-_MEASURED = [
-    name
-    for name in _COLUMNS
-    if name in Measures.__dataclass_fields__ and name not in ("order", "seed")
-]
+def _variation(source: Source) -> str:
+    key = source.cell["key"]
+    # Plans of earlier versions do not have this key.
+    return source.cell.get("variation") or variation_id(
+        key["task"], key["variation"], key["instance"]
+    )
 
 
-def _rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    columns = variation_columns(plan)
-
-    def rows_of(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-        key = cell["key"]
-        about = {
-            "task": key["task"],
-            "condition": key["condition"],
-            **{name: plain_value(key["variation"].get(name)) for name in columns},
-            # Plans of earlier versions do not have this key.
-            "variation": cell.get("variation")
-            or variation_id(key["task"], key["variation"], key["instance"]),
-            "player": key["player"],
-            "order": key["order"] or None,
-            "policy": policy_named(key["player"], key["order"]),
-            "instance": key["instance"],
-            "repeat": key["repeat"],
-            "seed": cell["seed"],
-        }
-        ends = {"run": found.get("run", ""), "cell": cell["name"]}
-        if found["error"] is not None:
-            yield {**about, "outcome": FAILED, "why_not": found["error"], **ends}
-        else:
-            yield {**about, **_measured(found), **ends}
-
-    return rows_with_copies(folder, plan, rows_of)
-
-
-def _measured(found: Mapping[str, Any]) -> dict[str, Any]:
-    measures, ok = found["measures"], found["measures"]["success"]
-    told = {name: plain_value(measures.get(name)) for name in _MEASURED}
-    return {
-        "needs": measures["order"],
-        "ok": ok,
-        "outcome": "ok" if ok else "wrong",
-        "why_not": found["why_not"],
-        **told,
-    }
+def _measure(name: str, kind: Kind = "int64", *, shown: bool = False) -> Column:
+    """Return the column of a measure, see `Measures`."""
+    return Column(name, kind, of_result(name, plain_value), shown)
 
 
 EPISODES = Table(
-    rows=_rows,
-    first={"task": "string", "condition": "int64"},
-    columns=_COLUMNS,
-    identity=("task", "condition", "player", "order", "policy", "instance", "repeat"),
+    results=_results,
+    first=(
+        Column("task", "string", of_key("task"), identifies=True),
+        Column("condition", "int64", of_key("condition"), identifies=True),
+    ),
+    columns=(
+        # The independent variation of a row; each instance of a built-in task is one.
+        Column("variation", "string", _variation, shown=True),
+        Column("player", "string", of_key("player"), identifies=True),
+        # The order of the player.
+        Column(
+            "order", "string", lambda source: source.cell["key"]["order"] or None, identifies=True
+        ),
+        Column(
+            "policy",
+            "string",
+            lambda source: policy_named(source.cell["key"]["player"], source.cell["key"]["order"]),
+            shown=True,
+            identifies=True,
+        ),
+        Column("instance", "int64", of_key("instance"), shown=True, identifies=True),
+        Column("repeat", "int64", of_key("repeat"), shown=True, identifies=True),
+        Column("seed", "int64", lambda source: source.cell["seed"]),
+        # The order that the task needs.
+        Column("needs", "int64", of_result("order")),
+        Column("ok", "bool", of_result("success")),
+        Column("outcome", "string", of_result("outcome"), shown=True),
+        Column("why_not", "string", of_result("why_not"), shown=True),
+        _measure("ticks", shown=True),
+        _measure("rounds", shown=True),
+        _measure("messages", shown=True),
+        _measure("claims"),
+        _measure("true_claims"),
+        _measure("false_claims"),
+        _measure("lies", shown=True),
+        _measure("taken_up"),
+        _measure("not_taken_up"),
+        _measure("help_needed"),
+        _measure("help_given"),
+        _measure("help_superfluous"),
+        _measure("acted_on_false", shown=True),
+        _measure("false_beliefs"),
+        _measure("false_beliefs_mean", "float64"),
+        _measure("false_beliefs_over_time", "string", shown=True),
+        _measure("lost_rounds"),
+        _measure("failed_programs"),
+        _measure("failures", "string"),
+        _measure("requests"),
+        _measure("tokens", shown=True),
+        _measure("cost", "float64"),
+        _measure("policies", "string"),
+        Column("run", "string", lambda source: source.found.get("run", "")),
+        Column("cell", "string", lambda source: source.cell["name"]),
+        # Filled in when all rows are known.
+        Column("copy_of", "string", of_result("copy_of")),
+    ),
     groups=("task", "policy"),
     further_groups=("condition",),
     compared=("policy",),
     apart=("player",),
-    shown=(
-        *(
-            "variation",
-            "policy",
-            "instance",
-            "repeat",
-            "outcome",
-            "why_not",
-            "ticks",
-            "rounds",
-            "messages",
-        ),
-        *("lies", "acted_on_false", "false_beliefs_over_time", "tokens"),
-    ),
     same={"policy": ("player", "order"), "player": ("policy",), "order": ("policy",)},
     means={
         "ticks": True,

@@ -10,8 +10,7 @@ from beliefnest.errors import UnknownNameError
 from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.counting import Pairs
-from beliefnest.studies.rows import variation_columns
-from beliefnest.studies.table import Table
+from beliefnest.studies.table import Table, variation_columns
 from beliefnest.world.texts import visible
 
 __all__ = ["page_text"]
@@ -72,7 +71,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         means=[name for name in table.means if any(each[name] is not None for each in groups)],
         figure=_figure(groups, by),
         differences=list(_differences(result)),
-        columns=[*table.first, *variation_columns(plan), *table.shown],
+        columns=[*(each.name for each in table.first), *variation_columns(plan), *table.shown],
         rows=rows[:_MOST_ROWS],
         left_out=max(0, len(rows) - _MOST_ROWS),
         variations=len({row["variation"] for row in rows}),

@@ -11,9 +11,9 @@ from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.plainframe import Typed, plain_frame, write_typed
-from beliefnest.studies.rows import PROBES, variation_columns
+from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
-from beliefnest.studies.table import Table
+from beliefnest.studies.table import Table, variation_columns
 
 if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they are needed.
     import pandas
@@ -89,20 +89,13 @@ class StudyResult:
         return plain_frame(self._typed())
 
     def _typed(self) -> dict[str, Typed]:
-        table = self.table
-        kinds = {
-            **table.first,
-            **dict.fromkeys(variation_columns(self._plan)),
-            **table.columns,
-        }
-        return {
-            name: Typed([row.get(name) for row in self.rows], kind) for name, kind in kinds.items()
-        }
+        kinds = self.table.kinds(variation_columns(self._plan))
+        return {name: Typed([row[name] for row in self.rows], kind) for name, kind in kinds.items()}
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Return the names of the columns of `frame`."""
-        return self.table.names(variation_columns(self._plan))
+        return tuple(self.table.kinds(variation_columns(self._plan)))
 
     @property
     def groups(self) -> tuple[str, ...]:

@@ -1,198 +1,142 @@
 """Table of a study of scenarios: one row for each probe of each cell in the study's folder."""
 
-import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.cells import variation_id
-from beliefnest.studies.copies import rows_with_copies
-from beliefnest.studies.study_folder import StudyFolder
-from beliefnest.studies.table import Table
+from beliefnest.studies.table import (
+    FAILED,
+    Column,
+    Source,
+    Table,
+    of_key,
+    of_result,
+    place_text,
+    plain_value,
+)
 from beliefnest.world.paths import normalised
 
-__all__ = ["FAILED", "PROBES", "plain_value", "variation_columns"]
-
-FAILED = "error"
-"""Outcome of rows without a result."""
-assert FAILED in OUTCOMES
-
-_COLUMNS = {
-    "variation": "string",
-    "model": "string",
-    "template": "string",
-    "repeat": "int64",
-    "seed": "int64",
-    "probe": "string",
-    "path": "string",
-    "order": "int64",
-    "acts_in": "string",
-    "agent": "string",
-    "task": "string",
-    "expected": "string",
-    "intended": "string",
-    "opened": "string",
-    "arrived": "string",
-    "answered": "string",
-    "inferred": "string",
-    "ok": "bool",
-    "outcome": "string",
-    "why_not": "string",
-    "beliefs_ok": "bool",
-    "script_ticks": "int64",
-    "ticks": "int64",
-    "seconds": "float64",
-    "attempts": "int64",
-    "tokens": "int64",
-    "cost": "float64",
-    "program": "string",
-    "run": "string",
-    "cell": "string",
-    "copy_of": "string",
-}
-"""Columns after `scenario`, `condition` and those of variations, and their types. Places are texts
-such as `-2,-51,-4`. `variation` names the independent variation of a row. `order` is the order of
-the probed belief, 0 for the real world. `seconds` is Minecraft time of the probe's program."""
+__all__ = ["PROBES"]
 
 
-def variation_columns(plan: Mapping[str, Any]) -> list[str]:
-    """Return the names of the columns of variations, in the order of the plan."""
-    names = (name for cell in plan["cells"] for name in cell["key"]["variation"])
-    return list(dict.fromkeys(names))
+def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """Yield the result of each probe.
 
-
-def _probe_rows(folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield the rows of a plan, see `rows_with_copies`.
-
-    A failed cell has a row for each of its probes, with the outcome `error` and the reason. A cell
-    without probes has a single row about its expectations.
+    A failed cell has a result for each of its probes, with the outcome `error` and the reason. A
+    cell without probes has a single result about its expectations.
     """
-    columns = variation_columns(plan)
-
-    def rows_of(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-        key = cell["key"]
-        about = {
-            "scenario": key["scenario"],
-            "condition": key["condition"],
-            **{name: plain_value(key["variation"].get(name)) for name in columns},
-            # Plans of earlier versions do not have this key.
-            "variation": cell.get("variation") or variation_id(key["scenario"], key["variation"]),
-            "model": key["model"],
-            "template": key["template"],
-            "repeat": key["repeat"],
-            "seed": cell["seed"],
-        }
-        ends = {"cell": cell["name"], "run": found.get("run", "")}
-        if found["error"] is not None:
-            for probe in cell["probes"] or [{}]:
-                yield {**about, **_failed(probe, found["error"]), **ends}
-            return
-        held = [each["ok"] for each in found["expectations"]]
-        common = {
-            "beliefs_ok": all(held) if held else None,
-            "script_ticks": found["ticks"],
-        }
-        for probe in found["probes"]:
-            yield {**about, **_probe(probe), **common, **ends}
-        if not found["probes"]:
-            yield {**about, **_beliefs(found["expectations"]), **common, **ends}
-
-    return rows_with_copies(folder, plan, rows_of)
+    if found["error"] is not None:
+        for probe in cell["probes"] or [{}]:
+            yield {**probe, "outcome": FAILED, "why_not": found["error"]}
+    elif found["probes"]:
+        yield from found["probes"]
+    else:
+        yield _beliefs(found["expectations"])
 
 
-def _probe(probe: Mapping[str, Any]) -> dict[str, Any]:
-    usage = probe["usage"]
+def _beliefs(expectations: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    wrong = [
+        f"{each['label'] or each['path']}: {each['why_not']}"
+        for each in expectations
+        if not each["ok"]
+    ]
     return {
-        "probe": probe["label"],
-        "path": probe["path"],
-        "order": _order(probe["path"]),
-        "acts_in": probe["acts_in"],
-        "agent": probe["agent"],
-        "task": probe["task"],
-        "expected": plain_value(probe["expected"]),
-        "intended": _place(probe["intended"]),
-        "opened": " ".join(_place(place) or "" for place in probe["opened"]),
-        "arrived": _place(probe["arrived"]),
-        "answered": "; ".join(str(reply["answer"]) for reply in probe["replies"]),
-        # Cells of an earlier version have none.
-        "inferred": plain_value(probe.get("inferred")),
-        "ok": probe["ok"],
-        "outcome": probe["outcome"],
-        "why_not": probe["why_not"],
-        "ticks": probe["ticks"],
-        "seconds": probe["seconds"],
-        "attempts": probe["attempts"],
-        "tokens": usage["input_tokens"] + usage["output_tokens"],
-        "cost": usage["cost"],
-        "program": probe["program"],
-    }
-
-
-def _failed(probe: Mapping[str, Any], why: str) -> dict[str, Any]:
-    return {
-        **{name: probe.get(name) for name in ("path", "acts_in", "agent", "task")},
-        "probe": probe.get("label", ""),
-        "order": _order(probe["path"]) if "path" in probe else None,
-        "expected": plain_value(probe.get("expected")),
-        "outcome": FAILED,
-        "why_not": why,
-    }
-
-
-def _beliefs(expectations: list[Mapping[str, Any]]) -> dict[str, Any]:
-    wrong = [f"{each['label'] or each['path']}: {each['why_not']}" for each in expectations]
-    wrong = [told for told, each in zip(wrong, expectations, strict=True) if not each["ok"]]
-    ok = not wrong if expectations else None
-    return {
-        "probe": "",
-        "ok": ok,
+        "ok": not wrong if expectations else None,
         "outcome": "wrong" if wrong else "ok",
         "why_not": "; ".join(wrong),
     }
 
 
-def plain_value(value: Any) -> Any:
-    """Return a value as one cell of a table: places as `x,y,z`, other structures as JSON."""
-    if isinstance(value, list) and value and all(isinstance(n, int | float) for n in value):
-        return _place(value)
-    return json.dumps(value, sort_keys=True) if isinstance(value, list | dict) else value
+def _variation(source: Source) -> str:
+    key = source.cell["key"]
+    # Plans of earlier versions do not have this key.
+    return source.cell.get("variation") or variation_id(key["scenario"], key["variation"])
 
 
-def _order(path: str) -> int:
+def _order(path: str | None) -> int | None:
     """Return the number of agents in a belief path: 0 for the real world."""
-    return len(normalised(filter(None, path.split("/"))))
+    return None if path is None else len(normalised(filter(None, path.split("/"))))
 
 
-def _place(place: list[float] | None) -> str | None:
-    return None if place is None else ",".join(f"{part:g}" for part in place)
+def _opened(places: list[list[float]] | None) -> str | None:
+    return None if places is None else " ".join(place_text(place) or "" for place in places)
+
+
+def _answered(replies: list[Mapping[str, Any]] | None) -> str | None:
+    return None if replies is None else "; ".join(str(reply["answer"]) for reply in replies)
+
+
+def _tokens(usage: Mapping[str, Any] | None) -> int | None:
+    return None if usage is None else usage["input_tokens"] + usage["output_tokens"]
+
+
+def _cost(usage: Mapping[str, Any] | None) -> float | None:
+    return None if usage is None else usage["cost"]
+
+
+def _beliefs_ok(source: Source) -> bool | None:
+    expectations = source.found.get("expectations")
+    return all(each["ok"] for each in expectations) if expectations else None
+
+
+def _script_ticks(source: Source) -> int | None:
+    return source.found.get("ticks")
 
 
 PROBES = Table(
-    rows=_probe_rows,
-    first={"scenario": "string", "condition": "int64"},
-    columns=_COLUMNS,
-    identity=(
-        *("scenario", "condition", "model", "template", "repeat"),
-        *("probe", "path", "acts_in", "agent", "task"),
+    results=_results,
+    first=(
+        Column("scenario", "string", of_key("scenario"), identifies=True),
+        Column("condition", "int64", of_key("condition"), identifies=True),
+    ),
+    columns=(
+        # The independent variation of a row.
+        Column("variation", "string", _variation, shown=True),
+        Column("model", "string", of_key("model"), shown=True, identifies=True),
+        Column("template", "string", of_key("template"), shown=True, identifies=True),
+        Column("repeat", "int64", of_key("repeat"), shown=True, identifies=True),
+        Column("seed", "int64", lambda source: source.cell["seed"]),
+        Column(
+            "probe",
+            "string",
+            of_result("label", lambda label: label or ""),
+            shown=True,
+            identifies=True,
+        ),
+        Column("path", "string", of_result("path"), shown=True, identifies=True),
+        # The order of the probed belief.
+        Column("order", "int64", of_result("path", _order), shown=True),
+        Column("acts_in", "string", of_result("acts_in"), identifies=True),
+        Column("agent", "string", of_result("agent"), identifies=True),
+        Column("task", "string", of_result("task"), identifies=True),
+        # Places are texts such as `-2,-51,-4`.
+        Column("expected", "string", of_result("expected", plain_value), shown=True),
+        Column("intended", "string", of_result("intended", place_text), shown=True),
+        Column("opened", "string", of_result("opened", _opened), shown=True),
+        Column("arrived", "string", of_result("arrived", place_text), shown=True),
+        Column("answered", "string", of_result("replies", _answered), shown=True),
+        Column("inferred", "string", of_result("inferred", plain_value), shown=True),
+        Column("ok", "bool", of_result("ok")),
+        Column("outcome", "string", of_result("outcome"), shown=True),
+        Column("why_not", "string", of_result("why_not"), shown=True),
+        Column("beliefs_ok", "bool", _beliefs_ok),
+        Column("script_ticks", "int64", _script_ticks),
+        Column("ticks", "int64", of_result("ticks"), shown=True),
+        # Minecraft time of the probe's program.
+        Column("seconds", "float64", of_result("seconds")),
+        Column("attempts", "int64", of_result("attempts")),
+        Column("tokens", "int64", of_result("usage", _tokens), shown=True),
+        Column("cost", "float64", of_result("usage", _cost)),
+        Column("program", "string", of_result("program")),
+        Column("run", "string", lambda source: source.found.get("run", "")),
+        Column("cell", "string", lambda source: source.cell["name"]),
+        # Filled in when all rows are known.
+        Column("copy_of", "string", of_result("copy_of")),
     ),
     groups=("scenario", "condition", "model"),
     further_groups=("template", "order"),
     compared=("condition", "model", "template"),
     apart=("model", "template", "order"),
-    shown=(
-        *("variation", "model", "template", "repeat", "probe", "path", "order", "expected"),
-        *(
-            "intended",
-            "opened",
-            "arrived",
-            "answered",
-            "inferred",
-            "outcome",
-            "why_not",
-            "ticks",
-            "tokens",
-        ),
-    ),
     same={"probe": ("path", "order", "acts_in", "agent", "task")},
 )
 """Table of studies of scenarios."""

@@ -1,7 +1,6 @@
 """Studies: from a design to a folder of results."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -15,8 +14,6 @@ from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.cells import C, Cell, Plan, plan_cells
 from beliefnest.studies.checking import (
     StudyKeyError,
-    checked_conditions,
-    checked_limits,
     is_whole,
     several,
 )
@@ -26,18 +23,15 @@ from beliefnest.studies.episode_design import (
     EpisodeDesign,
     Order,
     Policies,
-    check_episodes_alone,
-    check_scenarios_alone,
-    listed,
-    seeds_of,
 )
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
 from beliefnest.studies.jobs import OnStudyProgress, StudyProgress, run_cells
 from beliefnest.studies.result import StudyResult
-from beliefnest.studies.rows import PROBES, variation_columns
+from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
-from beliefnest.studies.table import Table
+from beliefnest.studies.study_keys import StudyKeys, design_of
+from beliefnest.studies.table import Table, variation_columns
 from beliefnest.studies.terms import Terms
 
 __all__ = ["Study"]
@@ -108,47 +102,27 @@ class Study:
         seeds: Sequence[int] | int = 1,
         help: bool = False,
     ) -> None:
-        if tasks:
-            check_episodes_alone(scenarios, templates, constraints, claims_from)
-            if isinstance(variations, int):
-                raise StudyKeyError(
-                    "variations",
-                    "variations of tasks must be lists of values; give `seeds` for instances",
-                )
-            self._hold(
-                EpisodeDesign(
-                    tasks=several("tasks", tasks),
-                    policies=listed(policies),
-                    models=() if models is None else several("models", models),
-                    orders=tuple(orders),
-                    seeds=seeds_of(seeds, seed),
-                    repeats=repeats,
-                    variations=variations or {},
-                    conditions=checked_conditions(conditions),
-                    world="scripted" if world is None else world,
-                    help=help,
-                    limits=checked_limits(max_tokens, max_cost),
-                )
-            )
-            return
-        check_scenarios_alone(policies, orders, seeds, help)
-        self._hold(
-            Design(
-                scenarios=several("scenarios", scenarios),
-                models=("offline",) if models is None else several("models", models),
-                templates=_templates(templates),
-                repeats=repeats,
-                seed=seed,
-                variations={} if variations is None else variations,
-                conditions=checked_conditions(conditions),
-                constraints=_constraints(constraints),
-                world="embedded" if world is None else world,
-                attempts=attempts,
-                temperature=temperature,
-                limits=checked_limits(max_tokens, max_cost),
-                claims_from=claims_from,
-            )
+        keys = StudyKeys(
+            scenarios=scenarios,
+            models=models,
+            templates=templates,
+            repeats=repeats,
+            seed=seed,
+            variations=variations,
+            conditions=conditions,
+            world=world,
+            attempts=attempts,
+            temperature=temperature,
+            max_tokens=max_tokens,
+            max_cost=max_cost,
+            claims_from=claims_from,
+            tasks=tasks or None,
+            policies=policies,
+            orders=orders,
+            seeds=seeds,
+            help=help,
         )
+        self._hold(design_of(keys, _templates(templates), _constraints(constraints)))
 
     @classmethod
     def load(cls, file: str | Path, claims_from: str | None = None) -> Self:
@@ -163,17 +137,13 @@ class Study:
             InputError: It is a study of tasks, which does not extract claims.
         """
         study = cls.__new__(cls)
-        design = read_design(Path(file))
-        if isinstance(design, Design) and claims_from is not None:
-            design = replace(design, claims_from=claims_from)
-        else:
-            check_episodes_alone((), None, (), claims_from)
-        study._hold(design)
+        study._hold(read_design(Path(file), claims_from))
         return study
 
     def _hold(self, design: Design | EpisodeDesign) -> None:
         self._design = design
         scenarios = design.scenarios if isinstance(design, Design) else ()
+        self._table = PROBES if isinstance(design, Design) else EPISODES
         self._documents: dict[str, Document] = {name: read_document(name) for name in scenarios}
         self._plan: Plan[Cell] | Plan[EpisodeCell] | None = None
 
@@ -193,17 +163,16 @@ class Study:
         if self._plan is None:
             design = self._design
             if isinstance(design, Design):
-                self._plan = _told_apart(plan_cells(design, self._documents), PROBES)
+                self._plan = _told_apart(plan_cells(design, self._documents), self._table)
             else:
-                self._plan = _told_apart(plan_episodes(design), EPISODES)
+                self._plan = _told_apart(plan_episodes(design), self._table)
         return self._plan
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Return names of the table's columns, see `StudyResult.frame`; raise as `plan` does."""
-        table = PROBES if isinstance(self._design, Design) else EPISODES
         varied = dict.fromkeys(name for cell in self.plan().cells for name in cell.key.variation)
-        return table.names(varied)
+        return tuple(self._table.kinds(varied))
 
     def run(
         self,
@@ -280,9 +249,7 @@ class Study:
 
         A model needs no key if the study's folder has its answers in the cache.
         """
-        design = self._design
-        reader = design.claims_from if isinstance(design, Design) else None
-        for name in (*design.models, *(() if reader is None else (reader,))):
+        for name in self._design.asked:
             try:
                 check_model(name, terms.surroundings, terms.connection())
             except ModelError:
@@ -308,8 +275,9 @@ class Study:
 
 def _told_apart(plan: Plan[C], table: Table) -> Plan[C]:
     """Return the plan; raise InputError if a parameter has the name of a column of the table."""
+    columns = table.kinds(())
     for name in variation_columns({"cells": [cell.plain() for cell in plan.cells]}):
-        if name in table.first or name in table.columns:
+        if name in columns:
             raise InputError(
                 f"the parameter {name!r} has the name of a column of the table; "
                 "give it another name"

@@ -1,45 +1,157 @@
-"""Form of the table of a kind of study."""
+"""Form of the table of a kind of study: each column declared once."""
 
+import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
+from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.study_folder import StudyFolder
 
-__all__ = ["Table"]
+__all__ = [
+    "FAILED",
+    "Column",
+    "Kind",
+    "Source",
+    "Table",
+    "of_key",
+    "of_result",
+    "place_text",
+    "plain_value",
+    "variation_columns",
+]
+
+FAILED = "error"
+"""Outcome of rows without a result."""
+assert FAILED in OUTCOMES
+
+Kind = Literal["string", "int64", "float64", "bool"]
+"""Type of a column in data frames and Parquet files."""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Plain values from which one row is read.
+
+    Attributes:
+        cell: Entry of the cell in the study's plan.
+        found: Content of the cell's file.
+        result: Result that the row is about; for a failed cell with `outcome` and `why_not`.
+    """
+
+    cell: Mapping[str, Any]
+    found: Mapping[str, Any]
+    result: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """Column of a table.
+
+    Attributes:
+        name: Its name.
+        kind: Its type.
+        read: Function that returns the value in a row.
+        shown: True if the page shows it.
+        identifies: True if it is part of the identity of a row.
+    """
+
+    name: str
+    kind: Kind
+    read: Callable[[Source], Any]
+    shown: bool = False
+    identifies: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Form of a table.
+    """Form of a table. The columns of variations stand between `first` and `columns`.
 
     Attributes:
-        rows: Function that yields the rows of a folder's cells, for a plan.
-        first: Columns before those of variations, and their types.
-        columns: Other columns, and their types.
-        identity: Columns that identify a row, besides those of variations.
+        results: Function that yields the results of a cell, one for each row, from its entry in
+            the plan and its file.
+        first: Columns before those of variations.
+        columns: Other columns.
         groups: Default columns by which summaries group rows.
         further_groups: Columns that are added to `groups` if they have several values.
         compared: Columns whose values the page compares in pairs.
         apart: Default columns that define the groups of comparisons.
-        shown: Columns that the page shows after `first` and those of variations.
         same: Columns that carry the same information. Rows that are compared by one of them may
             differ in the others.
         means: Columns whose means are in summaries; True: means over successes only.
     """
 
-    rows: Callable[[StudyFolder, Mapping[str, Any]], Iterator[dict[str, Any]]]
-    first: Mapping[str, str]
-    columns: Mapping[str, str]
-    identity: tuple[str, ...]
+    results: Callable[[Mapping[str, Any], Mapping[str, Any]], Iterable[Mapping[str, Any]]]
+    first: tuple[Column, ...]
+    columns: tuple[Column, ...]
     groups: tuple[str, ...]
     further_groups: tuple[str, ...]
     compared: tuple[str, ...]
     apart: tuple[str, ...]
-    shown: tuple[str, ...]
     same: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     means: Mapping[str, bool] = field(default_factory=dict)
 
-    def names(self, varied: Iterable[str]) -> tuple[str, ...]:
-        """Return the names of all columns, including those of variations."""
-        return (*self.first, *varied, *self.columns)
+    def kinds(self, varied: Iterable[str]) -> dict[str, Kind | None]:
+        """Return the type of each column, by name; None: a column of variations."""
+        return {
+            **{column.name: column.kind for column in self.first},
+            **dict.fromkeys(varied),
+            **{column.name: column.kind for column in self.columns},
+        }
+
+    @property
+    def identity(self) -> tuple[str, ...]:
+        """Names of the columns that identify a row, besides those of variations."""
+        return tuple(each.name for each in (*self.first, *self.columns) if each.identifies)
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """Names of the columns that the page shows after `first` and those of variations."""
+        return tuple(each.name for each in self.columns if each.shown)
+
+    def rows(self, folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+        """Yield the rows of the cells of a plan, see `rows_with_copies`."""
+        varied = variation_columns(plan)
+
+        def rows_of(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+            variation = cell["key"]["variation"]
+            for result in self.results(cell, found):
+                source = Source(cell, found, result)
+                yield {
+                    **{column.name: column.read(source) for column in self.first},
+                    **{name: plain_value(variation.get(name)) for name in varied},
+                    **{column.name: column.read(source) for column in self.columns},
+                }
+
+        return rows_with_copies(folder, plan, rows_of)
+
+
+def of_key(name: str) -> Callable[[Source], Any]:
+    """Return the reader of a part of the cell's key."""
+    return lambda source: source.cell["key"][name]
+
+
+def of_result(
+    name: str, form: Callable[[Any], Any] = lambda value: value
+) -> Callable[[Source], Any]:
+    """Return the reader of a part of the result, in a form; None if the result lacks it."""
+    return lambda source: form(source.result.get(name))
+
+
+def variation_columns(plan: Mapping[str, Any]) -> list[str]:
+    """Return the names of the columns of variations, in the order of the plan."""
+    names = (name for cell in plan["cells"] for name in cell["key"]["variation"])
+    return list(dict.fromkeys(names))
+
+
+def plain_value(value: Any) -> Any:
+    """Return a value as one cell of a table: places as `x,y,z`, other structures as JSON."""
+    if isinstance(value, list) and value and all(isinstance(n, int | float) for n in value):
+        return place_text(value)
+    return json.dumps(value, sort_keys=True) if isinstance(value, list | dict) else value
+
+
+def place_text(place: list[float] | None) -> str | None:
+    """Return a place as `x,y,z`; None: no place."""
+    return None if place is None else ",".join(f"{part:g}" for part in place)

@@ -1,0 +1,101 @@
+"""Keys of a study, as its file and `Study` take them, and the design that they describe."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import msgspec
+
+from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
+from beliefnest.studies.design import Constraint, Design, Template
+from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies, listed, seeds_of
+
+__all__ = ["StudyKeys", "design_of"]
+
+
+class StudyKeys(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Keys of a study with their defaults; `Study` documents them."""
+
+    scenarios: Sequence[str] | str = ()
+    models: Sequence[str] | str | None = None
+    templates: Sequence[str] | str | None = None
+    repeats: int = 1
+    seed: int = 0
+    variations: Mapping[str, Any] | int | None = None
+    conditions: Sequence[int] | None = None
+    constraints: Sequence[str] | str = ()
+    world: str | None = None
+    attempts: int = 3
+    temperature: float | None = 0.0
+    max_tokens: int | None = 1_000_000
+    max_cost: float | None = 5.0
+    claims_from: str | None = None
+    tasks: Sequence[str] | str | None = None
+    policies: Sequence[Policies] | Policies = ()
+    orders: Sequence[Order] = ()
+    seeds: Sequence[int] | int = 1
+    help: bool = False
+
+
+def design_of(
+    keys: StudyKeys, templates: tuple[Template, ...], constraints: Sequence[Constraint]
+) -> Design | EpisodeDesign:
+    """Return the design of a study: of episodes if tasks are given, else of scenarios.
+
+    Args:
+        keys: The keys.
+        templates: The templates that `keys` names.
+        constraints: Conditions on a variation's values.
+
+    Raises:
+        StudyKeyError: The value of a key is wrong.
+    """
+    if keys.tasks is not None:
+        return _episodes(keys, constraints)
+    for name, default in (("policies", ()), ("orders", ()), ("seeds", 1), ("help", False)):
+        if getattr(keys, name) not in ([], default):
+            told = "policies, orders, seeds and help are for tasks; name tasks to play episodes"
+            raise StudyKeyError(name, told)
+    return Design(
+        scenarios=several("scenarios", keys.scenarios),
+        models=("offline",) if keys.models is None else several("models", keys.models),
+        templates=templates,
+        repeats=keys.repeats,
+        seed=keys.seed,
+        variations={} if keys.variations is None else keys.variations,
+        conditions=checked_conditions(keys.conditions),
+        constraints=tuple(constraints),
+        world="embedded" if keys.world is None else keys.world,
+        attempts=keys.attempts,
+        temperature=keys.temperature,
+        limits=checked_limits(keys.max_tokens, keys.max_cost),
+        claims_from=keys.claims_from,
+    )
+
+
+def _episodes(keys: StudyKeys, constraints: Sequence[Constraint]) -> EpisodeDesign:
+    foreign = {
+        "scenarios": keys.scenarios,
+        "templates": keys.templates,
+        "constraints": constraints,
+        "claims_from": keys.claims_from,
+    }
+    for name, value in foreign.items():
+        if value:
+            raise StudyKeyError(name, f"{name} cannot stand beside tasks; make two studies")
+    if isinstance(keys.variations, int):
+        raise StudyKeyError(
+            "variations", "variations of tasks must be lists of values; give `seeds` for instances"
+        )
+    return EpisodeDesign(
+        tasks=several("tasks", keys.tasks),
+        policies=listed(keys.policies),
+        models=() if keys.models is None else several("models", keys.models),
+        orders=tuple(keys.orders),
+        seeds=seeds_of(keys.seeds, keys.seed),
+        repeats=keys.repeats,
+        variations=keys.variations or {},
+        conditions=checked_conditions(keys.conditions),
+        world="scripted" if keys.world is None else keys.world,
+        help=keys.help,
+        limits=checked_limits(keys.max_tokens, keys.max_cost),
+    )
