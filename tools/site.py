@@ -335,7 +335,7 @@ def _several(forms: Sequence[str]) -> str:
 
 def events_page() -> str:
     """Return every kind of event, with the names that prompts use."""
-    from beliefnest.prompts.event_rows import ACTION_NAMES
+    from beliefnest.world.event_words import EVENT_WORDS
 
     lines = [
         "# Events",
@@ -345,12 +345,8 @@ def events_page() -> str:
         "| kind | in prompts |",
         "|---|---|",
     ]
-    lines += [f"| `{kind.value}` | {_code(ACTION_NAMES.get(kind))} |" for kind in EventKind]
+    lines += [f"| `{kind.value}` | `{EVENT_WORDS[kind].skill}` |" for kind in EventKind]
     return "\n".join([*lines, "", "::: beliefnest.world.values.Event", ""])
-
-
-def _code(text: str | None) -> str:
-    return f"`{text}`" if text else ""
 
 
 def about_page() -> str:

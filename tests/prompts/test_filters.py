@@ -8,10 +8,10 @@ from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import TemplateError
 from beliefnest.prompts import BUILT_IN, render
-from beliefnest.prompts.event_rows import ACTION_NAMES
 from beliefnest.prompts.example import ExampleBlocks, ExampleBranch, example_branch
 from beliefnest.prompts.reference import EXAMPLES
 from beliefnest.prompts.text import number
+from beliefnest.world.event_words import EVENT_WORDS
 from beliefnest.world.values import Box, EventKind
 
 
@@ -130,7 +130,7 @@ def test_text_of_the_belief_is_not_template_source():
 
 
 def test_every_kind_of_event_has_a_name():
-    assert set(ACTION_NAMES) == set(EventKind)
+    assert set(EVENT_WORDS) == set(EventKind)
 
 
 @pytest.mark.parametrize(

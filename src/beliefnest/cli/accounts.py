@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.naming import titled
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
-from beliefnest.viewer.page.words import event_text, is_lid
+from beliefnest.world.event_words import happens, is_lid
 from beliefnest.world.values import Position
 
 __all__ = ["accounts"]
@@ -41,7 +41,7 @@ def _happened(probe: ProbeOutcome, labels: Mapping[Position, str]) -> list[str]:
     if probe.trial is None:
         return [probe.fault] if probe.fault else []
     told = [
-        f"tick {tick}: {event_text(event, labels)}"
+        f"tick {tick}: {happens(event, labels)}"
         for tick, event in probe.result.happened
         if not is_lid(event)
     ]

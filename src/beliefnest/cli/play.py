@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from beliefnest.cli.console import print_table, progress_on, stdout
-from beliefnest.cli.terminal_text import counted, printable
+from beliefnest.cli.terminal_text import printable
 from beliefnest.episodes.episode import Budget, Episode
 from beliefnest.episodes.helping import Help
 from beliefnest.episodes.task import Task

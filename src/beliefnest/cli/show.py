@@ -40,6 +40,7 @@ from beliefnest.timeline.export_tables import prompt_row
 from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.words import items_words
 
 __all__ = ["ShowOptions", "print_prompt", "show_run"]
 
@@ -271,7 +272,7 @@ def _print_state(state: State, path: str, scenario: Scenario) -> None:
         containers.add_column("how that is known")
         agents.add_column("how that is known")
     for place, held in sorted(state.containers.items()):
-        items = ", ".join(f"{count} {name}" for name, count in sorted(held.items.items()))
+        items = items_words(held.items, ids=True)
         name = container_name(place, scenario.setting)
         is_all = "yes" if held.complete else "not known"
         known = _how_known(state, held.basis, current=held.current)

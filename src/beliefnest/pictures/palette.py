@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import cycle
 
+from beliefnest.world.words import counted
+
 __all__ = [
     "AGENT_COLOURS",
     "HYPOTHESIS_COLOURS",
@@ -189,7 +191,7 @@ def _named_colour(name: str) -> str | None:
 
 def age_text(ticks: int) -> str:
     """Return the age of a memory in words."""
-    return "1 tick ago" if ticks == 1 else f"{ticks} ticks ago"
+    return f"{counted(ticks, 'tick')} ago"
 
 
 def told_text(teller: str, ticks: int) -> str:

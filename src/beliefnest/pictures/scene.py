@@ -11,12 +11,12 @@ import numpy.typing as npt
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
-from beliefnest.pictures.words import told_apart
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_words
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Items, Point, Position
+from beliefnest.world.words import contents_words, told_apart
 
 __all__ = [
     "DEVICES",
@@ -139,13 +139,7 @@ class Store:
     @property
     def words(self) -> str:
         """Return the known contents in words."""
-        if not self.items:
-            return "empty" if self.complete else "nothing known"
-        told = ", ".join(
-            item.replace("_", " ") if count == 1 else f"{count} {item.replace('_', ' ')}"
-            for item, count in sorted(self.items.items())
-        )
-        return told if self.complete else f"{told}, more?"
+        return contents_words(self.items, complete=self.complete, ones=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,10 +2,11 @@
 
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.belief.view import State
-from beliefnest.prompts import event_rows, text
+from beliefnest.prompts import text
 from beliefnest.prompts.filterset import filter
 from beliefnest.prompts.simulator_view import BranchView
 from beliefnest.world.doors import is_door, is_switch
+from beliefnest.world.event_words import skill_of
 from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import TICKS_PER_SECOND, EventKind, Position
@@ -138,7 +139,7 @@ def _use(state: State, at: Position) -> str:
     if not uses:
         return ""
     last = uses[-1]
-    return f"; last used by {last.actor} {_age(state, last.tick)} ({event_rows.action_name(last)})"
+    return f"; last used by {last.actor} {_age(state, last.tick)} ({skill_of(last)})"
 
 
 def _is_use(event: PerceivedEvent, at: Position) -> bool:

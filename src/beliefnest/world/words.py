@@ -1,10 +1,13 @@
-"""Places, items and events in words, for everything that people read."""
+"""Places, items, blocks and counts in words, for everything that people read."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
+from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Items
 
-__all__ = ["counted", "items_words", "point_words"]
+__all__ = ["contents_words", "counted", "items_words", "point_words", "told_apart"]
+
+_STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "out")}
 
 
 def point_words(point: Iterable[float], digits: int = 1) -> str:
@@ -17,18 +20,51 @@ def point_words(point: Iterable[float], digits: int = 1) -> str:
     return f"({', '.join(f'{round(value, digits):.10g}' for value in point)})"
 
 
-def items_words(items: Items, joint: str = ", ", *, ids: bool = False) -> str:
+def items_words(items: Items, joint: str = ", ", *, ids: bool = False, ones: bool = True) -> str:
     """Return items as `1 diamond, 2 oak planks`, sorted by name; empty if there are none.
 
     Args:
         items: Counts by item name.
         joint: Text between two items.
         ids: True to keep names as Minecraft writes them, such as `oak_planks`.
+        ones: False to leave out the number 1.
     """
-    return joint.join(
-        f"{count} {name if ids else name.replace('_', ' ')}"
+    told = [
+        name if count == 1 and not ones else f"{count} {name}"
         for name, count in sorted(items.items())
-    )
+    ]
+    return joint.join(told if ids else (each.replace("_", " ") for each in told))
+
+
+def contents_words(items: Items, *, complete: bool, ones: bool = True) -> str:
+    """Return contents in words, with a mark if there may be more."""
+    told = items_words(items, ones=ones)
+    if complete:
+        return told or "empty"
+    return f"{told}, more?" if told else "nothing known"
+
+
+def told_apart(texts: Sequence[str]) -> tuple[str, ...]:
+    """Return blocks in words, with only the properties that distinguish them.
+
+    Args:
+        texts: Blocks as text for people, with the texts of signs.
+    """
+    words = {text: _block_words(text) for text in texts}
+    alike = len(set(words.values())) < len(words)
+    return tuple(text if alike else words[text] for text in texts)
+
+
+def _block_words(text: str) -> str:
+    block, _, says = text.partition(" that says ")
+    name, _, properties = block.partition("[")
+    kind = name.replace("_", " ")
+    if is_sign(name):
+        return f"{kind} that says {says}" if says else f"{kind} with nothing on it"
+    for key, (on, off) in _STATES.items():
+        if f"{key}=" in properties:
+            return f"{kind}, {on if f'{key}=true' in properties else off}"
+    return kind
 
 
 def counted(number: int, noun: str) -> str:

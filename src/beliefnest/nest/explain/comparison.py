@@ -13,9 +13,10 @@ from beliefnest.belief.grounds import AgentBelief, ContainerBelief, Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
-from beliefnest.pictures.words import html_lines, html_table, items_words, place_words, point_words
+from beliefnest.pictures.words import html_lines, html_table, where_words
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Point, Position
+from beliefnest.world.words import contents_words, point_words
 
 __all__ = [
     "Difference",
@@ -120,9 +121,9 @@ def value_words(value: str | Pose | Contents | None) -> str:
     """Return one value of a difference in words."""
     match value:
         case Pose(position=position):
-            return point_words(position)
+            return where_words(position)
         case Contents(items=items, complete=complete):
-            return items_words(items, complete=complete)
+            return contents_words(items, complete=complete)
         case None:
             return "not known"
         case text:
@@ -131,7 +132,7 @@ def value_words(value: str | Pose | Contents | None) -> str:
 
 def _what(difference: Difference) -> str:
     where = difference.where
-    return f"{difference.kind} {where if isinstance(where, str) else place_words(where)}"
+    return f"{difference.kind} {where if isinstance(where, str) else point_words(where)}"
 
 
 def compare(

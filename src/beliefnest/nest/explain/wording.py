@@ -1,7 +1,6 @@
 """Explanations in words: one line for the fact, then one or two lines for each belief."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
 
 from beliefnest.belief.grounds import PerceivedEvent, Source
 from beliefnest.nest.explain.parts import (
@@ -18,19 +17,12 @@ from beliefnest.nest.explain.parts import (
     Value,
     View,
 )
+from beliefnest.world.event_words import did, kind_words
 from beliefnest.world.paths import path_text
-from beliefnest.world.signs import sign_words
-from beliefnest.world.values import EventKind, Items
+from beliefnest.world.values import EventKind
+from beliefnest.world.words import items_words, point_words
 
 __all__ = ["as_known_to", "explanation_lines"]
-
-_KINDS = {
-    EventKind.DEPOSIT_ITEM_INTO_CHEST: "something was put in",
-    EventKind.GET_ITEM_FROM_CHEST: "something was taken out",
-    EventKind.OPEN_CONTAINER: "somebody looked in",
-}
-"""Words for acts of which only the kind is known."""
-
 
 _GIVEN = (Source.PRIOR, Source.EDITED)
 """Sources that are no perceptions."""
@@ -120,7 +112,7 @@ def _reason_text(level: Level, reason: Reason, name: str) -> str:
 def _ground_text(level: Level, ground: Ground, name: str) -> str:
     """Return a perception, a prior belief or an edit in words."""
     tick, source, holder = ground.basis.observed_at, ground.basis.source, level.holder
-    acts = _acts_text(ground.acts) or _kind_text(ground.basis.event)
+    acts = _acts_text(ground.acts) or kind_words(ground.basis.event)
     who = _standing(holder, ground.stood)
     last = "last " if ground is level.reasons[-1] else ""
     verb = "saw what happened at"
@@ -258,42 +250,8 @@ def _acts_text(acts: Iterable[PerceivedEvent]) -> str:
     told = list(acts)
     # An act and the block update that it causes are both recorded: tell the act alone.
     deeds = [act for act in told if act.actor is not None or act.kind is not EventKind.BLOCK_UPDATE]
-    words = (f"{act.actor or 'something'} {_deed_text(act)}" for act in deeds or told)
+    words = (f"{act.actor or 'something'} {did(act)}" for act in deeds or told)
     return ", then ".join(dict.fromkeys(words))
-
-
-def _deed_text(act: PerceivedEvent) -> str:
-    items = _items_text(act.detail.get("items", {}))
-    match act.kind:
-        case EventKind.DEPOSIT_ITEM_INTO_CHEST:
-            text = f"put {items} in"
-        case EventKind.GET_ITEM_FROM_CHEST:
-            text = f"took {items} out"
-        case EventKind.OPEN_CONTAINER:
-            text = "looked in"
-        case EventKind.USE_LEVER if "powered" in act.detail:
-            text = f"switched it {'on' if act.detail['powered'] else 'off'}"
-        case EventKind.PRESS_BUTTON:
-            text = "pressed it"
-        case EventKind.USE_DOOR:
-            text = f"{'opened' if act.detail.get('open') else 'shut'} it"
-        case EventKind.BLOCK_UPDATE | EventKind.PLACE_BLOCK if "block" in act.detail:
-            text = _made_text(act.detail)
-        case _:
-            text = f"did {act.kind.value.replace('_', ' ')}"
-    return text
-
-
-def _made_text(detail: Mapping[str, Any]) -> str:
-    """Return the recorded change of a block in words."""
-    written = detail.get("text")
-    if written is None:
-        return f"made it {detail['block']}"
-    return f'wrote "{sign_words(written)}" on it' if written else "wiped what was written on it"
-
-
-def _kind_text(kind: EventKind | None) -> str:
-    return "an act" if kind is None else _KINDS.get(kind, kind.value.replace("_", " "))
 
 
 def _state_text(value: Value, block: str | None, element: Element) -> str:
@@ -311,14 +269,10 @@ def _state_text(value: Value, block: str | None, element: Element) -> str:
 
 
 def _contents(value: Contents) -> str:
-    items = _items_text(value.items)
+    items = items_words(value.items, " and ", ids=True)
     if value.complete:
         return items or "nothing"
     return f"{items}, and perhaps more" if items else "what is not known"
-
-
-def _items_text(items: Items) -> str:
-    return " and ".join(f"{count} {name}" for name, count in sorted(items.items()))
 
 
 def _named(element: Element, block: str | None) -> str:
@@ -347,7 +301,7 @@ def _value_point(value: Value) -> str:
 
 
 def _point(point: Iterable[float]) -> str:
-    return "(" + ", ".join(f"{round(number, 3):.10g}" for number in point) + ")"
+    return point_words(point, digits=3)
 
 
 def _knows(level: Level) -> str:

@@ -12,9 +12,10 @@ from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.comparison import are_elsewhere, are_false
 from beliefnest.nest.explain.parts import Contents
-from beliefnest.pictures.words import items_words, place_words, told_apart
 from beliefnest.world.claims import Claim, ClaimKind
-from beliefnest.world.values import EventKind, Items, Point, Position
+from beliefnest.world.event_words import EVENT_WORDS, did_to_block
+from beliefnest.world.values import Items, Point, Position
+from beliefnest.world.words import contents_words, point_words, told_apart
 
 __all__ = ["BlockAt", "Carried", "Contained", "Course", "Matter", "Owned", "Whereabouts"]
 
@@ -30,26 +31,6 @@ _NEAR = 3.0
 _STEP = 1.5
 _PAUSE = 10
 """Ticks within which an agent on its way goes on, by a step of at most `_STEP` blocks."""
-
-_ACTS = {
-    EventKind.DEPOSIT_ITEM_INTO_CHEST: "puts in",
-    EventKind.GET_ITEM_FROM_CHEST: "takes out",
-    EventKind.OPEN_CONTAINER: "looks in",
-}
-_DEALS = {
-    EventKind.DEPOSIT_ITEM_INTO_CHEST: "puts away",
-    EventKind.GET_ITEM_FROM_CHEST: "takes",
-    EventKind.GIVE_ITEM_TO_OTHER: "gives",
-    EventKind.RECEIVE_ITEM_FROM_OTHER: "gets",
-}
-
-
-_USES = {
-    EventKind.USE_LEVER: "turns it",
-    EventKind.PRESS_BUTTON: "presses it",
-    EventKind.PLACE_BLOCK: "places it",
-    EventKind.MINE_BLOCK: "mines it",
-}
 
 
 class Matter(Protocol[V]):
@@ -120,7 +101,7 @@ class Contained(_Amounts):
         """Return deposits, withdrawals and looks into the container in words."""
         if tuple(event.detail.get("position", ())) != self.container:
             return ""
-        return _ACTS.get(event.kind, "")
+        return EVENT_WORDS[event.kind].in_container
 
     def is_claimed(self, claim: Claim) -> bool:
         """Return True for a claim about the item, or without one about this container.
@@ -166,7 +147,7 @@ class Carried:
         many = "" if count == 1 else f"{count} "
         if isinstance(where, str):
             return f"{many}with {where}"
-        return f"{many}in {self.names.get(where, f'container {place_words(where)}')}"
+        return f"{many}in {self.names.get(where, f'container {point_words(where)}')}"
 
     def is_false(self, real: Held | None, held: Held) -> bool:
         """Return True if one of the places really has fewer of the item."""
@@ -176,7 +157,7 @@ class Carried:
     def act(self, event: PerceivedEvent) -> str:
         """Return withdrawals, deposits and gifts of the item in words."""
         moved = self.item in event.detail.get("items", {})
-        return _DEALS.get(event.kind, "") if moved else ""
+        return EVENT_WORDS[event.kind].of_item if moved else ""
 
     def is_claimed(self, claim: Claim) -> bool:
         """Return True for claims that the item is, or is not, in a container."""
@@ -200,7 +181,7 @@ class BlockAt:
     @property
     def title(self) -> str:
         """The title of the plot."""
-        return f"What is believed of the block at {place_words(self.block)}"
+        return f"What is believed of the block at {point_words(self.block)}"
 
     def value(self, held: NodeView) -> str | None:
         """Return the block."""
@@ -218,14 +199,9 @@ class BlockAt:
 
     def act(self, event: PerceivedEvent) -> str:
         """Return acts on the block in words: use, placing, mining, writing."""
-        detail = event.detail
-        if tuple(detail.get("position", ())) != self.block:
+        if tuple(event.detail.get("position", ())) != self.block:
             return ""
-        if event.kind is EventKind.USE_DOOR:
-            return "opens it" if detail.get("open") else "shuts it"
-        if event.kind is EventKind.BLOCK_UPDATE and event.actor and "text" in detail:
-            return "writes on it"
-        return _USES.get(event.kind, "")
+        return did_to_block(event)
 
     def is_claimed(self, claim: Claim) -> bool:
         """Return True for claims about the block."""
@@ -257,7 +233,7 @@ class Owned(_Amounts):
     def act(self, event: PerceivedEvent) -> str:
         """Return withdrawals, deposits and gifts of the item by the agent in words."""
         mine = event.actor == self.agent and self.item in event.detail.get("items", {})
-        return _DEALS.get(event.kind, "") if mine else ""
+        return EVENT_WORDS[event.kind].of_item if mine else ""
 
     def is_claimed(self, claim: Claim) -> bool:
         """Return False: no claim is about an agent's possessions."""
@@ -318,7 +294,7 @@ class Whereabouts:
         if away and min(away.values()) <= _NEAR:
             return f"near {min(away, key=lambda name: (away[name], name))}"
         x, y, z = (math.floor(value + 1e-6) for value in place)
-        return f"at {place_words((x, y, z))}"
+        return f"at {point_words((x, y, z))}"
 
     def is_false(self, real: Point | None, held: Point) -> bool:
         """Return True if the value is false by the rules of `false_beliefs`."""
@@ -326,7 +302,7 @@ class Whereabouts:
 
     def act(self, event: PerceivedEvent) -> str:
         """Return the arrival at the end of a walk, in words."""
-        return "arrives" if event.kind is EventKind.MOVE_TO and event.actor == self.agent else ""
+        return EVENT_WORDS[event.kind].of_agent if event.actor == self.agent else ""
 
     def is_claimed(self, claim: Claim) -> bool:
         """Return True for claims about the agent's position."""
@@ -360,7 +336,7 @@ def _contents_words(held: Contents | None, item: str | None) -> str:
         return ""
     if item is not None and not held.items:
         return f"no {_plain(item)}"
-    return items_words(held.items, complete=held.complete)
+    return contents_words(held.items, complete=held.complete)
 
 
 def _plain(item: str) -> str:

@@ -21,10 +21,10 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.plot import Band, NotedClaim, PlotRow, belief_plot
 from beliefnest.pictures.time_axis import NotedAct
-from beliefnest.pictures.words import place_words
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import EventKind, Position
+from beliefnest.world.words import point_words
 
 __all__ = ["matter_of", "plot_of"]
 
@@ -50,7 +50,7 @@ def matter_of(
         context.registry.item_stack(item)
     if container is not None:
         context.box.check(container)
-        label = recording.setting.labels.get(container, f"container {place_words(container)}")
+        label = recording.setting.labels.get(container, f"container {point_words(container)}")
         return Contained(container, item, label)
     if block is not None:
         context.box.check(block)

@@ -19,11 +19,12 @@ from beliefnest.nest.face.given import tick_of
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
-from beliefnest.pictures.words import place_words, state_words
+from beliefnest.pictures.words import state_words
 from beliefnest.prompts import Template
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Placements, Position
+from beliefnest.world.words import counted, point_words
 
 if TYPE_CHECKING:  # What draws or infers takes long to import, and few nests are asked to.
     from beliefnest.minds.inference import Inference
@@ -533,7 +534,7 @@ def _figure(
 
     then = None if tick is None or tick >= inference.until else tick
     heat = heat_of(inference, steps, then)
-    actions = "1 action" if steps == 1 else f"{steps} actions"
+    actions = counted(steps, "action")
     words = f"where {inference.model.agent} will be after {actions}"
     tinted = [replace(scene, heat=heat, heat_words=words) for scene in scenes]
     return figure_of(tinted, bars_of(inference, then))
@@ -568,4 +569,4 @@ def _named(wrong: Difference, recording: Recording) -> str:
     if isinstance(wrong.where, str):
         is_owned = wrong.kind == "inventory"
         return f"what {wrong.where} has" if is_owned else f"where {wrong.where} is"
-    return recording.setting.labels.get(wrong.where, place_words(wrong.where))
+    return recording.setting.labels.get(wrong.where, point_words(wrong.where))

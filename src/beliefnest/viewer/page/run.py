@@ -12,7 +12,7 @@ from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.pose_history import PoseBook
 from beliefnest.viewer.page.track_rows import StandRows, TrackRows, fresh_rows
 from beliefnest.viewer.page.tracks import Onlooker, TrackRecorder
-from beliefnest.viewer.page.words import event_text
+from beliefnest.world.event_words import happens
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, path_text, paths_below
 from beliefnest.world.values import EventKind, Position
@@ -205,7 +205,7 @@ class RunData:
                     "t": entry.tick,
                     "kind": event.kind.value,
                     "actor": event.actor,
-                    "text": event_text(event, labels),
+                    "text": happens(event, labels),
                     "spoken": event.kind in _SPEECH,
                 }
                 if place is not None:
