@@ -18,6 +18,7 @@ from beliefnest.episodes.helping import Help
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, NotBegunError
+from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
 
 __all__ = ["PlayOptions", "play_task"]
