@@ -98,7 +98,7 @@ class _Found:
             if _half(int(self.first.blocks[i, j, k])) != "upper"
         }
         held = moment.containers
-        return blocks | {at for at, items in self.first.containers.items() if held[at] != items}
+        return blocks | {at for at, items in self.first.containers.items() if held.get(at) != items}
 
     def mismatches(self, course: Sequence[_Moment], places: Collection[Position]) -> int:
         """Return the number of blocks and contents that differ from a course."""
@@ -121,7 +121,7 @@ class _Found:
             return False
         if found.basis.source not in _PERCEIVED:
             return False
-        then = _at(course, found.basis.observed_at).containers[place]
+        then = _at(course, found.basis.observed_at).containers.get(place, {})
         # For a container with unknown contents, count only known items and known changes.
         names = found.items.keys() | then.keys() if known.complete else known.items.keys() | then
         return any(found.items.get(name, 0) != then.get(name, 0) for name in names)
