@@ -67,8 +67,10 @@ class ConditionEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, om
     block: Annotated[Position | None, note("A block that has a state.")] = None
     state: Annotated[str | None, note("name or name[property=value,...].")] = None
     like: Annotated[Position | None, note("A block that it must equal.")] = None
-    agents: Annotated[list[str], note("Agents that hold levers at once, one each.")] = []
-    sites: Annotated[list[list[Position]], note("Levers of each site; one site is enough.")] = []
+    agents: Annotated[tuple[str, ...], note("Agents that hold levers at once, one each.")] = ()
+    sites: Annotated[
+        tuple[tuple[Position, ...], ...], note("Levers of each site; one site is enough.")
+    ] = ()
     property: Annotated[str, note("Property to compare with `like`; empty: the state.")] = ""
 
 
@@ -100,9 +102,9 @@ class Fact(ABC):
     more: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
-    @abstractmethod
     def read(cls, entry: ConditionEntry) -> Iterable["Fact"]:
         """Return the facts of an entry that has the keys; none if it is of another kind."""
+        return [cls(*(getattr(entry, key) for key in (*cls.keys, *cls.more)))]
 
     @abstractmethod
     def __str__(self) -> str:
@@ -238,12 +240,6 @@ class AgentAt(Fact):
     place: Position
     within: float = 1.0
 
-    @classmethod
-    def read(cls, entry: ConditionEntry) -> Iterable["AgentAt"]:
-        if entry.agent is None or entry.at is None:
-            return ()
-        return [cls(entry.agent, entry.at, entry.within)]
-
     def __str__(self) -> str:
         return f"{self.agent} within {self.within:g} of {self.place}"
 
@@ -278,12 +274,6 @@ class LeversHeld(Fact):
     keys = ("agents", "sites")
     agents: tuple[str, ...]
     sites: tuple[tuple[Position, ...], ...]
-
-    @classmethod
-    def read(cls, entry: ConditionEntry) -> Iterable["LeversHeld"]:
-        if not (entry.agents and entry.sites):
-            return ()
-        return [cls(tuple(entry.agents), tuple(tuple(site) for site in entry.sites))]
 
     def __str__(self) -> str:
         sites = " or ".join(str(list(site)) for site in self.sites)
@@ -430,12 +420,6 @@ class BlockIs(_BlockFact):
     place: Position
     state: str
 
-    @classmethod
-    def read(cls, entry: ConditionEntry) -> Iterable["BlockIs"]:
-        if entry.block is None or entry.state is None:
-            return ()
-        return [cls(entry.block, entry.state)]
-
     def __str__(self) -> str:
         return f"{self.state} at {self.place}"
 
@@ -469,12 +453,6 @@ class BlocksAlike(_BlockFact):
     place: Position
     model: Position
     only: str = ""
-
-    @classmethod
-    def read(cls, entry: ConditionEntry) -> Iterable["BlocksAlike"]:
-        if entry.block is None or entry.like is None:
-            return ()
-        return [cls(entry.block, entry.like, entry.property)]
 
     def __str__(self) -> str:
         return f"{self.only or 'the block'} at {self.place} as at {self.model}"

@@ -41,6 +41,9 @@ _WIDEST = 1_000
 _LONGEST_TIMEOUT = 10_000_000
 """Ticks; about six days."""
 
+_Timeout = Annotated[int, msgspec.Meta(gt=0, le=_LONGEST_TIMEOUT)]
+_Senses = Literal["world", "percepts"]
+_SENSES = note("Facts that programs read: all, or what their agents perceive or remember.")
 _Angle = Annotated[float, msgspec.Meta(ge=-_WIDEST, le=_WIDEST)]
 _ItemsField = Annotated[dict[str, int], note("Item name to count.")]
 
@@ -214,18 +217,8 @@ class StepEntry(_Entry, frozen=True):
     agent: Annotated[str | None, note("The agent of a single program.")] = None
     program: Annotated[str | None, note("JavaScript, the body of an async function.")] = None
     programs: Annotated[dict[str, str], note("Programs by agent.")] = {}
-    senses: Annotated[
-        Literal["world", "percepts"] | None,
-        note("Facts that programs read: all, or what their agents perceive or remember."),
-    ] = None
-    timeout_ticks: Annotated[
-        int,
-        msgspec.Meta(
-            gt=0,
-            le=_LONGEST_TIMEOUT,
-            description="Ticks of 50 ms after which the step fails.",
-        ),
-    ] = 1200
+    senses: Annotated[_Senses | None, _SENSES] = None
+    timeout_ticks: Annotated[_Timeout, note("Ticks of 50 ms after which the step fails.")] = 1200
 
 
 class _MindGoalEntry(_Entry, frozen=True):
@@ -349,18 +342,8 @@ class ProbeEntry(_Entry, frozen=True):
         InferEntry | None,
         note("Inference about an agent from the state at `path`; no model is asked."),
     ] = None
-    senses: Annotated[
-        Literal["world", "percepts"] | None,
-        note("Facts that programs read: all, or what their agents perceive or remember."),
-    ] = None
-    timeout_ticks: Annotated[
-        int,
-        msgspec.Meta(
-            gt=0,
-            le=_LONGEST_TIMEOUT,
-            description="Ticks of 50 ms after which the program fails.",
-        ),
-    ] = 1200
+    senses: Annotated[_Senses | None, _SENSES] = None
+    timeout_ticks: Annotated[_Timeout, note("Ticks of 50 ms after which the program fails.")] = 1200
 
 
 class ParameterEntry(_Entry, frozen=True):
@@ -409,10 +392,7 @@ class ScenarioFile(_Entry, frozen=True):
         PerceptionEntry,
         note("Range of sight and hearing, and effect of claims."),
     ] = PerceptionEntry()
-    senses: Annotated[
-        Literal["world", "percepts"],
-        note("Facts that programs read: all, or what their agents perceive or remember."),
-    ] = "world"
+    senses: Annotated[_Senses, _SENSES] = "world"
     static_blocks: Annotated[
         list[str | Position],
         note("Blocks that all agents know from the start: names, or positions."),

@@ -140,7 +140,13 @@ class Planner:
         self.guesses: dict[tuple[object, ...], tuple[Call, ...]] = {}
 
     def plan(
-        self, mind: Imagination, agent: str, order: int, ticks: int, bounds: Bounds
+        self,
+        mind: Imagination,
+        agent: str,
+        order: int,
+        ticks: int,
+        bounds: Bounds,
+        before: Sequence[Call] | None = None,
     ) -> FoundPlan:
         """Return the best plan found; of equal plans, the first and shortest.
 
@@ -150,29 +156,10 @@ class Planner:
             order: Order of Theory of Mind of the agent.
             ticks: Number of ticks left.
             bounds: Bounds of the search.
+            before: Calls of another course that the agent has begun, which it goes on with for a
+                round first; None: the plan begins at once.
         """
-        return self._planning(agent, order, ticks, bounds).best(mind)
-
-    def plan_after(
-        self,
-        mind: Imagination,
-        agent: str,
-        order: int,
-        ticks: int,
-        bounds: Bounds,
-        calls: Sequence[Call],
-    ) -> FoundPlan:
-        """Return the best course after a round in which the agent has begun another one.
-
-        Args:
-            mind: As for `plan`, as all others.
-            agent: Who plans.
-            order: Its order of Theory of Mind.
-            ticks: Ticks that are left before the round.
-            bounds: How much is looked at.
-            calls: What it does in the round, as far as the round is long enough.
-        """
-        return self._planning(agent, order, ticks, bounds).best(mind, before=calls)
+        return self._planning(agent, order, ticks, bounds).best(mind, before)
 
     def outcome(
         self,

@@ -123,7 +123,7 @@ class Expecting:
             (each.weight, self._judged(each, (*calls, *plan.calls), plan.score))
             for each in supposed
             for plan in [
-                each.planner.plan_after(
+                each.planner.plan(
                     each.mind, agent, self._order, self._ticks(each), self._bounds, calls
                 )
             ]
