@@ -16,23 +16,12 @@ def tasks_of_inspect(study, folder):
     importlib.import_module("beliefnest.inspect")
 
 
-def mirrored(study, folder):
-    bn.Study("sally-anne", variations={"symmetry": ["mirrored"]}).plan()
-
-
-def drawn(study, folder):
-    bn.Study("sally-anne", variations=2).plan()
-
-
 @pytest.mark.parametrize(
     ("package", "extra", "use"),
     [
         ("pandas", "study", lambda study, folder: study.run(folder / "s").frame()),
-        ("pyarrow", "study", lambda study, folder: study.run(folder / "s").summary()),
+        ("pyarrow", "study", lambda study, folder: study.run(folder / "s").write_tables()),
         ("pandas", "study", lambda study, folder: beliefnest.frames.cells_df(folder / "s")),
-        ("joblib", "study", lambda study, folder: study.run(folder / "new", 2)),
-        ("tree_sitter_javascript", "study", mirrored),
-        ("tree_sitter_javascript", "study", drawn),
         ("matplotlib.figure", "plot", lambda study, folder: study.run(folder / "s").plot()),
         ("distributed", "dask", lambda study, folder: study.run(folder / "new", 2, "dask")),
         ("ray.util.joblib", "ray", lambda study, folder: study.run(folder / "new", 2, "ray")),

@@ -15,7 +15,7 @@ from rich.table import Table
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
-from beliefnest.studies.plainframe import Typed, write_typed
+from beliefnest.studies.plainframe import Typed, write_csv, write_parquet
 from beliefnest.suites import FILMS
 from beliefnest.suites.films.agreement import PUBLISHED, Agreement, agreement, interval
 from beliefnest.suites.films.film import ABOUT, About, Film, FilmParameters, grid_for
@@ -181,7 +181,7 @@ def _judgment(judgment: Judgment) -> dict[str, Any]:
 def _write(
     folder: Path, options: FilmOptions, judged: Mapping[Lesion | None, Sequence[Judgment]]
 ) -> list[str]:
-    """Write figure and tables; the figure where people judged, tables where pandas is there."""
+    """Write the figure, if people judged, and the tables; without pyarrow, no Parquet file."""
     written = []
     rows = _scatter_rows(judged, options.seed)
     if rows:
@@ -190,15 +190,15 @@ def _write(
             file = folder / f"scatter.{ending}"
             figure.save(file)
             written.append(str(file))
-    tables = [folder / "judgments.csv", folder / "judgments.parquet"]
+    columns = _columns(judged)
     try:
-        write_typed(_columns(judged), *tables)
+        for name, write in (("judgments.csv", write_csv), ("judgments.parquet", write_parquet)):
+            write(columns, folder / name)
+            written.append(str(folder / name))
     except MissingExtraError as error:
-        sys.stderr.write(f"no judgments.csv and judgments.parquet: {error}\n")
+        sys.stderr.write(f"no judgments.parquet: {error}\n")
     except OSError as error:
         raise InputError(f"{folder} cannot be written: {error.strerror or error}") from None
-    else:
-        written += map(str, tables)
     return written
 
 

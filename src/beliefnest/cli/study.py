@@ -119,11 +119,11 @@ def _progress_text(progress: StudyProgress) -> str:
 
 
 def _write_files(result: StudyResult, by: Sequence[str]) -> None:
-    """Write the tables and the page into the study's folder; without pandas, only the page."""
+    """Write the tables and the page into the study's folder; without pyarrow, no Parquet file."""
     try:
         result.write_tables()
     except UnknownNameError as error:
-        sys.stderr.write(f"no rows.csv and rows.parquet: {error}\n")
+        sys.stderr.write(f"no rows.parquet: {error}\n")
     result.write_page(result.folder.path / "study.html", by)
 
 

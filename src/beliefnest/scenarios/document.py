@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from beliefnest.errors import BeliefNestError, MissingExtraError, ScenarioError
+from beliefnest.errors import BeliefNestError, ScenarioError
 
 __all__ = [
     "LABELLED",
@@ -85,7 +85,7 @@ class Document:
         """Name file, line and key in every error of the package raised inside."""
         try:
             yield
-        except (ScenarioError, MissingExtraError):
+        except ScenarioError:
             raise
         except BeliefNestError as error:
             raise self.fault(path, str(error)) from error

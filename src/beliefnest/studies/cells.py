@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
 
-from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
+from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected import expected_json
@@ -247,8 +247,6 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
                 try:
                     scenario = _scenario(design, document, condition, variation)
                     asked = _by_template(design, document, scenario, variation)
-                except MissingExtraError:
-                    raise
                 except BeliefNestError as error:
                     invalid.append(Invalid(name, condition, variation.values, str(error)))
                     continue

@@ -131,10 +131,8 @@ def _results(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _
 
 
 def _parallel(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _Results:
-    try:
-        from joblib import Parallel, delayed, parallel_config
-    except ModuleNotFoundError:
-        raise MissingExtraError("several jobs need joblib", "study", ", or use one job") from None
+    from joblib import Parallel, delayed, parallel_config
+
     if backend == "loky":
         terms = replace(terms, owner=os.getpid())
     # Cells take long, so dispatching them one by one costs little.

@@ -1,5 +1,6 @@
-"""Data frames of pandas with plain types, which statistical packages can read."""
+"""Tables with plain types: data frames of pandas, CSV and Parquet."""
 
+import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ if TYPE_CHECKING:  # pandas and pyarrow are optional, and imported when a table 
     import pandas
     import pyarrow
 
-__all__ = ["Typed", "plain_frame", "write_typed"]
+__all__ = ["Typed", "plain_frame", "write_csv", "write_parquet"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,34 +73,37 @@ def _texts(column: Typed) -> list[str | None]:
     return [value if value is None else str(value) for value in column.values]
 
 
-def write_typed(columns: Mapping[str, Typed], csv: Path, parquet: Path) -> None:
-    """Write a table as CSV and as Parquet; whole numbers stay whole even if some are missing.
+def write_csv(columns: Mapping[str, Typed], file: Path) -> None:
+    """Write a table as CSV; a missing value is an empty cell.
 
-    In the CSV file, an apostrophe precedes texts that a spreadsheet would take as formulas.
+    An apostrophe precedes texts that a spreadsheet would take as formulas.
+    """
+    cells = [
+        _texts(column) if column.found_kind == "string" else column.values
+        for column in columns.values()
+    ]
+    with file.open("w", newline="", encoding="utf-8") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(columns)
+        for row in zip(*cells, strict=True):
+            writer.writerow(formula_free(v) if isinstance(v, str) else v for v in row)
+
+
+def write_parquet(columns: Mapping[str, Typed], file: Path) -> None:
+    """Write a table as Parquet; whole numbers stay whole even if some are missing.
 
     Raises:
-        MissingExtraError: pandas or pyarrow is not installed.
+        MissingExtraError: pyarrow is not installed.
     """
-    pandas = _pandas()
-    arrays = {name: _arrow(column) for name, column in columns.items()}
-    frame = pandas.DataFrame(
-        {
-            name: pandas.array(values, dtype=pandas.ArrowDtype(values.type))
-            for name, values in arrays.items()
-        }
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ModuleNotFoundError:
+        raise MissingExtraError("Parquet files need pyarrow", "study") from None
+    # Without pandas metadata, which would make pandas read other types than plain ones.
+    parquet.write_table(
+        pyarrow.table({name: _arrow(column) for name, column in columns.items()}), file
     )
-    texts = [name for name in frame if any(isinstance(each, str) for each in frame[name])]
-    safe = {name: [_cell(value) for value in frame[name]] for name in texts}
-    frame.assign(**safe).to_csv(csv, index=False, lineterminator="\n")
-    import pyarrow
-    from pyarrow import parquet as files
-
-    # Leave out pandas metadata, which would make pandas read other types than plain ones.
-    files.write_table(pyarrow.table(arrays), parquet)
-
-
-def _cell(value: object) -> object:
-    return formula_free(value) if isinstance(value, str) else value
 
 
 def _arrow(column: Typed) -> "pyarrow.Array":
@@ -113,7 +117,6 @@ def _arrow(column: Typed) -> "pyarrow.Array":
 def _pandas() -> Any:
     try:
         import pandas
-        import pyarrow  # noqa: F401  # what tables are written with
-    except ModuleNotFoundError as error:
-        raise MissingExtraError(f"tables of studies need {error.name}", "study") from None
+    except ModuleNotFoundError:
+        raise MissingExtraError("data frames of studies need pandas", "study") from None
     return pandas

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.errors import InputError
 
 __all__ = ["Rewriting", "rewritten"]
 
@@ -61,13 +61,9 @@ def rewritten(program: str, by: Rewriting) -> str:
 
 
 def _tree(source: bytes) -> _Node:
-    try:
-        import tree_sitter_javascript
-        from tree_sitter import Language, Parser
-    except ModuleNotFoundError:
-        raise MissingExtraError(
-            "mirrored, turned and renamed copies need a parser of JavaScript", "study"
-        ) from None
+    import tree_sitter_javascript
+    from tree_sitter import Language, Parser
+
     root = Parser(Language(tree_sitter_javascript.language())).parse(source).root_node
     for node in _nodes(root):
         if node.is_missing or node.type == "ERROR":

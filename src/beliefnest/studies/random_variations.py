@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
+from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in
@@ -211,8 +211,6 @@ def _is_possible(document: Document, changes: Mapping[str, Any]) -> bool:
     try:
         for condition in condition_numbers(document):
             Scenario.varied(document, condition, None, scene)
-    except MissingExtraError:
-        raise
     except BeliefNestError:
         return False
     return True

@@ -10,7 +10,7 @@ from beliefnest.errors import InputError
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.episode_rows import EPISODES
-from beliefnest.studies.plainframe import Typed, plain_frame, write_typed
+from beliefnest.studies.plainframe import Typed, plain_frame, write_csv, write_parquet
 from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table, variation_columns
@@ -253,9 +253,14 @@ class StudyResult:
         """Write `rows.csv` and `rows.parquet` into the folder, with the type of each column.
 
         In the CSV file, an apostrophe precedes texts that a spreadsheet would take as formulas.
+
+        Raises:
+            MissingExtraError: pyarrow is not installed; `rows.csv` is written.
         """
         csv, parquet = self.folder.path / "rows.csv", self.folder.path / "rows.parquet"
-        write_typed(self._typed(), csv, parquet)
+        columns = self._typed()
+        write_csv(columns, csv)
+        write_parquet(columns, parquet)
         return csv, parquet
 
     def _columns(self, names: Sequence[str] | str) -> list[str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
-from beliefnest.errors import BeliefNestError, InputError, MissingExtraError
+from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
 from beliefnest.scenarios.yaml_reading import template_text
@@ -308,7 +308,5 @@ def _leaf(
     except (TypeError, ValueError):
         # A value of the wrong form, as above.
         return node
-    except MissingExtraError:
-        raise
     except BeliefNestError as error:
         raise document.fault(path, str(error)) from error
