@@ -9,6 +9,7 @@ from ruamel.yaml import YAML
 from tests.studies.small import SMALL, small_in
 
 import beliefnest as bn
+from beliefnest.belief.conditions import ConditionEntry
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.document import plain
 from beliefnest.scenarios.expected import ExpectEntry
@@ -344,6 +345,7 @@ def test_every_key_of_a_scenario_is_known_in_another_scene():
         InferEntry: _SHAPE["probes"].shape["infer"],
         DoubtEntry: _SHAPE["probes"].shape["infer"]["doubt"].shape,
         ExpectationEntry: _SHAPE["expectations"].shape,
+        ConditionEntry: _SHAPE["episode"]["goal"]["reach"].shape,
         InitialBeliefEntry: shape,
         BelievedSignEntry: shape["signs"].shape,
     }.items():

@@ -55,23 +55,30 @@ _CHANGES_NO_BLOCK = (
 class ConditionEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     """A condition on a container, an agent, agents at levers, or a block."""
 
-    path: Annotated[str, note("Belief path in which it must hold; / is reality.")] = "/"
-    container: Annotated[Position | None, note("A container that holds `items`.")] = None
-    agent: Annotated[str | None, note("An agent that has `items` or stands `at` a place.")] = None
+    path: Annotated[str, note("Belief path in which it must hold; / is reality.", "path")] = "/"
+    container: Annotated[Position | None, note("A container that holds `items`.", "block")] = None
+    agent: Annotated[
+        str | None, note("An agent that has `items` or stands `at` a place.", "agent")
+    ] = None
     items: Annotated[
         dict[str, Annotated[int, msgspec.Meta(ge=1)]] | None,
-        note("Item name to least count; {}: nothing at all."),
+        note("Item name to least count; {}: nothing at all.", "items"),
     ] = None
-    at: Annotated[Position | None, note("A block position.")] = None
-    within: Annotated[float, note("Greatest distance from `at`, in blocks.")] = 1.0
-    block: Annotated[Position | None, note("A block that has a state.")] = None
-    state: Annotated[str | None, note("name or name[property=value,...].")] = None
-    like: Annotated[Position | None, note("A block that it must equal.")] = None
-    agents: Annotated[tuple[str, ...], note("Agents that hold levers at once, one each.")] = ()
-    sites: Annotated[
-        tuple[tuple[Position, ...], ...], note("Levers of each site; one site is enough.")
+    at: Annotated[Position | None, note("A block position.", "block")] = None
+    within: Annotated[float, note("Greatest distance from `at`, in blocks.", "keep")] = 1.0
+    block: Annotated[Position | None, note("A block that has a state.", "block")] = None
+    state: Annotated[str | None, note("name or name[property=value,...].", "wanted")] = None
+    like: Annotated[Position | None, note("A block that it must equal.", "block")] = None
+    agents: Annotated[
+        tuple[str, ...], note("Agents that hold levers at once, one each.", "[agent]")
     ] = ()
-    property: Annotated[str, note("Property to compare with `like`; empty: the state.")] = ""
+    sites: Annotated[
+        tuple[tuple[Position, ...], ...],
+        note("Levers of each site; one site is enough.", "[[block]]"),
+    ] = ()
+    property: Annotated[str, note("Property to compare with `like`; empty: the state.", "keep")] = (
+        ""
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,16 +80,20 @@ _MOST_OPTIONS = 26
 class AnswersEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A question to the model, and its right answers."""
 
-    question: Annotated[str, note("The question.")]
+    question: Annotated[str, note("The question.", "text")]
     right: Annotated[
-        str | list[str], note("Right answers; a right answer in words contains one of them.")
+        str | list[str],
+        note("Right answers; a right answer in words contains one of them.", "[text]"),
     ]
     options: Annotated[
-        list[str], note("Options to choose from, shuffled by the seed; empty: an answer in words.")
+        list[str],
+        note("Options to choose from, shuffled by the seed; empty: an answer in words.", "[text]"),
     ] = []
-    wrong: Annotated[list[str], note("Texts that an answer in words must not contain.")] = []
+    wrong: Annotated[
+        list[str], note("Texts that an answer in words must not contain.", "[text]")
+    ] = []
     reason: Annotated[
-        bool, note("Whether the model is also asked for a reason, which is recorded.")
+        bool, note("Whether the model is also asked for a reason, which is recorded.", "keep")
     ] = False
 
 
@@ -103,19 +107,22 @@ class InferredEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Expectations about a probe: at least one of these; all of them must hold."""
 
-    opens: Annotated[forms.Position | None, note("The container that the agent opens first.")] = (
-        None
-    )
-    arrives: Annotated[forms.Point | None, note("Place of the agent at the end.")] = None
+    opens: Annotated[
+        forms.Position | None, note("The container that the agent opens first.", "block")
+    ] = None
+    arrives: Annotated[forms.Point | None, note("Place of the agent at the end.", "point")] = None
     intends: Annotated[
         forms.Point | None,
-        note("Container or place that the program heads for, even if it never gets there."),
+        note(
+            "Container or place that the program heads for, even if it never gets there.", "place"
+        ),
     ] = None
-    within: Annotated[forms.Within, note("Greatest distance from there, in blocks.")] = 2.0
+    within: Annotated[forms.Within, note("Greatest distance from there, in blocks.", "keep")] = 2.0
     takes: Annotated[
-        dict[str, int] | None, note("Counts of items that the agent takes out of containers.")
+        dict[str, int] | None,
+        note("Counts of items that the agent takes out of containers.", "items"),
     ] = None
-    says: Annotated[str | None, note("Part of an utterance of the agent.")] = None
+    says: Annotated[str | None, note("Part of an utterance of the agent.", "text")] = None
     answers: Annotated[
         AnswersEntry | list[AnswersEntry] | None, note("Questions to the model and right answers.")
     ] = None
@@ -125,7 +132,7 @@ class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     ] = None
     inferred: Annotated[
         dict[str, InferredEntry] | None,
-        note("Expected posterior means by factor, such as utility.K or credence.L."),
+        note("Expected posterior means by factor, such as utility.K or credence.L.", "keep"),
     ] = None
     function: Annotated[
         Any,

@@ -29,19 +29,23 @@ __all__ = ["Content", "Expectation", "ExpectationEntry", "Hears", "Holds", "Is",
 class ExpectationEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Expected content of a belief: a container, agent, sign, block, or utterance."""
 
-    path: Annotated[str, note("Belief path; / is the real world.")]
-    label: Annotated[str, note("A name for tables and overrides.")] = ""
-    container: Annotated[forms.Position | None, note("A container that holds `items`.")] = None
-    items: Annotated[dict[str, int] | None, note("Exactly the known items in it.")] = None
-    agent: Annotated[str | None, note("An agent that stands at `position`.")] = None
-    sign: Annotated[forms.Position | None, note("A sign that says `text`.")] = None
-    text: Annotated[str | None, note("Exact text of the sign; null: unknown.")] = None
-    block: Annotated[forms.Position | None, note("A block that is `state`.")] = None
-    state: Annotated[str | None, note("A block state; null: unknown.")] = None
-    heard: Annotated[str | None, note("Part of a known utterance.")] = None
-    not_heard: Annotated[str | None, note("Text that no known utterance contains.")] = None
-    position: Annotated[forms.Point | None, note("Middle of the feet.")] = None
-    within: Annotated[forms.Within, note("Greatest distance from `position`, in blocks.")] = 2.0
+    path: Annotated[str, note("Belief path; / is the real world.", "path")]
+    label: Annotated[str, note("A name for tables and overrides.", "keep")] = ""
+    container: Annotated[
+        forms.Position | None, note("A container that holds `items`.", "block")
+    ] = None
+    items: Annotated[dict[str, int] | None, note("Exactly the known items in it.", "items")] = None
+    agent: Annotated[str | None, note("An agent that stands at `position`.", "agent")] = None
+    sign: Annotated[forms.Position | None, note("A sign that says `text`.", "block")] = None
+    text: Annotated[str | None, note("Exact text of the sign; null: unknown.", "text")] = None
+    block: Annotated[forms.Position | None, note("A block that is `state`.", "block")] = None
+    state: Annotated[str | None, note("A block state; null: unknown.", "state")] = None
+    heard: Annotated[str | None, note("Part of a known utterance.", "text")] = None
+    not_heard: Annotated[str | None, note("Text that no known utterance contains.", "text")] = None
+    position: Annotated[forms.Point | None, note("Middle of the feet.", "point")] = None
+    within: Annotated[
+        forms.Within, note("Greatest distance from `position`, in blocks.", "keep")
+    ] = 2.0
 
 
 class Content(ABC):

@@ -8,10 +8,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
+import msgspec
+
+from beliefnest.belief.conditions import ConditionEntry
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
+from beliefnest.scenarios.expected import AnswersEntry, ExpectEntry
+from beliefnest.scenarios.expected_state import ExpectationEntry
 from beliefnest.scenarios.yaml_reading import template_text
+from beliefnest.world.forms import scene_kinds
 
 __all__ = ["Kind", "SceneChange", "changed_scene"]
 
@@ -69,39 +75,24 @@ _CLAIM = {"kind": "keep", "place": "block", "item": "item", "agent": "agent", "s
 _CLAIMS = _Each(_ByKind(_CLAIM, {"position": {**_CLAIM, "place": "point"}}))
 _SIGNS = _Each({"at": "block", "text": "text", "block": "state", "claims": _CLAIMS})
 _EQUIPMENT = dict.fromkeys(("head", "chest", "legs", "feet", "main_hand", "off_hand"), "item")
-_EXPECTATION = {
-    "label": "keep",
-    "path": "path",
-    "container": "block",
-    "items": _ITEMS,
-    "agent": "agent",
-    "position": "point",
-    "sign": "block",
-    "text": "text",
-    "block": "block",
-    "state": "state",
-    "within": "keep",
-    "heard": "text",
-    "not_heard": "text",
-}
+
+
+def _shape(kind: str) -> Any:
+    """Return the shape that `note` names: a kind, `items`, or a list in brackets."""
+    if kind.startswith("["):
+        return _Each(_shape(kind[1:-1]))
+    return _ITEMS if kind == "items" else kind
+
+
+def _shapes(form: type[msgspec.Struct]) -> dict[str, Any]:
+    return {key: _shape(kind) for key, kind in scene_kinds(form).items()}
+
+
+_EXPECTATION = _shapes(ExpectationEntry)
 _EXPECT = {
-    "opens": "block",
-    "arrives": "point",
-    "intends": "place",
-    "within": "keep",
-    "takes": _ITEMS,
-    "says": "text",
-    "answers": _Each(
-        {
-            "question": "text",
-            "right": _Each("text"),
-            "options": _Each("text"),
-            "wrong": _Each("text"),
-            "reason": "keep",
-        }
-    ),
+    **_shapes(ExpectEntry),
+    "answers": _Each(_shapes(AnswersEntry)),
     "believes": _Each(_EXPECTATION),
-    "inferred": "keep",
 }
 _INFER = {
     "agent": "agent",
@@ -123,21 +114,7 @@ _INFER = {
         "keep",
     ),
 }
-_CONDITION = {
-    "path": "path",
-    "container": "block",
-    "agent": "agent",
-    "items": _ITEMS,
-    "at": "block",
-    "within": "keep",
-    "block": "block",
-    "state": "wanted",
-    "like": "block",
-    "agents": _Each("agent"),
-    "sites": _Each(_Each("block")),
-    "plate": "keep",
-    "property": "keep",
-}
+_CONDITION = _shapes(ConditionEntry)
 _GOAL = {
     "reach": _Each(_CONDITION),
     "never": _Each(_CONDITION),

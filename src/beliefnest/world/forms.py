@@ -1,17 +1,34 @@
 """Types of the keys in scenario and task files."""
 
-from typing import Annotated
+from typing import Annotated, get_type_hints
 
 import msgspec
 
 from beliefnest.world.limits import FARTHEST
 
-__all__ = ["Point", "Position", "Within", "note"]
+__all__ = ["Point", "Position", "Within", "note", "scene_kinds"]
 
 
-def note(text: str) -> msgspec.Meta:
-    """Return the description of a key, for the published schema."""
-    return msgspec.Meta(description=text)
+def note(text: str, scene: str | None = None) -> msgspec.Meta:
+    """Return the description of a key, for the published schema.
+
+    Args:
+        text: The description.
+        scene: Kind of the value for mirrored, turned or renamed scenes, such as `block`
+            (`studies.scene_changes`), in brackets for a list; None: not stated here.
+    """
+    return msgspec.Meta(description=text, extra=None if scene is None else {"scene": scene})
+
+
+def scene_kinds(form: type[msgspec.Struct]) -> dict[str, str]:
+    """Return the kinds of the values in copies of a scene, by key, for keys that have a kind."""
+    hints = get_type_hints(form, include_extras=True)
+    return {
+        key: meta.extra["scene"]
+        for key, hint in hints.items()
+        for meta in getattr(hint, "__metadata__", ())
+        if isinstance(meta, msgspec.Meta) and meta.extra is not None
+    }
 
 
 _Whole = Annotated[int, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
