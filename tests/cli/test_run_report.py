@@ -149,3 +149,27 @@ def test_why_a_program_failed_is_told_by_the_run_its_report_and_its_files(
     assert f"the program failed: {why}; it ran from tick 0 to tick 1" in page
     report = json.loads((tmp_path / "out" / "run.json").read_text("utf-8"))
     assert report["runs"][0]["probes"][0]["error"] == why
+
+
+def test_the_table_shows_block_states_with_their_brackets(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A terminal takes words in brackets for styles unless they are escaped."""
+    (tmp_path / "lit.yaml").write_text(
+        "name: lit\nbox: [[0, 0, 0], [4, 3, 4]]\n"
+        "blocks:\n  - {block: stone, fill: [[0, 0, 0], [4, 0, 4]]}\n"
+        "  - {block: 'redstone_lamp[lit=true]', at: [3, 1, 3]}\n"
+        "agents: {ann: {position: [1.5, 1, 1.5]}}\n"
+        "expectations:\n  - {path: /ann, block: [3, 1, 3], state: 'redstone_lamp[lit=true]'}\n",
+        "utf-8",
+    )
+    command = [
+        "run",
+        str(tmp_path / "lit.yaml"),
+        "--world",
+        "scripted",
+        "--out",
+        str(tmp_path / "r"),
+    ]
+    assert run_command_line(command) == 0
+    assert "redstone_lamp[lit=true]" in capsys.readouterr().out
