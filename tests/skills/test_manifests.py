@@ -1,12 +1,7 @@
-"""What models read of the skills."""
+"""What models read of the skills, and what the worlds do."""
 
-import re
-from pathlib import Path
-
-import beliefnest
 from beliefnest.programs import skills
-
-FOLDER = Path(beliefnest.__file__).parent / "skills" / "code"
+from beliefnest.worlds.scripted.skills import SKILLS
 
 
 def test_every_skill_has_a_signature_and_an_example_that_calls_it() -> None:
@@ -20,7 +15,5 @@ def test_every_skill_has_a_signature_and_an_example_that_calls_it() -> None:
         assert skill.description.endswith(".")
 
 
-def test_every_skill_is_written_in_a_file_of_its_name() -> None:
-    index = (FOLDER / "index.js").read_text(encoding="utf-8")
-    for skill in skills():
-        assert re.search(rf"\b{skill.name}\b", index) or (FOLDER / f"{skill.name}.js").is_file()
+def test_skills_that_work_in_the_scripted_world_have_a_twin_there() -> None:
+    assert {skill.name for skill in skills() if skill.scripted} == {*SKILLS}

@@ -234,3 +234,16 @@ def test_what_is_said_is_said_whether_it_is_waited_for_or_not(world: World, end:
     played = Played(world, {"sally": f"{words}\n{end}"})
     assert {detail["text"] for _, _, detail in played.told} == {"one", "two", "three"}
     assert played.results["sally"].ticks == 1
+
+
+def test_targets_of_calls_are_noted_by_every_world_alike(world: World) -> None:
+    calls = [
+        (f"goToPosition(bot, new Vec3{FREE})", FREE, None, False),
+        (f"placeItem(bot, 'red_wool', new Vec3{FREE})", FREE, None, True),
+        (f"writeSign(bot, new Vec3{FREE}, 'hello')", FREE, None, True),
+        ("giveItemToOther(bot, 'anne', 'dirt', 1)", None, "anne", True),
+    ]
+    program = "\n".join(f"await {call}.catch(() => {{}})" for call, *_ in calls)
+    aims = Played(world, {"sally": program}).results["sally"].aims
+    expected = [(call.partition("(")[0], *target) for call, *target in calls]
+    assert [(aim.call, aim.place, aim.agent, aim.uses) for aim in aims] == expected

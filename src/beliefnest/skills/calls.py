@@ -1,10 +1,30 @@
 """Calls of skills as values, and their conversion to programs."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
-__all__ = ["Call", "program_of"]
+from beliefnest.skills.manifests import Parameter, Skill, skills
+
+__all__ = ["OPEN_CONTAINER", "Call", "callables", "program_of"]
+
+OPEN_CONTAINER = Skill(
+    "openContainer",
+    "openContainer(position)",
+    "Go to a container, open it and look in.",
+    (Parameter("position", "Vec3", "position of the container", "uses", ("container",)),),
+    "",
+)
+"""The bot's method, as a call that first goes there."""
+
+
+@cache
+def callables() -> Mapping[str, Skill]:
+    """Return everything that a `Call` can name."""
+    walking, *others = skills()
+    return {each.name: each for each in (walking, OPEN_CONTAINER, *others)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +49,7 @@ class Call:
         """The call as JavaScript; empty if it begins no action."""
         if self.is_nothing:
             return ""
-        if self.skill == "openContainer":
+        if self.skill == OPEN_CONTAINER.name:
             place = _code(self.args[0])
             return (
                 f"await goToPosition(bot, {place}, 2)\n"

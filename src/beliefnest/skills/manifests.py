@@ -2,6 +2,7 @@
 
 from functools import cache
 from importlib.resources import files
+from typing import Literal
 
 import msgspec
 
@@ -15,11 +16,16 @@ class Parameter(msgspec.Struct, frozen=True):
         name: Name as in the signature.
         type: Type in TypeScript's notation.
         description: Meaning of the value.
+        aim: `walks` or `uses` if the value is the target of the call: a position, or an agent's
+            name; empty if it is not.
+        action: Parts of a structured action that give the value, or its constant value there.
     """
 
     name: str
     type: str
     description: str
+    aim: Literal["walks", "uses", ""] = ""
+    action: tuple[str, ...] | int = ()
 
 
 class Skill(msgspec.Struct, frozen=True):
@@ -31,6 +37,7 @@ class Skill(msgspec.Struct, frozen=True):
         description: Effect of the function.
         parameters: Parameters in order.
         example: Program that calls the function.
+        scripted: True if it works in the scripted world too.
     """
 
     name: str
@@ -38,6 +45,20 @@ class Skill(msgspec.Struct, frozen=True):
     description: str
     parameters: tuple[Parameter, ...]
     example: str
+    scripted: bool = False
+
+    @property
+    def arguments(self) -> tuple[Parameter, ...]:
+        """Parameters without the bot."""
+        return tuple(each for each in self.parameters if each.type != "Bot")
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Parts that a structured action of the skill has; empty if there is no such action."""
+        given = (each.action for each in self.parameters)
+        return tuple(
+            dict.fromkeys(part for parts in given if isinstance(parts, tuple) for part in parts)
+        )
 
 
 @cache

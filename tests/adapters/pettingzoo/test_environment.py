@@ -105,11 +105,13 @@ def test_signs_are_written_and_read_where_there_are_some():
             "agents": {"ann": {"position": [1.5, 1, 1.5]}, "bob": {"position": [6.5, 1, 1.5]}},
         }
     )
-    env = parallel_env(scenario, phrases=["here", "gone"], max_steps=3)
+    told = {"here": [bn.Claim.located("diamond", (4, 1, 2))], "gone": []}
+    env = parallel_env(scenario, phrases=told, max_steps=3)
     observations, _ = env.reset()
     assert observations["bob"]["signs"].tolist() == [2]
     observations, *_, infos = act(env, "ann", "writeSign", sign=(4, 1, 4), phrase="here")
     assert (infos["ann"]["error"], observations["bob"]["signs"].tolist()) == ("", [1])
+    assert [claim.speaker for claim in env.nest.claims()] == ["ann"]
     assert env.observation_space("bob").contains(observations["bob"])
     env.close()
     without = make()

@@ -16,7 +16,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, EventKind, Position
 from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.hand import Doing, Hand
-from beliefnest.worlds.scripted.skills import CALLS, SKILLS
+from beliefnest.worlds.scripted.skills import perform
 
 __all__ = ["Acting", "Deed", "JointStep", "ProgramActing", "SkillActing"]
 
@@ -139,7 +139,6 @@ class SkillActing:
         return JointStep(deeds, self._spoken)
 
     def _begin(self, agent: str, call: Call, errors: dict[str, str]) -> None:
-        skill = SKILLS.get(call.skill) or CALLS[call.skill]
         hand = Hand(
             agent,
             self._world,
@@ -148,7 +147,7 @@ class SkillActing:
             signs=lambda: self._signs(agent),
             ground=self._real_ground,
         )
-        self._doing[agent] = _near(hand, skill(hand, *call.args), call)
+        self._doing[agent] = perform(hand, call)
         # Run the skill up to its first tick: it checks its arguments and has no effect yet.
         self._advance(agent, errors)
 
@@ -193,10 +192,3 @@ class SkillActing:
     def _hear(self, frame: Frame) -> None:
         if any(event.kind is EventKind.CHAT for event in frame.events):
             self._spoken = True
-
-
-def _near(hand: Hand, doing: Doing, call: Call) -> Doing:
-    """Walk to a container before opening it, as the skill's program does."""
-    if call.skill == "openContainer":
-        yield from SKILLS["goToPosition"](hand, call.args[0], 2)
-    yield from doing

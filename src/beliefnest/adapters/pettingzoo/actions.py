@@ -7,7 +7,8 @@ import numpy as np
 
 from beliefnest.adapters.pettingzoo.layout import ObservationLayout, Phrases
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.skills.calls import Call
+from beliefnest.skills.calls import Call, callables
+from beliefnest.skills.manifests import Parameter
 from beliefnest.world.values import Position
 
 __all__ = ["MOST_ITEMS", "Call", "Calls"]
@@ -17,21 +18,6 @@ _LONGEST = 200
 
 MOST_ITEMS = 64
 """Greatest number of items of one kind that one call moves."""
-
-_NEEDS: Mapping[str, tuple[str, ...]] = {
-    "doNothing": (),
-    "goToPosition": ("position",),
-    "openContainer": ("container",),
-    "getItemFromChest": ("container", "item", "count"),
-    "depositItemIntoChest": ("container", "item", "count"),
-    "openDoor": ("door",),
-    "closeDoor": ("door",),
-    "writeSign": ("sign", "phrase"),
-    "giveItemToOther": ("agent", "item", "count"),
-    "say": ("phrase",),
-    "whisper": ("agent", "phrase"),
-}
-"""Parts of an action that each skill reads; it ignores the others."""
 
 _KINDS = {
     "container": "containers",
@@ -64,10 +50,11 @@ class Calls:
         sizes |= {"position": 1, "count": MOST_ITEMS}
         # An agent cannot give or whisper to itself.
         sizes["agent"] = len(layout.agents) if len(layout.agents) > 1 else 0
-        self.skills = tuple(
-            name for name, needs in _NEEDS.items() if all(sizes[part] for part in needs)
-        )
-        used = {part for name in self.skills for part in _NEEDS[name]}
+        known = callables()
+        actions = [known["doNothing"], *(each for each in known.values() if each.parts)]
+        self._possible = [each for each in actions if all(sizes[part] for part in each.parts)]
+        self.skills = tuple(each.name for each in self._possible)
+        used = {part for each in self._possible for part in each.parts}
         self.parts = {part: size for part, size in sizes.items() if part in used}
 
     def action(self, skill: str, given: Mapping[str, object]) -> dict[str, Any]:
@@ -86,7 +73,8 @@ class Calls:
             raise UnknownNameError(
                 f"there is no skill {skill!r} here; skills are {', '.join(self.skills)}"
             )
-        needs = _NEEDS[skill]
+        index = self.skills.index(skill)
+        needs = self._possible[index].parts
         parts = {"count": 1, **given} if "count" in needs else dict(given)
         if parts.keys() != set(needs):
             raise InputError(f"{skill} takes {', '.join(needs) or 'nothing'}; got {sorted(parts)}")
@@ -96,7 +84,7 @@ class Calls:
         }
         for part, value in parts.items():
             action[part] = self._numbered(part, value)
-        return {"skill": np.int64(self.skills.index(skill)), **action}
+        return {"skill": np.int64(index), **action}
 
     def _numbered(self, part: str, value: Any) -> Any:
         if part == "position":
@@ -122,38 +110,29 @@ class Calls:
             InputError: The action is not in the space.
         """
         try:
-            skill = self.skills[_index(action["skill"])]
-            return Call(skill, self._args(skill, action))
+            skill = self._possible[_index(action["skill"])]
+            args = [self._argument(each, action) for each in skill.parameters if each.action != ()]
+            return Call(skill.name, tuple(each for each in args if each != []))
         except (KeyError, IndexError, TypeError, ValueError, OverflowError) as error:
             raise InputError(
                 f"{repr(action)[:_LONGEST]} is not in the action space ({error!r}); "
                 "sample action_space() or use action()"
             ) from None
 
-    def _args(self, skill: str, action: Mapping[str, Any]) -> tuple[Any, ...]:
-        def named(part: str) -> Any:
-            return getattr(self._layout, _KINDS[part])[_index(action[part])]
+    def _argument(self, parameter: Parameter, action: Mapping[str, Any]) -> Any:
+        """Return an argument of a call; no claims are an empty list."""
+        if isinstance(parameter.action, int):
+            return parameter.action
+        value, *count = (self._named(part, action[part]) for part in parameter.action)
+        if parameter.type == "Claim[]":
+            return [claim.plain() for claim in self._phrases[value]]
+        return {value: count[0]} if count else value
 
-        args: tuple[Any, ...] = ()
-        match skill:
-            case "goToPosition":
-                args = (self._position(action["position"]), 0)
-            case "openContainer":
-                args = (named("container"),)
-            case "getItemFromChest" | "depositItemIntoChest":
-                args = (named("container"), {named("item"): _index(action["count"])})
-            case "openDoor" | "closeDoor":
-                args = (named("door"),)
-            case "writeSign":
-                args = (named("sign"), named("phrase"))
-            case "giveItemToOther":
-                args = (named("agent"), named("item"), _index(action["count"]))
-            case "say" | "whisper":
-                phrase = named("phrase")
-                claims = [claim.plain() for claim in self._phrases[phrase]]
-                whom = (named("agent"),) if skill == "whisper" else ()
-                args = (*whom, phrase, *([claims] if claims else []))
-        return args
+    def _named(self, part: str, value: Any) -> Any:
+        if part == "position":
+            return self._position(value)
+        index = _index(value)
+        return index if part == "count" else getattr(self._layout, _KINDS[part])[index]
 
     def _position(self, index: Any) -> Position:
         low, shape = self._layout.box.low, self._layout.box.shape

@@ -26,7 +26,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import Event, Position
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
-from beliefnest.worlds.scripted.skills import CALLS, SKILLS
+from beliefnest.worlds.scripted.skills import perform
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __all__ = ["Imagination", "Performer"]
@@ -320,7 +320,7 @@ class Imagination:
                 speech_ticks=self._speech_ticks,
             )
             try:
-                doing = _doing(hand, call)
+                doing = perform(hand, call)
                 next(doing)
                 performer.doing = doing
                 performer.failed = False
@@ -395,9 +395,3 @@ def _advance(performer: Performer) -> bool:
         performer.failed = True
         return True
     return False
-
-
-def _doing(hand: Hand, call: Call) -> Doing:
-    if call.skill == "openContainer":
-        yield from SKILLS["goToPosition"](hand, call.args[0], 2)
-    yield from {**SKILLS, **CALLS}[call.skill](hand, *call.args)

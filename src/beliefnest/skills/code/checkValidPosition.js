@@ -5,7 +5,6 @@ const passable = block => block !== null && block.boundingBox === 'empty' && blo
 
 module.exports = {
   name: 'checkValidPosition',
-  signature: 'checkValidPosition(position, bot)',
   description: 'Whether somebody can stand at the position: two free blocks above a solid one. Gives true or false.',
   fails: 'only for invalid arguments',
   parameters: [

@@ -10,13 +10,13 @@ function shortfall (position, { item, count, there, room, moved }) {
 
 module.exports = {
   name: 'depositItemIntoChest',
-  signature: 'depositItemIntoChest(bot, chestPosition, items)',
+  scripted: true,
   description: 'Go to the chest, open it, put the items in, close it. Puts in what there is and fails, naming what is missing, if that is less.',
   fails: 'there is no path on foot; there is no container; its lid is blocked; you have fewer items, or it has less room (as many as possible are put in); somebody closed it meanwhile',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'chestPosition', type: 'Vec3', description: 'position of a chest or barrel' },
-    { name: 'items', type: '{[name: string]: number}', description: 'how many of which items' }
+    { name: 'chestPosition', type: 'Vec3', description: 'position of a chest or barrel', aim: 'uses', action: ['container'] },
+    { name: 'items', type: '{[name: string]: number}', description: 'how many of which items', action: ['item', 'count'] }
   ],
   example: 'await depositItemIntoChest(bot, new Vec3(-2, -51, -4), {diamond: 1})',
   async run (context, chestPosition, items) {

@@ -3,7 +3,7 @@ const { ticks } = require('./lib/waiting')
 
 module.exports = {
   name: 'doNothing',
-  signature: 'doNothing(bot)',
+  scripted: true,
   description: 'Do nothing for one tick.',
   fails: 'never',
   parameters: [{ name: 'bot', type: 'Bot', description: 'your own bot' }],

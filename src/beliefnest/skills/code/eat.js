@@ -8,7 +8,6 @@ const EATING_TICKS = 60
 
 module.exports = {
   name: 'eat',
-  signature: 'eat(bot, name)',
   description: 'Eat one piece of food from your inventory. Works only when you are not full.',
   fails: 'the item is not food, or you do not carry it; you are not hungry; you did not finish eating',
   parameters: [

@@ -4,7 +4,7 @@ const { utterance } = require('./lib/speech')
 
 module.exports = {
   name: 'emote',
-  signature: 'emote(name, type)',
+  cost: 'message',
   description: 'Make a gesture that those who see you perceive, such as "wave" or "nod".',
   fails: 'nobody has that name; the gesture is not one line of at most 256 characters',
   parameters: [

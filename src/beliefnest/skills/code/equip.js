@@ -7,13 +7,12 @@ const PLACES = ['hand', 'off-hand', 'head', 'torso', 'legs', 'feet']
 
 module.exports = {
   name: 'equip',
-  signature: 'equip(bot, name, destination="hand")',
   description: 'Take an item from your inventory in hand, or put it on: hand, off-hand, head, torso, legs, feet.',
   fails: 'you do not carry the item; it does not fit the destination',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item' },
-    { name: 'destination', type: 'string', description: 'where to' }
+    { name: 'destination', type: 'string', description: 'where to', default: '"hand"' }
   ],
   example: 'await equip(bot, "iron_chestplate", "torso")',
   async run (context, name, destination = 'hand') {

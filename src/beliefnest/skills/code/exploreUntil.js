@@ -6,7 +6,6 @@ const STEP = 3
 
 module.exports = {
   name: 'exploreUntil',
-  signature: 'exploreUntil(bot, direction, maxDistance, callback)',
   description: 'Walk in a direction until callback gives something true, and return that; null after maxDistance blocks.',
   fails: 'the direction has no length; the callback is not a function, or it throws an error',
   parameters: [

@@ -22,14 +22,13 @@ function closely (goal) {
 
 module.exports = {
   name: 'follow',
-  signature: 'follow(bot, otherName, number=100, dist=2)',
   description: 'Follow another agent for a number of ticks, staying within dist blocks. Fails if it is not near at the end.',
   fails: 'the other agent is absent, not visible, or not near at the end',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'otherName', type: 'string', description: 'whom to follow' },
-    { name: 'number', type: 'number', description: 'how many ticks' },
-    { name: 'dist', type: 'number', description: 'how near, in blocks' }
+    { name: 'otherName', type: 'string', description: 'whom to follow', aim: 'walks' },
+    { name: 'number', type: 'number', description: 'how many ticks', default: '100' },
+    { name: 'dist', type: 'number', description: 'how near, in blocks', default: '2' }
   ],
   example: 'await follow(bot, "anne", 200)',
   async run (context, otherName, number = 100, dist = 2) {

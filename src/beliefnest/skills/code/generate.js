@@ -27,11 +27,16 @@ with an error.
 This page is generated from the skills' own files by \`src/beliefnest/skills/code/generate.js\`.
 `
 
-function markdown ({ name, signature, description, parameters, example, fails }) {
+function markdown ({ name, signature, description, parameters, example, fails, scripted }) {
+  const parts = [...new Set(parameters.flatMap(({ action }) => (Array.isArray(action) ? action : [])))]
+  const notes = [
+    ...(scripted ? ['Works in the [scripted world](scripted-world.md), too.'] : []),
+    ...(parts.length > 0 ? [`A [structured action](pettingzoo.md#actions) reads ${parts.map(part => `\`${part}\``).join(', ')}.`] : [])
+  ]
   const rows = parameters.map(parameter => `| \`${parameter.name}\` | \`${parameter.type.replaceAll('|', '\\|')}\` | ${parameter.description} |`)
   return [
     `## ${name}`, '', `\`${signature}\``, '', description, '', '| argument | type | meaning |', '|---|---|---|', ...rows, '',
-    `Fails: ${fails}.`, '', '```js', example, '```', ''
+    `Fails: ${fails}.`, '', ...(notes.length > 0 ? [notes.join(' '), ''] : []), '```js', example, '```', ''
   ].join('\n')
 }
 
@@ -40,10 +45,9 @@ function documentation () {
   return [INTRODUCTION, ...SKILLS.map(markdown)].join('\n')
 }
 
-/** Return the text of manifests.json: the manifests without their code. @returns {string} */
+/** Return the text of manifests.json: the manifests without their code, one in each line. @returns {string} */
 function manifest () {
-  const entries = SKILLS.map(({ name, signature, description, parameters, example }) => ({ name, signature, description, parameters, example }))
-  return `${JSON.stringify(entries, null, 2)}\n`
+  return `[\n${SKILLS.map(skill => JSON.stringify(skill)).join(',\n')}\n]\n`
 }
 
 const OUTPUTS = [

@@ -32,14 +32,14 @@ function watch ({ bot, listen }, item) {
 
 module.exports = {
   name: 'giveItemToOther',
-  signature: 'giveItemToOther(bot, otherName, item, num)',
+  scripted: true,
   description: 'Go to another agent, toss the items to it, and wait until it has picked them up.',
   fails: 'you carry fewer items; the other agent is absent or not visible; there is no path to them; they picked up fewer items within 10 seconds',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'otherName', type: 'string', description: 'who is to get it' },
-    { name: 'item', type: 'string', description: 'name of the item' },
-    { name: 'num', type: 'number', description: 'how many; 1 if left out' }
+    { name: 'otherName', type: 'string', description: 'who is to get it', aim: 'uses', action: ['agent'] },
+    { name: 'item', type: 'string', description: 'name of the item', action: ['item'] },
+    { name: 'num', type: 'number', description: 'how many; 1 if left out', action: ['count'] }
   ],
   example: 'await giveItemToOther(bot, "anne", "diamond", 1)',
   async run (context, otherName, itemName, num = 1) {

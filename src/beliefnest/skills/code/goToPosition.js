@@ -6,13 +6,13 @@ const DOORS = { openDoors: true, closeDoors: false }
 
 module.exports = {
   name: 'goToPosition',
-  signature: 'goToPosition(bot, position, dist=2)',
+  scripted: true,
   description: 'Walk until the position is at most dist blocks away. Goes through open doors of any kind and opens others on its way, but for iron ones; a fourth argument {openDoors: false, closeDoors: true} keeps it from opening any, and lets it shut those it goes through. Fails, saying how near it came, if there is no way on foot.',
   fails: 'there is no path on foot (`reason` is `no_way`); you were stopped on the way (the error says where you are)',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'position', type: 'Vec3', description: 'where to go' },
-    { name: 'dist', type: 'number', description: 'how near is near enough, in blocks; 0 is the very block' }
+    { name: 'position', type: 'Vec3', description: 'where to go', aim: 'walks', action: ['position'] },
+    { name: 'dist', type: 'number', description: 'how near is near enough, in blocks; 0 is the very block', default: '2', action: 0 }
   ],
   example: 'await goToPosition(bot, new Vec3(0, -51, -8))',
   async run (context, position, dist = 2, doors = {}) {

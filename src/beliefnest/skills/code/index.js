@@ -1,8 +1,15 @@
 'use strict'
 /**
- * Skills: the functions that a program can call besides Mineflayer's own. Each file holds one manifest `{name,
- * signature, description, fails, parameters, example, run(context, ...args)}`. `fails` lists the reasons of failure.
- * `args` are the arguments of the signature without `bot`, which is `context.bot`.
+ * Skills: the functions that a program can call besides Mineflayer's own. Each file holds one manifest, which is the
+ * only declaration of its skill; `generate.js` writes manifests.json for Python and docs/skills.md from it:
+ *
+ * - `name`, `description`, `example`; `fails`: reasons of failure
+ * - `scripted`: true if the skill has a twin in the scripted world, in worlds/scripted/skills.py
+ * - `cost`: name of its price in fuel (`COST` of sandbox/policy/kinds.js); `call` if left out
+ * - `parameters` in order: `name`, `type`, `description`; `default` as in the signature; `aim` if the argument is a
+ *   target, a position or the name of an agent: `walks` or `uses`; `action`: the parts of a structured action
+ *   (adapters/pettingzoo/actions.py) that give the argument, or its constant value there
+ * - `run(context, ...args)`: `args` are the arguments without `bot`, which is `context.bot`
  */
 const { numbers } = require('./lib/answers')
 const { show, shortened } = require('./lib/arguments')
@@ -11,7 +18,7 @@ const { byTimer, turns } = require('./lib/waiting')
 
 const LONGEST_MESSAGE = 2000
 
-const SKILLS = [
+const MANIFESTS = [
   require('./goToPosition'),
   require('./getItemFromChest'),
   require('./depositItemIntoChest'),
@@ -46,6 +53,12 @@ const SKILLS = [
   require('./waitForChat'),
   require('./doNothing')
 ]
+
+/** Manifests with their `signature`, as a model reads it. */
+const SKILLS = MANIFESTS.map(skill => {
+  const parameters = skill.parameters.map(({ name, default: value }) => (value === undefined ? name : `${name}=${value}`))
+  return { ...skill, signature: `${skill.name}(${parameters.join(', ')})` }
+})
 
 /**
  * Return the skills of one bot, as functions of the arguments in their signatures.
@@ -110,4 +123,6 @@ function bind (skill, body, signal, memory) {
   }
 }
 
-module.exports = { SKILLS, SkillError, bindSkills }
+const BY_NAME = new Map(SKILLS.map(skill => [skill.name, skill]))
+
+module.exports = { BY_NAME, SKILLS, SkillError, bindSkills }

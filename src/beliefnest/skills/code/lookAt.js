@@ -4,7 +4,7 @@ const { ticks } = require('./lib/waiting')
 
 module.exports = {
   name: 'lookAt',
-  signature: 'lookAt(bot, position)',
+  scripted: true,
   description: 'Turn to look at a point.',
   fails: 'only for invalid arguments',
   parameters: [

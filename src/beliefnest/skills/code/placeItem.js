@@ -44,13 +44,13 @@ async function put ({ bot, fail }, reference, place, name) {
 
 module.exports = {
   name: 'placeItem',
-  signature: 'placeItem(bot, name, position)',
+  scripted: true,
   description: 'Go there and place a block from your inventory at the position, which must be free and beside a solid block.',
   fails: 'you do not carry the item; the position is not free, or has no solid block beside it; there is no path on foot; somebody stands there',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item to place' },
-    { name: 'position', type: 'Vec3', description: 'where it is to stand' }
+    { name: 'position', type: 'Vec3', description: 'where it is to stand', aim: 'uses' }
   ],
   example: 'await placeItem(bot, "crafting_table", new Vec3(4, -51, 2))',
   async run (context, name, position) {

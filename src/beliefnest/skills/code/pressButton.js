@@ -3,12 +3,12 @@ const { pressButton } = require('./lib/switches')
 
 module.exports = {
   name: 'pressButton',
-  signature: 'pressButton(bot, position)',
+  scripted: true,
   description: 'Go to the button and press it; it comes out again by itself.',
   fails: 'there is no path on foot; there is no button; it stays pressed, or did not move',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'position', type: 'Vec3', description: 'position of the button' }
+    { name: 'position', type: 'Vec3', description: 'position of the button', aim: 'uses' }
   ],
   example: 'await pressButton(bot, new Vec3(3, -50, 0))',
   run: pressButton

@@ -3,7 +3,7 @@ const { read } = require('./lib/signs')
 
 module.exports = {
   name: 'readSign',
-  signature: 'readSign(bot, position)',
+  scripted: true,
   description: 'Look at the sign, without going there, and get what is written on it, lines split by \\n; empty if nothing is.',
   fails: 'there is no sign, or you cannot see it',
   parameters: [

@@ -5,13 +5,14 @@ const { ticks } = require('./lib/waiting')
 
 module.exports = {
   name: 'say',
-  signature: 'say(bot, msg, claims=[])',
+  scripted: true,
+  cost: 'message',
   description: 'Say something aloud, in at most 256 characters. What it states can be given as claims as well, ' +
     'such as [located("diamond", new Vec3(2, -51, -4))]; hearers may come to believe those.',
   fails: 'the text is not one line of at most 256 characters, is empty, or begins with a slash; a claim is invalid, or there are more than 16',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'msg', type: 'string', description: 'what to say' },
+    { name: 'msg', type: 'string', description: 'what to say', action: ['phrase'] },
     PARAMETER
   ],
   example: 'await say(bot, "Hello, Anne! The diamond is here.", [located("diamond", new Vec3(2, -51, -4))])',

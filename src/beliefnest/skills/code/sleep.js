@@ -7,13 +7,12 @@ const { ticks } = require('./lib/waiting')
 
 module.exports = {
   name: 'sleep',
-  signature: 'sleep(bot, bedPosition, number=100)',
   description: 'Go to a bed, sleep in it for a number of ticks, and get up.',
   fails: 'there is no path on foot; there is no bed; somebody lies in it; nobody can sleep in it now',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'bedPosition', type: 'Vec3', description: 'position of the bed' },
-    { name: 'number', type: 'number', description: 'how many ticks to sleep' }
+    { name: 'bedPosition', type: 'Vec3', description: 'position of the bed', aim: 'uses' },
+    { name: 'number', type: 'number', description: 'how many ticks to sleep', default: '100' }
   ],
   example: 'await sleep(bot, new Vec3(4, -51, 2))',
   async run (context, bedPosition, number = 100) {

@@ -91,14 +91,13 @@ async function emptyFurnace (context, furnace) {
 
 module.exports = {
   name: 'smeltItem',
-  signature: 'smeltItem(bot, itemName, fuelName, furnacePos, count)',
   description: 'Go to the furnace, smelt count of an item with the fuel, wait for it, and take out what was made and what is left.',
   fails: 'there is no path on foot; there is no furnace, or it is in use; you carry fewer items; the fuel does not burn, or it runs out (finished items are taken); the item cannot be smelted',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'itemName', type: 'string', description: 'what to smelt' },
     { name: 'fuelName', type: 'string', description: 'what to burn' },
-    { name: 'furnacePos', type: 'Vec3', description: 'position of a furnace, blast furnace or smoker' },
+    { name: 'furnacePos', type: 'Vec3', description: 'position of a furnace, blast furnace or smoker', aim: 'uses' },
     { name: 'count', type: 'number', description: 'how many; 1 if left out' }
   ],
   example: 'await smeltItem(bot, "raw_iron", "coal", new Vec3(4, -51, 2), 3)',

@@ -3,7 +3,8 @@ const { utterance } = require('./lib/speech')
 
 module.exports = {
   name: 'think',
-  signature: 'think(bot, msg)',
+  scripted: true,
+  cost: 'message',
   description: 'Think something to yourself. Nobody else perceives it.',
   fails: 'the text is not one line of at most 256 characters',
   parameters: [

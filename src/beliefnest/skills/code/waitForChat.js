@@ -4,13 +4,13 @@ const { until } = require('./lib/waiting')
 
 module.exports = {
   name: 'waitForChat',
-  signature: 'waitForChat(bot, number=100)',
+  scripted: true,
   description: 'Wait until somebody else says something that you hear, and return {speaker, text, whispered}; null if nobody does ' +
     'within a number of ticks.',
   fails: 'only for invalid arguments',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'number', type: 'number', description: 'how many ticks at most' }
+    { name: 'number', type: 'number', description: 'how many ticks at most', default: '100' }
   ],
   example: 'const answer = await waitForChat(bot, 200)',
   async run (context, number = 100) {

@@ -6,7 +6,6 @@ const TICKS_PER_SECOND = 20
 
 module.exports = {
   name: 'waitForMobRemoved',
-  signature: 'waitForMobRemoved(bot, entity, timeout)',
   description: 'Wait until an entity is gone; fails after timeout seconds (300 if left out).',
   fails: 'the entity is still there at the end',
   parameters: [

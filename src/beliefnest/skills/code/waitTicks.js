@@ -4,7 +4,7 @@ const { ticks } = require('./lib/waiting')
 
 module.exports = {
   name: 'waitTicks',
-  signature: 'waitTicks(bot, number)',
+  scripted: true,
   description: 'Wait for a number of ticks; 20 are a second.',
   fails: 'only for invalid arguments',
   parameters: [

@@ -4,13 +4,12 @@ const { ticks } = require('./lib/waiting')
 
 module.exports = {
   name: 'waitUntil',
-  signature: 'waitUntil(bot, condition, number=200)',
   description: 'Wait until condition gives something true, and return that; looks every tick, fails after a number of ticks.',
   fails: 'the condition did not become true in time, or it throws an error',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'condition', type: '() => any', description: 'what is waited for' },
-    { name: 'number', type: 'number', description: 'how many ticks at most' }
+    { name: 'number', type: 'number', description: 'how many ticks at most', default: '200' }
   ],
   example: 'await waitUntil(bot, () => bot.players.anne.entity.position.z < 0)',
   async run (context, condition, number = 200) {

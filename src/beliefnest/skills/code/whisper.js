@@ -9,13 +9,14 @@ const LONGEST = 230
 
 module.exports = {
   name: 'whisper',
-  signature: 'whisper(bot, otherName, msg, claims=[])',
+  scripted: true,
+  cost: 'message',
   description: `Say something to one other agent alone, in at most ${LONGEST} characters. Nobody else perceives it. Claims as for say.`,
   fails: 'nobody has that name; the text is not one line of at most 256 characters, or is empty; a claim is invalid',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'otherName', type: 'string', description: 'who is to hear it' },
-    { name: 'msg', type: 'string', description: 'what to say' },
+    { name: 'otherName', type: 'string', description: 'who is to hear it', action: ['agent'] },
+    { name: 'msg', type: 'string', description: 'what to say', action: ['phrase'] },
     PARAMETER
   ],
   example: 'await whisper(bot, "anne", "The diamond is in the left chest.", [located("diamond", new Vec3(2, -51, -4))])',

@@ -4,14 +4,15 @@ const { write } = require('./lib/signs')
 
 module.exports = {
   name: 'writeSign',
-  signature: 'writeSign(bot, position, lines, claims=[])',
+  scripted: true,
+  cost: 'message',
   description: 'Go to the sign and write on its front, over what is there; whoever sees the sign reads it. An empty text wipes it. ' +
     'What it states can be given as claims as well; who reads a text on a sign for the first time may come to believe those.',
   fails: 'there is no path on foot; there is no sign; the text does not fit on it; the sign did not change; a claim is invalid, or there are more than 16',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'position', type: 'Vec3', description: 'position of the sign' },
-    { name: 'lines', type: 'string', description: 'up to 4 lines of at most 45 characters, split by \\n, or a list of lines' },
+    { name: 'position', type: 'Vec3', description: 'position of the sign', aim: 'uses', action: ['sign'] },
+    { name: 'lines', type: 'string', description: 'up to 4 lines of at most 45 characters, split by \\n, or a list of lines', action: ['phrase'] },
     PARAMETER
   ],
   example: 'await writeSign(bot, new Vec3(4, -51, -3), "tools\\nno food")',

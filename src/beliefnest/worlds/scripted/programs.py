@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.errors import BeliefNestError
+from beliefnest.skills.calls import callables
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, Box, Event, EventKind, Point, Position
 from beliefnest.worlds.protocol import (
@@ -33,17 +34,6 @@ from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __all__ = ["RunningPrograms", "run_programs"]
 
-_USING = {
-    "getItemFromChest",
-    "depositItemIntoChest",
-    "openDoor",
-    "closeDoor",
-    "turnOnLever",
-    "turnOffLever",
-    "pressButton",
-    "mineBlock",
-    "writeSign",
-}
 _MOST_AIMS = 100
 _EPOCH_MS = 1_704_067_200_000
 """Start of the worlds' time, as in Minecraft's: 2024-01-01, in UTC."""
@@ -380,17 +370,19 @@ def _pose(agent: AgentState) -> dict[str, object]:
 
 
 def _note_aim(run: _Run, name: str, args: list[Any]) -> None:
-    if len(run.aims) >= _MOST_AIMS or not args:
+    """Note the target of a call, as the manifest of the skill declares it."""
+    known = callables().get(name)
+    if known is None or len(run.aims) >= _MOST_AIMS:
         return
-    now = run.hand.world.now
-    if name == "goToPosition" or name in _USING or name == "openContainer":
-        place = _point(args[0])
-        if place is not None:
-            run.aims.append(Aim(now, name, place, None, name != "goToPosition"))
-    elif name == "placeItem" and len(args) > 1 and (place := _point(args[1])) is not None:
-        run.aims.append(Aim(now, name, place, None, uses=True))
-    elif name == "giveItemToOther" and isinstance(args[0], str):
-        run.aims.append(Aim(now, name, None, args[0], uses=True))
+    for parameter, value in zip(known.arguments, args, strict=False):
+        if not parameter.aim:
+            continue
+        is_agent = parameter.type == "string"
+        place = None if is_agent else _point(value)
+        agent = value if is_agent and isinstance(value, str) else None
+        if place is not None or agent is not None:
+            uses = parameter.aim == "uses"
+            run.aims.append(Aim(run.hand.world.now, name, place, agent, uses))
 
 
 def _point(value: Any) -> Point | None:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from beliefnest.errors import InputError, WorldError
+from beliefnest.skills.calls import OPEN_CONTAINER, Call
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_open
 from beliefnest.world.registry import AIR, Registry
@@ -31,7 +32,7 @@ from beliefnest.worlds.scripted.hand import (
     walk_to_use,
 )
 
-__all__ = ["CALLS", "SKILLS", "UTTERANCES"]
+__all__ = ["CALLS", "SKILLS", "UTTERANCES", "perform"]
 
 _NEAR = 2.0
 
@@ -232,6 +233,13 @@ CALLS: Mapping[str, Callable[..., Doing]] = {
 
 UTTERANCES = frozenset(("say", "whisper", "think"))
 """Skills that take effect by the call itself, as in Minecraft, without `await` as well."""
+
+
+def perform(hand: Hand, call: Call) -> Doing:
+    """Make a call; `openContainer` first walks near, as the call's program does."""
+    if call.skill == OPEN_CONTAINER.name:
+        yield from _go_to_position(hand, call.args[0], _NEAR)
+    yield from {**SKILLS, **CALLS}[call.skill](hand, *call.args)
 
 
 def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:

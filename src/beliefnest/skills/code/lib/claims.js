@@ -59,6 +59,6 @@ const MAKING = 'what it says, for those who understand: [located(item, container
   'positionOf(name, position), blockAt(position, state)]; none if left out'
 
 /** Parameter `claims` of a manifest. */
-const PARAMETER = { name: 'claims', type: 'Claim[]', description: MAKING }
+const PARAMETER = { name: 'claims', type: 'Claim[]', description: MAKING, default: '[]', action: ['phrase'] }
 
 module.exports = { claims, PARAMETER }

@@ -4,30 +4,8 @@
  * from the arguments of calls, whether or not the target can be reached.
  */
 
-const using = place => ({ place, uses: true })
-const handing = { agent: 1, uses: true }
+const { BY_NAME } = require('../../../../../skills/code')
 
-/**
- * By skill: which argument is the position or the agent, counted from 0 with `bot`, and whether the skill uses the
- * target.
- */
-const SKILLS = {
-  goToPosition: { place: 1, uses: false },
-  follow: { agent: 1, uses: false },
-  getItemFromChest: using(1),
-  depositItemIntoChest: using(1),
-  mineBlock: using(1),
-  placeItem: using(2),
-  craftItem: using(2),
-  smeltItem: using(3),
-  turnOnLever: using(1),
-  turnOffLever: using(1),
-  pressButton: using(1),
-  openDoor: using(1),
-  closeDoor: using(1),
-  giveItemToOther: handing,
-  receiveItemFromOther: handing
-}
 const USING = new Set(['openContainer', 'openChest', 'openDispenser', 'openFurnace', 'openBlock', 'activateBlock', 'activateEntity', 'dig', 'sleep'])
 const WALKING = new Set(['goto', 'setGoal'])
 const LONGEST_NAME = 16
@@ -37,9 +15,12 @@ const LONGEST_NAME = 16
  * @returns {?{call: string, place: ?number[], agent: ?string, uses: boolean}}
  */
 function aimOfSkill (name, args) {
-  if (!Object.hasOwn(SKILLS, name)) return null
-  const { place, agent, uses } = SKILLS[name]
-  return aim(name, pointOf(args[place]), nameOf(args[agent]), uses)
+  const parameters = BY_NAME.get(name)?.parameters ?? []
+  const target = parameters.findIndex(parameter => parameter.aim !== undefined)
+  if (target === -1) return null
+  const { type, aim: manner } = parameters[target]
+  const isAgent = type === 'string'
+  return aim(name, isAgent ? null : pointOf(args[target]), isAgent ? nameOf(args[target]) : null, manner === 'uses')
 }
 
 /** Return the aim of a call of the bot or of its pathfinder. */

@@ -5,13 +5,14 @@
  */
 
 const { describeWire, Exchange, RefusedError } = require('./exchange')
-const { COST, kinds, skillCosts, tables } = require('./policy/kinds')
+const { COST, kinds, tables } = require('./policy/kinds')
 const { events } = require('./policy/events')
 const { GuestEnded } = require('./engine')
 const { stateOf } = require('./policy/types')
 const { kindOf } = require('./kind-of')
 const { aimOfCall, aimOfSkill } = require('./aims')
 const { cut, parsed } = require('./text')
+const { BY_NAME } = require('../../../../../skills/code')
 
 const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logCharacters: 50_000, error: 4000, name: 100, level: 10 }
 // Ticket of callbacks of listeners and timers, for whose results nobody waits.
@@ -241,7 +242,7 @@ class Session {
   callSkill (name, wires) {
     if (typeof name !== 'string' || !Object.hasOwn(this.skills, name)) throw new RefusedError('there is no such skill')
     const type = { toGuest: (exchange, value) => exchange.toGuest(value, `the result of ${name}`) }
-    this.guest.charge(Object.hasOwn(skillCosts, name) ? skillCosts[name] : COST.call)
+    this.guest.charge(COST[BY_NAME.get(name)?.cost ?? 'call'])
     return this.outcomeOf(name, () => {
       const args = wires.map((wire, i) => this.exchange.toHost(wire, `argument ${i + 1} of ${name}`))
       this.make(aimOfSkill(name, args))

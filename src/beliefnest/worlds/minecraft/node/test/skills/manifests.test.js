@@ -4,6 +4,8 @@ const assert = require('node:assert/strict')
 const fs = require('node:fs')
 const { SKILLS } = require('../../../../../skills/code')
 const { OUTPUTS } = require('../../../../../skills/code/generate')
+const { aimOfSkill } = require('../../src/sandbox/aims')
+const { COST } = require('../../src/sandbox/policy/kinds')
 
 const PUBLISHED = [
   'goToPosition(bot, position, dist=2)', 'getItemFromChest(bot, chestPosition, items)',
@@ -27,12 +29,28 @@ test('the published skills have their published signatures', () => {
   assert.deepEqual(PUBLISHED.filter(signature => !signatures.includes(signature)), [])
 })
 
-test('a signature names the skill and its parameters, and the example is a program that calls it', () => {
+test('the example is a program that calls the skill', () => {
   const AsyncFunction = (async () => {}).constructor
-  for (const { name, signature, parameters, example } of SKILLS) {
-    const listed = signature.replace(/=("[^"]*"|[^,)]+)/g, '')
-    assert.equal(listed, `${name}(${parameters.map(parameter => parameter.name).join(', ')})`)
+  for (const { name, example } of SKILLS) {
     assert.ok(example.includes(`${name}(`))
     assert.doesNotThrow(() => new AsyncFunction(example))
   }
+})
+
+test('a skill has one target at most, a position or an agent, and a price that there is', () => {
+  for (const { name, parameters, cost = 'call' } of SKILLS) {
+    const targets = parameters.filter(({ aim }) => aim !== undefined)
+    assert.ok(targets.length <= 1 && targets.every(({ aim, type }) => ['walks', 'uses'].includes(aim) && /^Vec3|^string$/.test(type)), name)
+    assert.ok(Object.hasOwn(COST, cost), name)
+  }
+})
+
+test('the targets of calls are noted: signs, beds and placed items too, but no value of another type', () => {
+  const place = { x: 1, y: 2, z: 3 }
+  for (const [name, args] of [['writeSign', [place, 'a']], ['sleep', [place]], ['givePlacedItemBack', ['chest', place]]]) {
+    assert.deepEqual(aimOfSkill(name, [null, ...args]), { call: name, place: [1, 2, 3], agent: null, uses: true })
+  }
+  assert.equal(aimOfSkill('openDoor', [null, 'anne']), null)
+  assert.equal(aimOfSkill('follow', [null, place]), null)
+  assert.equal(aimOfSkill('lookAt', [null, place]), null)
 })

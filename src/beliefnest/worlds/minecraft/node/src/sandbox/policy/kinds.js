@@ -7,9 +7,8 @@
 
 const t = require('./types')
 
+// A message is expensive because it is perceived and recorded for ever.
 const COST = { call: 10_000, message: 200_000, section: 5000, ray: 20_000, recipes: 50_000 }
-// Skills whose effect is perceived and recorded for ever cost as much as a chat message.
-const skillCosts = { think: COST.message, say: COST.message, whisper: COST.message, emote: COST.message, writeSign: COST.message }
 const SECTION = 16
 const ofSearch = ([{ maxDistance }]) => COST.section * (2 * Math.ceil(maxDistance / SECTION) + 1) ** 3
 
@@ -156,4 +155,4 @@ const tables = {
   effects: 'table', effectsByName: 'table', materials: 'table', version: 'value'
 }
 
-module.exports = { COST, skillCosts, kinds, kindNames, tables }
+module.exports = { COST, kinds, kindNames, tables }
