@@ -27,7 +27,8 @@ class MindFacts(WorldFacts):
 
     def block(self, place: Position) -> str | None:
         """Return the text of a block state; None: unknown."""
-        return None if self._mind.is_unknown(place) else super().block(place)
+        text = super().block(place)
+        return None if text == "air" and self._mind.is_unknown(place) else text
 
     def may_reach(self, agent: str, place: Position) -> bool:
         """Return True if an agent may be able to reach a block."""
@@ -41,7 +42,7 @@ class MindFacts(WorldFacts):
     @property
     def agents(self) -> Iterable[str]:
         """Return the agents whose places are known."""
-        return self._mind.world.agents
+        return self._agents
 
 
 class BeliefFacts(ViewFacts):

@@ -15,7 +15,8 @@ class WorldFacts:
     """
 
     def __init__(self, world: ScriptedWorld) -> None:
-        self._world = world
+        # The property copies all agents: read it once.
+        self._world, self._agents = world, world.agents
 
     def items_in(self, place: Position) -> Items:
         """Return the items in a container."""
@@ -27,12 +28,12 @@ class WorldFacts:
 
     def items_of(self, agent: str) -> Items:
         """Return the items that an agent has."""
-        there = self._world.agents.get(agent)
+        there = self._agents.get(agent)
         return {} if there is None else there.inventory
 
     def feet_of(self, agent: str) -> Point | None:
         """Return the position of an agent's feet; None: it is not there."""
-        there = self._world.agents.get(agent)
+        there = self._agents.get(agent)
         return None if there is None else there.position
 
     def block(self, place: Position) -> str | None:
