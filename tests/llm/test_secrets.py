@@ -20,6 +20,7 @@ from beliefnest.llm.secrets import MASK, Secrets, without_password
 
 KEY = "sk-a-very-secret-key"
 USER, PASSWORD = "alice", "p@ss/w:rd+1"
+BASIC = base64.b64encode(f"{USER}:{PASSWORD}".encode()).decode()
 ASK = (Message("user", "Get a diamond."),)
 
 
@@ -31,8 +32,13 @@ def url_of(fake: FakeOpenAI) -> str:
 
 def forms() -> list[str]:
     """What a server may repeat."""
-    basic = base64.b64encode(f"{USER}:{PASSWORD}".encode()).decode()
-    found = [f"Basic {basic}", PASSWORD, quote(PASSWORD), quote(PASSWORD, safe="").lower()]
+    found = [
+        f"Basic {BASIC}",
+        base64.b64encode(f"Basic {BASIC}".encode()).decode(),
+        PASSWORD,
+        quote(PASSWORD),
+        quote(PASSWORD, safe="").lower(),
+    ]
     found += [
         f"http://{USER}:{quote(PASSWORD, safe='')}@there/v1",
         KEY,
@@ -55,6 +61,11 @@ def leaks(text: str) -> list[str]:
         for before in range(3):
             encoded = base64.b64encode(b"x" * before + secret.encode()).decode()
             pieces += [encoded[4:16], encoded[4:16].replace("+", "-").replace("/", "_")]
+    # The user's name too, and the credentials encoded once more.
+    pieces += [
+        BASIC[:5],
+        *(base64.b64encode(("x" * n + BASIC).encode()).decode()[4:16] for n in range(3)),
+    ]
     return [piece for piece in pieces if piece in text]
 
 
@@ -97,8 +108,7 @@ def test_the_server_itself_gets_key_user_and_password(fake: FakeOpenAI, clock: F
     fake.will(fake.says("yes"))
     own = {"COMPATIBLE_BASE_URL": url_of(fake)}
     open_model("compatible:m", own, Connection(clock=clock)).answer(ASK, Sampling())
-    basic = base64.b64encode(f"{USER}:{PASSWORD}".encode()).decode()
-    assert fake.requests[-1].headers["authorization"] == f"Basic {basic}"
+    assert fake.requests[-1].headers["authorization"] == f"Basic {BASIC}"
 
 
 def test_libraries_log_no_password(

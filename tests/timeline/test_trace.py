@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import beliefnest as bn
 from beliefnest.errors import InputError
 from beliefnest.timeline.events import REQUIRED
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.timeline.trace import load_trace, read_trace, record_trace
+from beliefnest.world.claims import claims_written
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, EventKind
@@ -170,6 +172,42 @@ def test_a_bad_line_is_left_out_and_told(registry, line, fault):
 def test_a_bad_first_line_ends_it(registry, change, fault):
     with pytest.raises(InputError, match=rf"line 1, the first state: .*{fault}"):
         read_trace([json.dumps({**FIRST, **change}).encode()], registry)
+
+
+SIGN, CLAIM = (4, 1, 4), {"kind": "located", "item": "diamond", "place": [3, 1, 3]}
+
+
+def with_a_sign(text, claims):
+    return {
+        **FIRST,
+        "blocks": [*FIRST["blocks"], [*SIGN, "oak_sign"]],
+        "signs": [[*SIGN, text, claims]],
+    }
+
+
+def test_signs_claim_something_from_the_start_and_when_they_are_written(registry):
+    update = {"position": SIGN, "text": "none", "claims": [CLAIM | {"kind": "absent"}]}
+    events = [{"kind": "block_update", "actor": "sally", "detail": update}]
+    lines = with_a_sign("here", [CLAIM]), {"tick": 1, "signs": [[*SIGN, "none"]], "events": events}
+    trace = read_trace([json.dumps(line).encode() for line in lines], registry)
+    assert trace.bad == ()
+    there = bn.Claim.located("diamond", (3, 1, 3)).plain()
+    assert (trace.first.signs, trace.first.sign_claims) == ({SIGN: "here"}, {SIGN: (there,)})
+    assert claims_written(trace.entries[0], SIGN) == (bn.Claim.absent("diamond", (3, 1, 3)),)
+
+
+@pytest.mark.parametrize(
+    ("text", "claim", "fault"),
+    [
+        ("", CLAIM, "has claims and no text"),
+        ("here", {**CLAIM, "item": "diamnd"}, "claim 1: .*diamnd"),
+        ("here", {**CLAIM, "place": [99, 1, 1]}, "outside the box"),
+        ("here", {**CLAIM, "kind": "holds"}, "claim 1"),
+    ],
+)
+def test_a_wrong_claim_of_a_sign_is_named(registry, text, claim, fault):
+    with pytest.raises(InputError, match=rf"the first state: the sign at \(4, 1, 4\).*{fault}"):
+        read_trace([json.dumps(with_a_sign(text, [claim])).encode()], registry)
 
 
 def test_a_file_tells_all_its_bad_lines_by_number(registry, tmp_path):

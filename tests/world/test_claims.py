@@ -84,7 +84,7 @@ def test_an_utterance_without_claims_is_as_ever() -> None:
         ),
         (
             lambda: event_from("think", "anne", {"text": "hm", "claims": []}, ["anne"]),
-            "only a chat has",
+            "only a chat and a block_update with",
         ),
     ],
 )

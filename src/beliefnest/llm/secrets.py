@@ -50,10 +50,16 @@ class Secrets:
 
 
 def secrets_in(url: str) -> list[str]:
-    """Return the secrets of a URL: its password or else user name, and keys in its query."""
+    """Return the secrets of a URL: what a client sends for its user, and keys in its query.
+
+    These are the password, or else the user name, and both as in HTTP's `Basic` authorization.
+    """
     parts = urlsplit(url)
     query = (value for name, value in parse_qsl(parts.query) if _SECRET_PARAMETER.search(name))
     found = [parts.password or parts.username or "", *query]
+    if parts.username or parts.password:
+        sent = f"{unquote(parts.username or '')}:{unquote(parts.password or '')}"
+        found += [sent, base64.b64encode(sent.encode(errors="surrogatepass")).decode()]
     return [form for each in found for form in (each, unquote(each))]
 
 

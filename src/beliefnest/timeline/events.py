@@ -83,8 +83,13 @@ def event_from(
     if "to" in values and known is not EventKind.CHAT:
         raise InputError(f"event {kind!r} has the detail 'to', which only a whispered chat has")
     if "claims" in values:
-        if known is not EventKind.CHAT:
-            raise InputError(f"event {kind!r} has the detail 'claims', which only a chat has")
+        if known is not EventKind.CHAT and not (
+            known is EventKind.BLOCK_UPDATE and "text" in values
+        ):
+            raise InputError(
+                f"event {kind!r} has the detail 'claims', which only a chat and a block_update "
+                "with the text of a sign have"
+            )
         values["claims"] = tuple(claim.plain() for claim in claims_from_plain(values["claims"]))
     elif "claims_from" in values:
         raise InputError(f"event {kind!r} has the detail 'claims_from' without 'claims'")

@@ -19,8 +19,8 @@ from beliefnest.files import decode_json, open_regular
 from beliefnest.perception.options import ContainerMode, Perception, Testimony
 from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
-from beliefnest.world.claims import claims_of
-from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.claims import Claim, claims_from_plain, claims_of
+from beliefnest.world.frames import Frame, PlainClaims, Snapshot
 from beliefnest.world.limits import (
     AGENT_SLOTS,
     LATEST_TICK,
@@ -89,6 +89,14 @@ class _EventLine(msgspec.Struct, forbid_unknown_fields=True):
     detail: dict[str, Any] = {}
 
 
+class _SignLine(msgspec.Struct, array_like=True, forbid_unknown_fields=True):
+    x: int
+    y: int
+    z: int
+    text: str
+    claims: list[dict[str, Any]] = []
+
+
 _BlockLine = tuple[int, int, int, str]
 _ContainerLine = tuple[int, int, int, dict[str, int] | None]
 
@@ -125,7 +133,7 @@ class _FirstLine(msgspec.Struct, forbid_unknown_fields=True):
     unique: list[str] = []
     fills: list[tuple[Position, Position, str]] = []
     blocks: list[_BlockLine] = []
-    signs: list[_BlockLine] = []
+    signs: list[_SignLine] = []
     containers: list[_ContainerLine] = []
     items: dict[int, _ItemLine] = {}
 
@@ -257,7 +265,7 @@ class _Reader:
         for place, state in self._blocks(line.blocks).items():
             blocks[self._box.index(place)] = state
         self._grid = blocks.copy()
-        signs = self._signs(line.signs, {})
+        signs = self._signs(((at.x, at.y, at.z, at.text) for at in line.signs), {})
         containers = self._containers(line.containers, {})
         self._agents: dict[str, AgentState | None] = {}
         self._agents = self._changed_agents(line.agents)
@@ -269,6 +277,9 @@ class _Reader:
             {name: agent for name, agent in self._agents.items() if agent is not None},
             {n: item for n, item in self._entities(line.items).items() if item is not None},
             signs={place: text_of(block) for place, block in signs.items()},
+            sign_claims={
+                (at.x, at.y, at.z): self._sign_claims(at) for at in line.signs if at.claims
+            },
         )
 
     def frame(self, line: _TickLine) -> Frame:
@@ -318,6 +329,22 @@ class _Reader:
             except InputError as fault:
                 raise InputError(f"the sign at {place}: {fault}") from None
         return signs
+
+    def _sign_claims(self, line: _SignLine) -> PlainClaims:
+        where = f"the sign at {line.x, line.y, line.z}"
+        if not line.text.strip("\n"):
+            raise InputError(f"{where} has claims and no text; add the text")
+        try:
+            claims = self._checked(claims_from_plain(line.claims))
+        except BeliefNestError as fault:
+            raise InputError(f"{where}: {fault}") from fault
+        return tuple(claim.plain() for claim in claims)
+
+    def _checked(self, claims: tuple[Claim, ...]) -> tuple[Claim, ...]:
+        """Return claims that are about the box and the agents of the trace."""
+        for claim in claims:
+            claim.check(self._box, self.names)
+        return claims
 
     def _containers(
         self, lines: Iterable[_ContainerLine], changed: Mapping[Position, int]
@@ -398,8 +425,7 @@ class _Reader:
         if "block" in detail:
             self._registry.state_id(detail["block"])
         self._items(detail.get("items", {}), _AGENT_SLOTS, "an agent")
-        for claim in claims_of(event):
-            claim.check(self._box, self.names)
+        self._checked(claims_of(event))
         return event
 
     def _check_place(
