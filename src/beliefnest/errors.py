@@ -89,7 +89,7 @@ class StoreError(BeliefNestError):
 
 
 class NotBegunError(StoreError):
-    """A run was stopped while it began, so that its file has nothing to continue."""
+    """A run was stopped before its first tick was stored, so there is nothing to continue."""
 
 
 class ProgramError(BeliefNestError):
@@ -103,7 +103,7 @@ class BodyError(BeliefNestError):
 
 
 class BodyLostError(BodyError):
-    """The process of a body died; the acts it was asked for count as not done."""
+    """The process of a body died; the requested acts count as not done."""
 
 
 class ModelError(BeliefNestError):

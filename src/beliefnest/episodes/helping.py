@@ -4,12 +4,12 @@ Help is measured counterfactually, on branches of the episode on which an agent 
 other agents react to that. Goals are divided among the agents that have them (`shares.py`), since
 a common goal is reached by no agent if one agent fails.
 
-An agent *needed* help if its share would not have come true if the other players had done nothing,
-as in the comparison with a single person by Puig and others (2021), Watch-And-Help. An utterance
-or gift *helped* another agent if the other agent's share would have come true later or not at all
-without it (but-for test of causes). It was *superfluous* if this holds for no agent (Grice 1975,
-"not more informative than is required"). If two agents say the same, both utterances are
-superfluous, as in every but-for test.
+An agent *needed* help if its share does not come true on a branch where the other players do
+nothing, as in the comparison with a single person by Puig and others (2021), Watch-And-Help. An
+utterance or gift *helped* another agent if the other agent's share would have come true later or
+not at all without it (but-for test of causes). It was *superfluous* if this holds for no agent
+(Grice 1975, "not more informative than is required"). If two agents say the same, both utterances
+are superfluous, as in every but-for test.
 """
 
 from collections.abc import Mapping, Sequence

@@ -12,7 +12,7 @@ from beliefnest.scenarios.format import ScenarioFile
 __all__ = ["allowed_keys", "allowed_values", "schema"]
 
 _HOLE = {
-    "description": "What a parameter stands for, or an expression of parameters.",
+    "description": "A parameter, which its value replaces, or an expression of parameters.",
     "type": "string",
     "pattern": r"^\$\{[^{}]*\}$",
 }
@@ -25,7 +25,8 @@ _DECLARING = ("parameters", "constraints", "conditions")
 def schema() -> dict[str, Any]:
     """Return the JSON schema of a scenario file for editors, with descriptions.
 
-    Any value that is no text may also be a text `${...}`, which a parameter's value replaces.
+    Where a value is not a text, the schema also allows a text `${...}`; the value of a parameter
+    replaces it.
     """
     published = _form()
     definitions = {

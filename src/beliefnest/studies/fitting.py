@@ -18,8 +18,8 @@ _NARROW = 4.5
 _LARGE, _SMALL = 10.0, 7.0
 """Font sizes in points."""
 _FORMS = ((False, 0), (True, 0), (False, 45), (False, 90))
-"""Forms of the texts below bars: True if on several lines, and rotation in degrees. The layout
-uses the first form in which texts do not overlap."""
+"""Forms of the texts below bars, as pairs: True if texts may have several lines, and their rotation
+in degrees. The layout uses the first form in which texts do not overlap."""
 _HEADINGS = ("accuracy, 95 % interval", "accuracy")
 
 

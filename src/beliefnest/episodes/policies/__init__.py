@@ -118,7 +118,7 @@ def text_of_policy(name: str) -> str:
 
 
 def policy_beside(name: str, folder: Path) -> str:
-    """Return the name of a policy with the path of its file, if any, relative to a folder."""
+    """Return the name of a policy; if it has a file, look for a relative path in `folder`."""
     kind, colon, file = name.partition(":")
     return f"{kind}:{folder / file}" if kind in _READ and colon else name
 

@@ -1,4 +1,4 @@
-"""Inference of goals from traces that others left unseen.
+"""Inference of other agents' goals from traces of unseen actions.
 
 A trace is a block, or contents, that the agent finds changed without having perceived the change.
 If there is one, the agent imagines what the others did since the beginning, once for each
@@ -23,7 +23,7 @@ from beliefnest.world.values import EventKind, Items, Position
 __all__ = ["likelihoods_of_traces"]
 
 _MISTAKEN = 0.1
-"""Probability that a block or contents differ from the end of the true course."""
+"""Probability of a difference between a found block or content and the true course."""
 
 _PERCEIVED = (Source.SEEN, Source.WITNESSED)
 _CHANGES_NOTHING = (EventKind.MOVE_TO, EventKind.OPEN_CONTAINER)

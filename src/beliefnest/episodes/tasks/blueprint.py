@@ -1,8 +1,8 @@
-"""A blueprint of which each builder sees another part (Clark and Krych 2004).
+"""A blueprint that each builder sees only in part (Clark and Krych 2004).
 
 The builders must copy a model with blocks. Each builder can reach plots whose model only the other
-one sees. A builder that considers what the other one does not see says it. Further agents build
-beside Bob: they see what he sees, and say nothing.
+one sees. A builder that considers what the other one cannot see describes it. Further agents
+build beside Bob: they see what he sees, and say nothing.
 """
 
 import random

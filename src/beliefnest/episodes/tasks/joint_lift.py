@@ -1,9 +1,9 @@
 """A joint lift without a word (Sebanz, Bekkering and Knoblich 2006; Tomasello 2014).
 
 A lift rises while both its levers are on, with an agent at each of them. There are two lifts. Both
-agents are nearer to the lift that Anne sees and Bob does not know of. They cannot talk: an agent
-that considers what the other one sees goes where the other one will be. Further agents stand beside
-Bob and see what he sees; each lift then has a lever for each of them.
+agents are nearer to one of them, but only Anne sees it, and Bob does not know of it. They cannot
+talk. An agent that considers what the other one sees goes to the lift where the other one will be.
+Further agents stand beside Bob and see what he sees; each lift then has a lever for each of them.
 """
 
 import random

@@ -1,8 +1,8 @@
 """A recipe of which each cook knows a half (Stasser and Titus 1985, hidden profiles).
 
 Two cooks in separate rooms share one pot. The ingredient that each cook must bring is in the cook's
-own room, in a chest that only the other cook knows. A cook that considers what the other one does
-not know says it. Further agents cook beside Bob: they know what he knows, and say nothing.
+own room, in a chest that only the other cook knows. A cook that considers what the other cook
+does not know tells it. Further agents cook beside Bob: they know what he knows, and say nothing.
 """
 
 import random
@@ -46,7 +46,7 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     return {
         "description": (
             f"The pot needs {wanted['anne']} and {wanted['bob']}. Anne and Bob cannot leave their "
-            "rooms. Each knows where in the other's room the other's half is, and not its own."
+            "rooms. Each knows where the other's half is in the other's room, but not its own."
             f"{also(cooks[1:], 'can go where Bob can, but cannot talk.')}"
         ),
         "order": 1,

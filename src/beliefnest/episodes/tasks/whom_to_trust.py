@@ -4,8 +4,8 @@ Bob wants an apple and a treasure. The apple is in one of two chests beside him,
 end of the hall, and he has time to go to one end only. Eve knows both places. She wants him to get
 both, or wants to keep the treasure from him, and does not say which. She has told him where the
 treasure is. One of two things reveals her goal: a claim about the apple, which Bob can check, or
-her walk to the place where she will stand if she helps, or if she deceives. If Bob does not infer
-her goal, he can only believe her always or never.
+her walk, since a helper and a deceiver go to different places. If Bob does not infer her goal, he
+can only believe her always or never.
 """
 
 import random

@@ -57,7 +57,7 @@ class ShownSimulator(ABC):
 
     @property
     def labels(self) -> Mapping[Position, str]:
-        """The labels of containers for prompts, by position: their names and outward looks."""
+        """The labels of containers for prompts, by position: names and suggested contents."""
         return self._recording.setting.prompt_labels
 
     @property
@@ -472,7 +472,8 @@ class ShownNest:
         """Return the false beliefs of a simulator; the real world is `a`. Unknown is not false.
 
         Contents are false if they have items that are not there, or if they count as complete and
-        lack some. The position of an agent is false from half a block on. Angles do not count.
+        lack some. The position of an agent is false if it is off by half a block or
+        more. Angles do not count.
 
         Raises:
             TickError: The tick of this view is in the future or before the start.

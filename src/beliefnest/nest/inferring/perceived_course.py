@@ -148,7 +148,10 @@ class Reading:
                 claims = []
 
     def _claims(self, key: TimelineKey, position: int) -> list[Claim]:
-        """Return claims that the agent took up in the last of some entries."""
+        """Return the claims that the agent took up in the entry before a position.
+
+        The list is empty if this entry is not of the tick `question.since`.
+        """
         entry = next(self.recording.journal.entries(key, position - 1, position))
         return list(self._taken_up(entry)) if entry.tick == self.question.since else []
 
@@ -214,7 +217,7 @@ class Reading:
         )
 
     def _done(self, events: Sequence[PerceivedEvent]) -> tuple[Position | None, int | None, bool]:
-        """Return the opened container, the goal acted on, and True for other actions."""
+        """Return the opened container, the index of the achieved goal, and True for other acts."""
         assert self._overlay is not None
         opened, act, deed = None, None, False
         for event in events:

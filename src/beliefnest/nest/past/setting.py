@@ -64,7 +64,8 @@ class Setting:
         people: Agents that people play with a Minecraft client. Programs cannot act for them.
         labels: Names of containers for people, by position.
         places: Names of other places for people.
-        prompt_labels: Labels of containers in prompts by position, with their outward looks.
+        prompt_labels: Labels of containers in prompts, by position, with the contents that each
+            seems to have.
         unique: Items of which everybody knows that there is only one (semantics, section 3).
     """
 

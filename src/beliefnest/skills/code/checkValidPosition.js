@@ -5,7 +5,7 @@ const passable = block => block !== null && block.boundingBox === 'empty' && blo
 
 module.exports = {
   name: 'checkValidPosition',
-  description: 'Whether somebody can stand at the position: two free blocks above a solid one. Gives true or false.',
+  description: 'Return true if an agent can stand at the position: two free blocks above a solid one.',
   fails: 'only for invalid arguments',
   parameters: [
     { name: 'position', type: 'Vec3', description: 'where the feet would be' },

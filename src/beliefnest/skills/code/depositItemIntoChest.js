@@ -11,7 +11,7 @@ function shortfall (position, { item, count, there, room, moved }) {
 module.exports = {
   name: 'depositItemIntoChest',
   scripted: true,
-  description: 'Go to the chest, open it, put the items in, close it. Puts in what there is and fails, naming what is missing, if that is less.',
+  description: 'Go to the chest, open it, put the items in, close it. If you have fewer items, put them in and fail; the error names the missing ones.',
   fails: 'there is no path on foot; there is no container; its lid is blocked; you have fewer items, or it has less room (as many as possible are put in); somebody closed it meanwhile',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },

@@ -5,7 +5,7 @@ const { utterance } = require('./lib/speech')
 module.exports = {
   name: 'emote',
   cost: 'message',
-  description: 'Make a gesture that those who see you perceive, such as "wave" or "nod".',
+  description: 'Make a gesture, such as "wave" or "nod". Agents that see you perceive it.',
   fails: 'nobody has that name; the gesture is not one line of at most 256 characters',
   parameters: [
     { name: 'name', type: 'string', description: 'your own name, or the name of the agent the gesture is meant for' },
@@ -15,7 +15,7 @@ module.exports = {
   async run (context, name, type) {
     const { bot, fail, emit } = context
     if (!Object.keys(bot.players).includes(name)) {
-      fail(`name must be the name of an agent; it is ${show(name)}, here are: ${Object.keys(bot.players).toSorted().join(', ')}`)
+      fail(`name must be the name of an agent; it is ${show(name)}. Agents here: ${Object.keys(bot.players).toSorted().join(', ')}`)
     }
     const detail = { name: utterance(context, 'type', type) }
     emit({ kind: 'emote', detail: name === bot.username ? detail : { ...detail, other: name } })

@@ -6,13 +6,13 @@ const STEP = 3
 
 module.exports = {
   name: 'exploreUntil',
-  description: 'Walk in a direction until callback gives something true, and return that; null after maxDistance blocks.',
+  description: 'Walk in a direction until callback returns a true value, and return that value; return null after maxDistance blocks.',
   fails: 'the direction has no length; the callback is not a function, or it throws an error',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'direction', type: 'Vec3', description: 'level direction, such as new Vec3(1, 0, 0)' },
     { name: 'maxDistance', type: 'number', description: 'how far to go at most, in blocks' },
-    { name: 'callback', type: '() => any', description: 'looked at every few steps, for instance () => bot.findBlock({matching: 1})' }
+    { name: 'callback', type: '() => any', description: 'function that is called every few steps, for instance () => bot.findBlock({matching: 1})' }
   ],
   example: 'const chest = await exploreUntil(bot, new Vec3(1, 0, 0), 20, () => bot.findBlock({matching: mcData.blocksByName.chest.id}))',
   async run (context, direction, maxDistance, callback) {

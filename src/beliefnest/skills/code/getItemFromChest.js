@@ -11,7 +11,7 @@ function shortfall (position, { item, count, there, room, moved }) {
 module.exports = {
   name: 'getItemFromChest',
   scripted: true,
-  description: 'Go to the chest, open it, take the items, close it. Takes what is there and fails, naming what is missing, if that is less.',
+  description: 'Go to the chest, open it, take the items, close it. If there are fewer items, take them and fail; the error names the missing ones.',
   fails: 'there is no path on foot; there is no container; its lid is blocked; it holds fewer items (those are taken); somebody closed it meanwhile',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },

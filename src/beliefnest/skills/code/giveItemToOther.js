@@ -10,7 +10,11 @@ const TOO_NEAR = 1.5
 const PICKUP_TICKS = 200
 const CHEST_HEIGHT = 1
 
-/** Count who picks up which items of a kind, among those that appear nearby from now on. */
+/**
+ * Watch for items of one kind that drop nearby from now on, and count how many of them each player picks up.
+ * @returns {{takenBy: Function, over: Function, stop: Function}} `takenBy(name)`: number of items that a player picked
+ *   up; `over(number)`: true if at least so many were picked up; `stop()`: end the watch
+ */
 function watch ({ bot, listen }, item) {
   const { entity: own } = bot
   const lying = new Map()
@@ -37,7 +41,7 @@ module.exports = {
   fails: 'you carry fewer items; the other agent is absent or not visible; there is no path to them; they picked up fewer items within 10 seconds',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'otherName', type: 'string', description: 'who is to get it', aim: 'uses', action: ['agent'] },
+    { name: 'otherName', type: 'string', description: 'name of the agent that gets the items', aim: 'uses', action: ['agent'] },
     { name: 'item', type: 'string', description: 'name of the item', action: ['item'] },
     { name: 'num', type: 'number', description: 'how many; 1 if left out', action: ['count'] }
   ],
@@ -47,11 +51,11 @@ module.exports = {
     const body = bodyOf(context, 'otherName', otherName)
     const item = checkItem(context, 'item', itemName)
     const wanted = checkCount(context, 'num', num)
-    if (countOf(bot, item) < wanted) fail(`${wanted} ${item.name} to be given, the inventory holds ${countOf(bot, item)}; there is: ${contents(bot)}.`)
+    if (countOf(bot, item) < wanted) fail(`cannot give ${wanted} ${item.name}: the inventory holds ${countOf(bot, item)} of them. It holds: ${contents(bot)}.`)
     await walkNear(context, body.position.clone(), NEAR, otherName)
     if (bot.entity.position.distanceTo(body.position) < TOO_NEAR) await stepBack(context, body)
     await bot.lookAt(body.position.offset(0, CHEST_HEIGHT, 0), true)
-    // Wait until the server knows the new view direction; it learns it one tick later.
+    // The server receives the new view direction one tick later. Wait for that, because it decides where the items fly.
     await ticks(context, 2)
     const watcher = watch(context, item)
     try {

@@ -7,7 +7,7 @@ const DOORS = { openDoors: true, closeDoors: false }
 module.exports = {
   name: 'goToPosition',
   scripted: true,
-  description: 'Walk until the position is at most dist blocks away. Goes through open doors of any kind and opens others on its way, but for iron ones; a fourth argument {openDoors: false, closeDoors: true} keeps it from opening any, and lets it shut those it goes through. Fails, saying how near it came, if there is no way on foot.',
+  description: 'Walk until the position is at most dist blocks away. Goes through open doors of any kind and opens shut doors on its way, except iron ones; a fourth argument {openDoors: false, closeDoors: true} keeps it from opening any, and lets it shut those it goes through. Fails, saying how near it came, if there is no way on foot.',
   fails: 'there is no path on foot (`reason` is `no_way`); you were stopped on the way (the error says where you are)',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },

@@ -7,11 +7,11 @@ const PATIENCE_TICKS = 600
 
 module.exports = {
   name: 'receiveItemFromOther',
-  description: 'Wait until another agent has given you the items, which it does with giveItemToOther; at most 30 seconds.',
+  description: 'Wait, for at most 30 seconds, until another agent has given you the items with giveItemToOther.',
   fails: 'fewer items came within 30 seconds (the error says how many)',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'otherName', type: 'string', description: 'who is to give it', aim: 'uses' },
+    { name: 'otherName', type: 'string', description: 'name of the agent that gives the items', aim: 'uses' },
     { name: 'item', type: 'string', description: 'name of the item' },
     { name: 'num', type: 'number', description: 'how many; 1 if left out' }
   ],

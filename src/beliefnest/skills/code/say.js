@@ -7,8 +7,8 @@ module.exports = {
   name: 'say',
   scripted: true,
   cost: 'message',
-  description: 'Say something aloud, in at most 256 characters. What it states can be given as claims as well, ' +
-    'such as [located("diamond", new Vec3(2, -51, -4))]; hearers may come to believe those.',
+  description: 'Say something aloud, in at most 256 characters. You can also give the facts that it states as claims, ' +
+    'such as [located("diamond", new Vec3(2, -51, -4))]. Hearers may believe claims.',
   fails: 'the text is not one line of at most 256 characters, is empty, or begins with a slash; a claim is invalid, or there are more than 16',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },

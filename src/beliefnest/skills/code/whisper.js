@@ -15,7 +15,7 @@ module.exports = {
   fails: 'nobody has that name; the text is not one line of at most 256 characters, or is empty; a claim is invalid',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },
-    { name: 'otherName', type: 'string', description: 'who is to hear it', action: ['agent'] },
+    { name: 'otherName', type: 'string', description: 'name of the agent that hears it', action: ['agent'] },
     { name: 'msg', type: 'string', description: 'what to say', action: ['phrase'] },
     PARAMETER
   ],

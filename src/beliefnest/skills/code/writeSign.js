@@ -7,7 +7,7 @@ module.exports = {
   scripted: true,
   cost: 'message',
   description: 'Go to the sign and write on its front, over what is there; whoever sees the sign reads it. An empty text wipes it. ' +
-    'What it states can be given as claims as well; who reads a text on a sign for the first time may come to believe those.',
+    'You can also give the facts that it states as claims. An agent that reads the text for the first time may believe them.',
   fails: 'there is no path on foot; there is no sign; the text does not fit on it; the sign did not change; a claim is invalid, or there are more than 16',
   parameters: [
     { name: 'bot', type: 'Bot', description: 'your own bot' },

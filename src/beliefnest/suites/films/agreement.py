@@ -36,7 +36,7 @@ class Agreement:
         model: float64 (pairs,).
         people: float64 (pairs,).
         errors: float64 (pairs,), standard errors of people's means; nan: not known.
-        films: int64 (pairs,), the number of the film of each pair among those judged.
+        films: int64 (pairs,), index of the film that each pair belongs to.
     """
 
     about: About
@@ -102,7 +102,7 @@ def interval(pairs: Agreement, seed: int = 0) -> tuple[float, float] | None:
 
 
 def _sums(model: Floats, people: Floats) -> Floats:
-    """Return what Pearson's coefficient is computed from, for each pair (pairs, 6)."""
+    """Return the terms of the sums in Pearson's coefficient, for each pair (pairs, 6)."""
     x, y = _standardised(model), _standardised(people)
     return np.stack([np.ones_like(x), x, y, x * x, y * y, x * y], axis=-1)
 
@@ -113,14 +113,14 @@ def _standardised(values: Floats) -> Floats:
         return values
     centred: Floats = values - values.mean()
     size = float(np.abs(centred).max())
-    # Means of equal numbers differ from them by rounding.
+    # If all values are equal, their mean may differ from them by rounding: return zeros.
     return centred / size if size > 1e-12 * float(np.abs(values).max()) else centred * 0
 
 
 def _pearson(sums: Floats) -> Floats:
     n, x, y, xx, yy, xy = np.moveaxis(sums, -1, 0)
     spread = (n * xx - x * x) * (n * yy - y * y)
-    # A resample of one film only may have no spread except by rounding.
+    # A resample that contains only one film may have a spread that is only a rounding error.
     told = np.where(spread > 1e-20, spread, np.nan)
     with np.errstate(invalid="ignore"):
         coefficients: Floats = (n * xy - x * y) / np.sqrt(told)

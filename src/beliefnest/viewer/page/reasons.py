@@ -42,7 +42,7 @@ _EXPLANATIONS = 36
 """Largest number of explanations in a page without a server; each takes some 0.1 s."""
 
 _ENTRIES = 6000
-"""Largest number of entries folded for explanations; beyond it only a server explains."""
+"""Largest number of entries folded for explanations; pages of longer runs need a server."""
 
 _LOOKS = 6000
 """Largest number of lines of sight between agents per timeline in such a page."""
@@ -245,7 +245,7 @@ def _explanations(
 
 
 def _deeds(reader: Reader, info: TimelineInfo) -> list[int]:
-    """Return the ticks of acts about which beliefs are, and the last tick."""
+    """Return the ticks of events that can change beliefs (`_DEEDS`), and the last tick."""
     ticks = {
         entry.tick
         for entry in reader.entries(info.key, 0, info.entries)

@@ -102,7 +102,7 @@ class EmbeddedBody:
 
     @property
     def internal_state(self) -> bytes:
-        """State of processes that its snapshot does not contain, at the end of the last call."""
+        """State of processes at the end of the last call; snapshots do not contain it."""
         return self._internal_state
 
     def snapshot(self) -> Snapshot:
@@ -164,7 +164,7 @@ class EmbeddedBody:
         try:
             self._channel.request("destroy_region", region=self._region)
         except BodyError:
-            # Kill Node: no new region can use the place of one that it failed to remove.
+            # Kill Node, because no new region can use the place of a region that was not removed.
             self._channel.kill()
         else:
             self._on_close()

@@ -110,7 +110,7 @@ function items (context, name, value) {
 function otherAgent ({ bot, fail }, name, value) {
   const others = Object.keys(bot.players).filter(other => other !== bot.username)
   if (!others.includes(value)) {
-    fail(`${name} must be the name of another agent; it is ${show(value)}, here are: ${others.toSorted().join(', ') || 'none'}`)
+    fail(`${name} must be the name of another agent; it is ${show(value)}. Agents here: ${others.toSorted().join(', ') || 'none'}`)
   }
   return value
 }

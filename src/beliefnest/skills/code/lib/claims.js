@@ -55,7 +55,7 @@ function claims (context, value) {
   })
 }
 
-const MAKING = 'what it says, for those who understand: [located(item, containerPosition), absent(item, containerPosition), ' +
+const MAKING = 'the facts that the text states: [located(item, containerPosition), absent(item, containerPosition), ' +
   'positionOf(name, position), blockAt(position, state)]; none if left out'
 
 /** Parameter `claims` of a manifest. */

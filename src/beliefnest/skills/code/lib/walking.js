@@ -87,7 +87,8 @@ const SAMPLES = [[0, 0, 0], [0.45, 0, 0], [-0.45, 0, 0], [0, 0.45, 0], [0, -0.45
 
 /**
  * Return true if a block can easily be used from an eye: it is near enough, and nothing obstructs its centre or one of
- * its sides. The raycast ignores the block that contains the eye. `canSee` tests this block, too, like the server.
+ * its sides. The raycast ignores the block that contains the eye, but the server does not; therefore `canSee` is
+ * required as well.
  */
 function canUse (bot, eye, block) {
   if (eye.distanceTo(centreOf(block)) > REACH) return false
@@ -114,7 +115,7 @@ function viewpoint ({ bot, goals }, block, accepts) {
   return { goal, arrived }
 }
 
-/** Go to the middle of the bot's block if the server refuses the use from here but would accept it from there. */
+/** Go to the middle of the bot's block if the server would accept the use of a block only from there. */
 async function stepToView (context, block) {
   const { bot } = context
   const middle = bot.entity.position.floored().offset(0.5, 0, 0.5)

@@ -1,8 +1,7 @@
 'use strict'
 /**
- * Rounding of lengths to multiples of 2^-24 blocks, wherever the server's and a region's own coordinates meet. The sum
- * of such a number and a whole offset is exact, so that results in a region do not depend on where in the world it
- * lies.
+ * Rounding of lengths to multiples of 2^-24 blocks when coordinates are converted between the server and a region. The
+ * sum of such a number and a whole offset is exact, so results in a region do not depend on its place in the world.
  */
 const STEPS = 2 ** 24
 

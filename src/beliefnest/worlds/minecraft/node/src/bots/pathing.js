@@ -1,8 +1,9 @@
 'use strict'
 /** Path finding with limits on the number of nodes instead of time, so that a slow machine finds the same paths. */
 
-// Time charged for one node of a path search. With the pathfinder's 40 ms a tick that is 427 nodes a tick, and 53,000
-// nodes before it gives up. The value is a binary fraction, so that sums of it are exact at any time of day.
+// Time in milliseconds charged for one node of a path search. The pathfinder's limit of 40 ms in a tick then allows 427
+// nodes in a tick, and its limit of 5 s allows 53,000 nodes in a search. The value is a binary fraction, so that adding
+// it to a clock never rounds.
 const NODE_MS = 3 / 32
 
 /**
@@ -43,8 +44,9 @@ function chargePathfinder (bot, clock, unknownAt) {
 }
 
 /**
- * Replace the time limits of searches by equivalent numbers of nodes. A search that ends a tick without a path is
- * reported as having none; with time limits, a process without a processor for 40 ms would lose its path.
+ * Replace the time limits of searches by equivalent numbers of nodes. A search that reaches its limit
+ * for a tick without any path is reported as failed. With limits in real time this would also happen when the operating
+ * system pauses the process for 40 ms.
  */
 function countNodes (pathfinder) {
   const { getPathFromTo } = pathfinder
@@ -82,9 +84,9 @@ function limit (search, atOnce, inAll) {
 }
 
 /**
- * Cache the walking properties that movements note on a block. Without the cache they are computed a hundred times per
- * node. Notes stay valid as long as the block object: a position whose state changes gets a new object. The movements'
- * sets of block types must not change any more.
+ * Cache the walking properties that `movements.getBlock` writes on a block object. Without the cache they are computed a
+ * hundred times per node. They stay valid as long as the block object, since a position whose state changes gets a new
+ * object. Do not change the sets of block types in `movements` after this call.
  */
 function rememberBlocks (movements, bot, unknownAt) {
   const { getBlock } = movements

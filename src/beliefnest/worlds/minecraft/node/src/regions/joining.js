@@ -1,5 +1,5 @@
 'use strict'
-/** Joining of players: an agent as the channel describes it becomes a player of a server in this process. */
+/** Joining of players: makes a player of the server in this process from an agent's state as sent over the channel. */
 
 /**
  * Let a player join the active region, at the position and in the state of its agent.

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Connection to a Minecraft server over TCP for an agent that knows only its region's coordinates and agents' names:
- * packets are translated on this side.
+ * Connection of a bot to a Minecraft server over TCP. The bot uses the coordinates of its region and the names of
+ * agents; the connection translates its packets to those of the server, and back.
  */
 const minecraft = require('minecraft-protocol')
 const { OFFLINE, requireName } = require('./accounts')
@@ -15,11 +15,11 @@ const SILENCE_MS = 30_000
  * @param {object} options
  * @param {string} [options.host]
  * @param {number} options.port
- * @param {string} options.version version of Minecraft, one of those held
+ * @param {string} options.version version of Minecraft; this build must have its data
  * @param {string} options.username name of the player on the server
  * @param {string} [options.agent] name of the player in the bot's own view
  * @param {{x: number, z: number}} options.origin server position of scenario (0, y, 0)
- * @param {Map<string, string>} [options.agentOf] agent's name by the server's name of the player
+ * @param {Map<string, string>} [options.agentOf] names of agents, by the names of their players on the server
  * @param {object} [options.login] login options from accounts.js
  * @param {Set<string>} [options.hidden] names of players that the bot must not see; the set may change
  * @returns {import('minecraft-protocol').Client} client that emits `sent` (name, params) for every packet of its bot,

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Real world on a remote server, with the interface of regions: one place, which runs on between calls. The next call
- * reports the events in between.
+ * Real world on a remote server, with the same interface as the regions of the embedded world. It has one region, whose
+ * time continues between calls. Each call first reports the events since the previous one.
  */
 const { setTimeout: sleep } = require('node:timers/promises')
 const { BadRequest } = require('../channel/errors')
@@ -43,7 +43,7 @@ class RemoteRegions {
     this.unseen = new Set([server.operator])
     // Reason why the place was given up; null while it is played.
     this.failure = null
-    // Interface for a Runner. Bodies need no rest here, because time goes on.
+    // Interface for a Runner. It does not wait until bots stand still, because the server's time continues anyway.
     this.bodies = {
       async rest () {},
       stand: async () => true,

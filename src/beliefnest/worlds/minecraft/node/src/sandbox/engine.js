@@ -19,7 +19,7 @@ const UNMETERED = 0x7fffffff
 // left; without a poll the guest traps when the reserve is used up.
 const GRACE = 20_000_000
 const CROSSING_STACK_BYTES = 20_000
-// Fuel after the end: a guest that called the host must still take the answer; then it traps.
+// Fuel of a guest that ended while it called the host: enough to return from that call, after which it traps.
 const LAST_BREATH = 20_000
 const JOBS_AT_ONCE = 100
 const MOST_STRAYS = 1000
@@ -109,7 +109,7 @@ class Engine {
     return this.templates.get(text)
   }
 
-  // Make a fresh context with the guest's side of the border and the scope, and save its state.
+  // Make a fresh context, load the guest's side of the border (guest/border.js) and the scope, and save its state.
   async makeTemplate (scopeText) {
     let strays = 0
     const host = { call: () => 0, interrupt: () => false, rejected: () => { strays++ } }
@@ -176,8 +176,8 @@ class Guest {
   }
 
   /**
-   * Return how the program ended. The interpreter is asked, not the program, which could lie or break the functions it
-   * would answer with.
+   * Return how the program ended. The state is read from the interpreter. The program itself cannot be trusted: it could
+   * give a false answer, or replace the functions that answer.
    * @returns {?{ok: boolean, error: object}} null while the program runs
    */
   result () {
@@ -284,8 +284,8 @@ class Guest {
   }
 
   /**
-   * Handle the interpreter's report of a promise (a JSValue) that was rejected without a handler, or that has got one
-   * since.
+   * Handle the interpreter's report about a promise (a JSValue): it was rejected without a handler, or, if `isHandled`,
+   * it has received a handler after that.
    */
   rejected (promise, isHandled) {
     if (this.ended) return
@@ -341,8 +341,8 @@ class Guest {
   }
 }
 
-// Return kind, message and stack of an exception that the guest's side of the border did not catch, because the
-// program has broken it.
+// Return kind, message and stack of an exception that the guest's side of the border did not catch. This happens only
+// after the program has damaged that side.
 function uncaught ({ name, message, stack }) {
   if (message === 'interrupted') return ['fuel', message, stack]
   if (message === 'out of memory') return ['memory', message, stack]

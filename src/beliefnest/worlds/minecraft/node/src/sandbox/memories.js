@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Pool of memories for interpreters. A memory is cleared and used again, because new ones keep Node's garbage
- * collector busy with all other objects of the process.
+ * Pool of memories for interpreters. A used memory is cleared and used again. Each new one would make Node's garbage
+ * collector examine all objects of the process.
  */
 
 const { INITIAL_PAGES } = require('./interpreter')
@@ -32,8 +32,8 @@ class Memories {
   }
 }
 
-// Clear only parts that were written to. Most of a memory was not; reading is faster than writing, and leaves pages
-// untouched.
+// Clear only the pages that are not empty. Most pages were never written to. Comparing them is faster than writing, and
+// the operating system need not allocate them.
 function empty (bytes) {
   for (let place = 0; place < bytes.length; place += PAGE) {
     if (bytes.compare(EMPTY, 0, PAGE, place, place + PAGE) !== 0) bytes.fill(0, place, place + PAGE)

@@ -36,7 +36,7 @@ const TABLE = Array.from({ length: 256 }, (_, op) =>
 
 /**
  * Move the reader past the immediates of an instruction.
- * @param {import('./wasm-binary').Reader} reader reader behind the opcode
+ * @param {import('./wasm-binary').Reader} reader reader, which has read the opcode
  * @param {number} op
  * @returns {number|undefined} the second opcode byte of a prefixed instruction
  * @throws {Error} for an instruction outside these proposals

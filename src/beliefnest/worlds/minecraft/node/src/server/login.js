@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Joining and leaving of players: at an exact position, with mutual introduction to those present, and without spawn
- * search, announcements, disk or waiting.
+ * Joining and leaving of players. A player joins at an exact position and at once: no search for a spawn point, no
+ * announcement in the chat, no player file on disk.
  */
 const NOON = 6000
 
@@ -53,14 +53,14 @@ module.exports.player = (player, serv) => {
   player.kick = reason => player._client.end(reason)
 }
 
-// Return the lowest free entity number: it must not depend on who left before or what was dropped.
+// Return the lowest free entity number. It must not depend on players that left or items that were dropped before.
 function freeNumber ({ entities }) {
   let number = 1
   while (number in entities) number += 1
   return number
 }
 
-/** Export the packet `login`, with which a client is let into the world. */
+/** Export the function that makes the packet `login`, which lets a client into the world. */
 module.exports.loginPacket = loginPacket
 
 function loginPacket (serv, entityId, gameMode) {

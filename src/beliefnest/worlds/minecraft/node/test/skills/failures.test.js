@@ -20,7 +20,7 @@ test('arguments that a skill cannot use', async () => {
       [/number must be a whole number/, 'waitUntil', bot, () => true, -1],
       [/entity must be an entity/, 'waitForMobRemoved', bot, 'anne'],
       [/timeout must be a number of at least 0/, 'waitForMobRemoved', bot, bot.entity, NaN],
-      [/another agent; it is "bob", here are: anne/, 'follow', bot, 'bob'],
+      [/another agent; it is "bob". Agents here: anne/, 'follow', bot, 'bob'],
       [/number must be a whole number/, 'follow', bot, 'anne', 0],
       [/dist must be a number of at least 0/, 'follow', bot, 'anne', 10, -1],
       [/type must be a text/, 'emote', 'sally', ''],

@@ -92,7 +92,7 @@ test('think, emote and doNothing', async () => {
     assert.deepEqual(world.emitted.map(({ kind, detail }) => [kind, detail]), [
       ['think', { text: 'hm' }], ['emote', { name: 'nod' }], ['emote', { name: 'wave', other: 'anne' }]
     ])
-    assert.match((await failure(world, own.emote('bob', 'wave'))).message, /"bob", here are: .*anne/)
+    assert.match((await failure(world, own.emote('bob', 'wave'))).message, /"bob". Agents here: .*anne/)
     assert.match((await failure(world, own.think(sally, ''))).message, /not empty/)
   })
 })

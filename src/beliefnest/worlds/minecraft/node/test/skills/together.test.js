@@ -54,8 +54,8 @@ test('a gift whose program has ended is not watched any more', async () => {
 test('a gift that is not picked up, and one that is not there', async () => {
   await withSkills(both({ diamond: 3 }, [], { dirt: 36 * 64 }), async world => {
     const { bots: { sally }, skills: { sally: own } } = world
-    assert.match((await failure(world, own.giveItemToOther(sally, 'anne', 'diamond', 4))).message, /4 diamond to be given, the inventory holds 3/)
-    assert.match((await failure(world, own.giveItemToOther(sally, 'bob', 'diamond', 1))).message, /"bob", here are: anne/)
+    assert.match((await failure(world, own.giveItemToOther(sally, 'anne', 'diamond', 4))).message, /cannot give 4 diamond: the inventory holds 3/)
+    assert.match((await failure(world, own.giveItemToOther(sally, 'bob', 'diamond', 1))).message, /"bob". Agents here: anne/)
     assert.match((await failure(world, own.giveItemToOther(sally, 'anne', 'diamond', 1))).message, /anne picked up 0 of the 1 diamond/)
     assert.equal((await world.everything()).diamond, 3)
   })
@@ -265,7 +265,7 @@ test('whispering reaches one, and is no command of operators', async () => {
     assert.deepEqual(await world.events('chat'), [
       { kind: 'chat', actor: 'sally', detail: { text: 'It is in the left chest', to: 'anne' } }
     ])
-    assert.match((await failure(world, own.whisper(sally, 'carol', 'x'))).message, /"carol", here are: anne, bob/)
+    assert.match((await failure(world, own.whisper(sally, 'carol', 'x'))).message, /"carol". Agents here: anne, bob/)
     assert.match((await failure(world, own.whisper(sally, 'sally', 'x'))).message, /another agent; it is "sally"/)
     assert.match((await failure(world, own.whisper(sally, 'anne', ' /op sally'))).message, /slash/)
     assert.match((await failure(world, own.whisper(sally, 'anne', 'a\nb'))).message, /one line/)

@@ -10,8 +10,8 @@ module.exports.server = (serv) => {
   /**
    * Register a part.
    * @param {string} name name of the part
-   * @param {object} part `save(region)` returns rows, none for anything as in a region just created from a SNAPSHOT;
-   *   `restore(rows, region)` restores them, whatever the region's state was before
+   * @param {object} part `save(region)` returns rows for what differs from a region just created from a SNAPSHOT;
+   *   `restore(rows, region)` restores the saved state, whatever the region's state was before
    */
   serv.keeps = (name, part) => { parts.push([name, part]) }
 
