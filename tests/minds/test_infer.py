@@ -296,6 +296,25 @@ def test_an_act_that_is_unavailable_is_impossible_and_nothing_is_lost():
     assert "impossible" in repr(inference)
 
 
+@pytest.mark.parametrize("actual", ["wall", {"wall": 1.0, "free": 0.0}])
+def test_a_walk_through_the_wall_of_the_stated_alternative_is_impossible(actual):
+    world = lane(6)
+    nest = bn.Nest(world)
+    walk(world, *((x, 0) for x in range(1, 5)))
+    doubt = {
+        "wall": {"blocks": {(3, 1, 0): "bricks"}},
+        "free": {"blocks": {(3, 1, 0): "air"}},
+    }
+    goals = {"end": {"at": (5, 1, 0)}}
+    model = bn.MindModel("bob", goals, {"end": [0, 20]}, doubt, actual=actual)
+    inference = nest["/"].infer(model)
+    assert inference.impossible.tick == 3
+    assert inference.log_evidence == -math.inf
+    assert inference.marginal("cell") == {(2, 1, 0): 1.0}
+    assert inference.mean("actual.wall") == 1
+    assert 10 < inference.mean("utility.end") <= 20
+
+
 def test_an_observer_who_does_not_know_learns_from_behaviour():
     world, nest, model = chests(actual="unknown")
     walk(world, (1, 0), (0, 0))
@@ -435,8 +454,12 @@ def test_models_that_do_not_fit_the_node_are_refused():
         nest["/"].infer(model, until=99)
     blind = lane(3, 1, [(1, 0)], agents={"bob": (0, 0), "ann": (2, 0)})
     other = bn.Nest(blind)
-    with pytest.raises(bn.InputError, match="has not seen bob"):
+    with pytest.raises(bn.InputError, match=r"has not seen bob .* up to a later tick"):
         other["/ann"].infer(bn.MindModel("bob", {"K": {"at": (0, 1, 0)}}, {"K": 1}))
+    walk(blind, (2, 0))
+    late = other["/ann"].infer(bn.MindModel("bob", {"K": {"at": (2, 1, 0)}}, {"K": 1}))
+    with pytest.raises(bn.TickError, match="bob had not been seen until then; ask from tick 1 on"):
+        late.marginal("cell", tick=0)
 
 
 def test_simplex_grid():

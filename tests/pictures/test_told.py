@@ -50,6 +50,21 @@ def test_hearsay_is_told_as_such_with_its_speaker_and_age(nest):
     assert MARKS[Mark.HEARD].words not in texts(nest["/nora"].figure().drawing())
 
 
+def test_what_a_sign_of_an_unknown_writer_says_is_told_by_a_sign():
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (9, 3, 9)),
+        {SIGN: "oak_sign"},
+        {"max": (2.5, 0, 8.5)},
+        containers={BOX: {}},
+        signs={SIGN: "food"},
+        sign_claims={SIGN: [bn.Claim.located("bread", BOX)]},
+    )
+    with bn.Nest(world, bn.Perception(testimony="accept")) as nest:
+        world.step(2)
+        said = texts(nest["/max"].figure().drawing())
+    assert "(8, 0, 2): bread, more? (told by a sign 2 ticks ago)" in said
+
+
 def test_false_doors_and_signs_have_a_line_that_says_how_it_is(nest):
     drawing = nest["/max"].figure().drawing()
     said = texts(drawing)

@@ -13,6 +13,7 @@ from beliefnest.nest.acting.replay import ReplayedTimeline, replay
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
+from beliefnest.world.words import counted
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.servers.address import is_server
 from beliefnest.worlds.servers.listening import is_hosted
@@ -80,7 +81,8 @@ def _row(store: Path, replayed: ReplayedTimeline) -> dict[str, object]:
 
 
 def _line(row: dict[str, object]) -> str:
-    place = f"{row['store']}: {row['path']} {row['branch']!r}, {row['programs']} programs"
+    programs = counted(int(str(row["programs"])), "program")
+    place = f"{row['store']}: {row['path']} {row['branch']!r}, {programs}"
     match row["difference"]:
         case {"tick": tick, "entry": entry, "field": field, "recorded": old, "found": new}:
             where = f"tick {tick}, {field or f'entry {entry}'}"

@@ -21,6 +21,7 @@ from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study import Study, checked_shard
+from beliefnest.world.words import counted
 
 __all__ = ["StudyOptions", "run_study"]
 
@@ -110,7 +111,7 @@ def _shard(text: str | None) -> tuple[int, int] | None:
 
 
 def _progress_text(progress: StudyProgress) -> str:
-    parts = [f"{progress.left} cells left"]
+    parts = [f"{counted(progress.left, 'cell')} left"]
     if progress.failed:
         parts.append(f"{progress.failed} failed")
     if progress.spent.requests:

@@ -76,7 +76,7 @@ class Inference:
         self._trackers, self._rerun, self._keep = tuple(trackers), rerun, kept
         self._steps = _merged([tracker.steps for tracker in trackers])
         self.smooth = smooth
-        possible = [step.is_possible for step in self._steps]
+        possible = [self._is_possible(step) for step in self._steps]
         self._failed = None if all(possible) else possible.index(False)
         if self._failed is not None:
             self._known = self._steps[: self._failed] or self._steps[:1]
@@ -338,6 +338,10 @@ class Inference:
         prior: Floats = self._log_actual(step)[:, None, None, None] + self._log_weights
         return prior
 
+    def _is_possible(self, step: Step) -> bool:
+        """Return True if a hypothesis that the model allows explains all evidence to a step."""
+        return step.is_possible and bool(np.isfinite(self._log_prior(step) + step.weights).any())
+
     def _posterior_of(self, step: Step | None) -> Floats:
         logs = self._log_prior(step)
         if step is not None:
@@ -355,7 +359,10 @@ class Inference:
         kind, _, name = factor.partition(".")
         if kind in ("cell", "credence_now"):
             if step is None:
-                raise TickError("the agent had not been seen at that tick; ask from its first one")
+                raise TickError(
+                    f"{self.model.agent} had not been seen until then; ask from tick "
+                    f"{self._known[0].tick} on"
+                )
             return self._changing(kind, name, self._smooth_step(number))
         return self._grouped(factor, self._posterior_of(step))
 

@@ -242,7 +242,7 @@ class MindModel:
         given: Any = self.rationality
         listed: list[Any] = [given] if _is_number(given) else list(_listed("rationality", given))
         if not listed or not all(_is_number(each) and each >= 0 for each in listed):
-            raise InputError(f"rationality is {given!r}; give numbers from 0")
+            raise InputError(f"rationality is {given!r}; give numbers that are 0 or more")
         if len(set(listed)) < len(listed):
             raise InputError(f"rationality is {given!r}; name each value once")
         self._set("rationalities", tuple(float(each) for each in listed))

@@ -379,7 +379,7 @@ def _teller(basis: Basis | None) -> str:
     """Return the speaker that an entry is known from; empty if it is not hearsay."""
     if basis is None or basis.source is not Source.HEARD:
         return ""
-    return basis.speaker or "somebody"
+    return basis.speaker or "a sign"
 
 
 def _store_mark(held: ContainerBelief, *, false: bool) -> Mark:

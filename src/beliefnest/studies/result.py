@@ -111,7 +111,7 @@ class StudyResult:
         """Return for each group its accuracy with a 95 % interval, and counts of all outcomes.
 
         Rows of one variation are not independent. The interval is therefore Wilson's if each
-        variation has one row in the group, and else the cluster bootstrap over variations. The
+        variation has one row in the group, otherwise the cluster bootstrap over variations. The
         column `interval` names the method, and `variations` the number of variations. For
         episodes there are also means with 95 % intervals by the same bootstrap.
 

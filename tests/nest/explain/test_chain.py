@@ -273,8 +273,8 @@ def test_opening_tells_the_contents_to_who_opens_only():
         "anne believes that observer does not know what the chest at (5, 0, 9) holds: as far as "
         "anne knows, observer, at (2.5, 0, 1.5), first saw the chest at (5, 0, 9) at tick 0, but "
         "not what it holds.",
-        "At tick 1 anne saw that observer, at (2.5, 0, 1.5), saw the act, which does not show "
-        "what else there is to know. So observer missed this: anne looked in.",
+        "At tick 1 anne saw that observer, at (2.5, 0, 1.5), saw this, which does not show "
+        "what the chest at (5, 0, 9) holds: anne looked in.",
     ]
 
 
@@ -354,7 +354,8 @@ def test_changes_that_the_observer_found_later():
     contents = nest["/observer/sally"].explain(container=WEST_CHEST)
     assert contents.levels[1].missed.acts == ()
     assert lines(contents)[-1].endswith(
-        "So sally missed this: the chest at (2, 0, 5) came to hold 1 diamond."
+        "So sally missed this: observer came to believe that the chest at (2, 0, 5) holds "
+        "1 diamond."
     )
     block = nest["/observer/sally"].explain(block=(1, 0, 8))
     assert lines(block)[-1].endswith("So sally missed this: the block at (1, 0, 8) became stone.")

@@ -347,3 +347,13 @@ def test_a_value_that_was_handed_on_names_its_source() -> None:
         "as far as ann knows, cid, at (3.5, 0, 11.5), perceived at tick 3 what bob had said at "
         "tick 1."
     )
+
+
+def test_a_belief_that_ended_without_an_act_is_no_change_of_contents():
+    """The sign says that it is in B; Ann, who looks into A, then believes nothing about B."""
+    far = {"max_visible_distance": 30}
+    nest = hall(lambda world, _: world.open("ann", A), options=far, **UNIQUE, **SIGNED)
+    assert str(nest["/ann/bob"].explain(container=B)).endswith(
+        "saw the chest at (17, 0, 3), which does not show this. So bob missed this: ann no longer "
+        "believed anything about what the chest at (17, 0, 3) holds."
+    )

@@ -126,8 +126,18 @@ def test_says_when_the_last_history_was_lost():
             imagined = nest["/anne"].imagine(since, actors={"bob": {"idle": ""}}, n=10)
         assert imagined.impossible.tick == nest.tick
         assert imagined.log_evidence == -math.inf
+        assert imagined.impossible.text == (
+            "contents of containers in the last 10 histories differ from what was perceived"
+        )
         assert imagined[0].state.containers[CHEST].items == {"diamond": 1}
         assert f"tick {nest.tick}" in repr(imagined)
+        with pytest.warns(ImaginationWarning, match="places of agents in the last history differ"):
+            one = nest["/anne"].imagine(
+                since,
+                actors={"bob": {"come": "await goToPosition(bot, new Vec3(4, 1, 2), 0)"}},
+                n=1,
+            )
+        assert repr(one).startswith("<1 history of /anne")
 
 
 def test_few_histories_are_warned_of():
@@ -492,7 +502,9 @@ def test_a_failing_candidate_is_named_once():
     with kitchen() as nest:
         nest.scripted_world.step(3)
         slip = "await waitTicks(bot, 1); nobody()"
-        with pytest.warns(ImaginationWarning, match=r"candidate 'slip' of bob failed: .*nobody"):
+        with pytest.warns(
+            ImaginationWarning, match=r"candidate 'slip' of bob failed: .*nobody.*[^.]\. From there"
+        ):
             imagined = nest["/anne"].imagine(0, actors={"bob": {"slip": slip, "idle": ""}}, n=4)
         assert imagined.failed.keys() == {"bob"}
         assert "nobody" in imagined.failed["bob"]["slip"]

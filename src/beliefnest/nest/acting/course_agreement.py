@@ -15,6 +15,7 @@ from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Point, Positio
 __all__ = ["Agreement", "Tolerance", "Witness"]
 
 _MOST_GRIDS = 4096
+_DEEDS = "actions at containers"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,39 +99,48 @@ class Agreement:
         """Return True if a percept begins at a tick."""
         return tick in self._numbers
 
-    def holds(self, course: Course, glimpse: Glimpse) -> bool:
-        """Return True if a course agrees with the percept of a tick."""
+    def misfit(self, course: Course, glimpse: Glimpse) -> str | None:
+        """Return what differs from the percept of a tick; None if a course agrees with it."""
         if course.contradiction is not None:
-            return False
+            return course.contradiction
         number = self.expected(glimpse.tick)
         percept = self.witness.percepts[number]
         if not glimpse.is_new and percept.tick != glimpse.tick:
-            return True
+            return None
         deeds = percept.deeds if percept.tick == glimpse.tick else ()
-        return self.fits(course, glimpse, number) and self._deeds_fit(glimpse, percept, deeds)
+        found = self._misfit(course, glimpse, number)
+        return _DEEDS if found is None and not self._deeds_fit(glimpse, percept, deeds) else found
 
-    def holds_within(self, course: Course, glimpses: Sequence[Glimpse], tick: int) -> bool:
-        """Return True if a course agrees with the percept of a tick, at one of some ticks."""
+    def misfit_within(self, course: Course, glimpses: Sequence[Glimpse], tick: int) -> str | None:
+        """Return what differs from the percept of a tick, at all of some ticks; None: nothing."""
         if course.contradiction is not None:
-            return False
+            return course.contradiction
         number = self._numbers[tick]
         percept = self.witness.percepts[number]
         seen = {deed for glimpse in glimpses for deed in self._witnessed(glimpse, percept)}
         mine = {deed for deed in percept.deeds if deed[1] in self.witness.agents}
-        return mine <= seen and any(self.fits(course, each, number) for each in glimpses)
+        if not mine <= seen:
+            return _DEEDS
+        found: str | None = None
+        for glimpse in glimpses:
+            found = self._misfit(course, glimpse, number)
+            if found is None:
+                break
+        return found
 
-    def fits(self, course: Course, glimpse: Glimpse, number: int) -> bool:
-        """Return True if the facts of a course at a tick could give a percept."""
+    def _misfit(self, course: Course, glimpse: Glimpse, number: int) -> str | None:
+        """Return what facts of a course at a tick could not give a percept; None: all could."""
         percept = self.witness.percepts[number]
         if not percept.present:
-            return True
+            return None
         grid = self._grid(glimpse.blocks)
-        return (
-            self._blocks_fit(grid, glimpse.blocks, number)
-            and self._contents_fit(course, glimpse, percept)
-            and self._agents_fit(grid, glimpse, percept)
-            and self._items_fit(grid, glimpse, percept)
-        )
+        if not self._blocks_fit(grid, glimpse.blocks, number):
+            return "blocks"
+        if not self._contents_fit(course, glimpse, percept):
+            return "contents of containers"
+        if not self._agents_fit(grid, glimpse, percept):
+            return "places of agents"
+        return None if self._items_fit(grid, glimpse, percept) else "dropped items"
 
     def _deeds_fit(self, glimpse: Glimpse, percept: Percept, deeds: Sequence[object]) -> bool:
         if not glimpse.deeds and not deeds:

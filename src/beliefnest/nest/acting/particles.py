@@ -148,7 +148,7 @@ class Drawing:
             return
         ticks = agreement.witness.tolerance.ticks
         if ticks == 0:
-            self._keep({c: agreement.holds(c, g) for c, g in glimpses.items()}, tick)
+            self._keep({c: agreement.misfit(c, g) for c, g in glimpses.items()}, tick)
             return
         for course, glimpse in glimpses.items():
             self._windows.setdefault(course, deque(maxlen=2 * ticks + 1)).append(glimpse)
@@ -158,7 +158,7 @@ class Drawing:
                 continue
             self._keep(
                 {
-                    course: agreement.holds_within(
+                    course: agreement.misfit_within(
                         course,
                         [g for g in self._windows[course] if abs(g.tick - moment) <= ticks],
                         moment,
@@ -168,11 +168,11 @@ class Drawing:
                 tick,
             )
 
-    def _keep(self, holds: Mapping[Course, bool], tick: int) -> None:
+    def _keep(self, misfits: Mapping[Course, str | None], tick: int) -> None:
         """Keep the histories that agree; resample if they have too few ancestors."""
-        kept = [particle for particle in self.particles if holds[particle.course]]
+        kept = [particle for particle in self.particles if misfits[particle.course] is None]
         if not kept:
-            self.lost = self._lost(tick)
+            self.lost = self._lost(misfits, tick)
             return
         if len(kept) == len(self.particles):
             return
@@ -184,14 +184,15 @@ class Drawing:
         if self.effective_size < len(self.drawn) / 2:
             self._resample(tick)
 
-    def _lost(self, tick: int) -> Lost:
-        found = [each.course.contradiction for each in self.particles]
-        reasons = Counter(reason for reason in found if reason is not None)
-        if reasons:
-            return Lost(tick, reasons.most_common(1)[0][0])
-        count = len(self.particles)
-        many = "the last history" if count == 1 else f"the last {count} histories"
-        return Lost(tick, f"{many} led to something else than what was perceived")
+    def _lost(self, misfits: Mapping[Course, str | None], tick: int) -> Lost:
+        """Return the most frequent reason; a contradiction in a history goes before percepts."""
+        last = [each.course for each in self.particles]
+        found = [course.contradiction for course in last if course.contradiction is not None]
+        if found:
+            return Lost(tick, Counter(found).most_common(1)[0][0])
+        why = Counter(misfits[course] for course in last).most_common(1)[0][0]
+        many = "the last history" if len(last) == 1 else f"the last {len(last)} histories"
+        return Lost(tick, f"{why} in {many} differ from what was perceived")
 
     def _resample(self, tick: int) -> None:
         count = len(self.drawn)

@@ -170,23 +170,24 @@ def _missed_text(missed: Missed, level: Level, fact: Fact, element: Element) -> 
         view = as_known_to(level.path[:-2])
         text = f"{begin}{',' if view else ''} {view}{_absence_text(missed, level)}"
     elif missed.saw_acts:
-        text = (
-            f"{begin} {_teller(level)}{_standing(holder, missed.stood)} saw the act, "
-            "which does not show what else there is to know"
+        return (
+            f"{begin} {_teller(level)}{_standing(holder, missed.stood)} saw this, which does not "
+            f"show what {name} holds: {_change_text(missed, name, level)}."
         )
     else:
-        looks = _looks_text(missed.sightings)
+        looks = _looks_text(missed.sightings, "what it holds" if never else "this")
         text = f"{begin} {_teller(level)}{_standing(holder, missed.stood)} {looks}"
     if never:
         return f"{text}."
-    return f"{text}. So {holder} missed this: {_change_text(missed, name)}."
+    return f"{text}. So {holder} missed this: {_change_text(missed, name, level)}."
 
 
-def _looks_text(looks: Iterable[Sighting]) -> str:
+def _looks_text(looks: Iterable[Sighting], hidden: str) -> str:
+    """Return in words what looks showed; what is seen does not show what is hidden."""
     clauses = []
     for look in looks:
         if look.view is View.SEEN:
-            clauses.append(f"saw {_target(look)}, which does not show this")
+            clauses.append(f"saw {_target(look)}, which does not show {hidden}")
         else:
             clauses.append(f"could not see {_look_text(look)}")
     return "; and ".join(clauses)
@@ -226,7 +227,7 @@ def _look_text(look: Sighting) -> str:
     return f"{_target(look)}: {why}"
 
 
-def _change_text(missed: Missed, name: str) -> str:
+def _change_text(missed: Missed, name: str, level: Level) -> str:
     how = _how(missed.acts, missed.edited)
     if how:
         return how
@@ -237,7 +238,17 @@ def _change_text(missed: Missed, name: str) -> str:
     if isinstance(missed.after, tuple):
         was = "" if missed.before is None else f" from {_value_point(missed.before)}"
         return f"{name} moved{was} to {_point(missed.after)}"
-    return f"{name} came to hold {_contents(missed.after)}"
+    return _contents_change(missed.after, name, level)
+
+
+def _contents_change(after: Contents, name: str, level: Level) -> str:
+    """Return new contents in words: a fact, or what the believer around the level believed."""
+    if len(level.path) == 1:
+        return f"{name} came to hold {_contents(after)}"
+    parent = level.path[-2]
+    if not after.items and not after.complete:
+        return f"{parent} no longer believed anything about what {name} holds"
+    return f"{parent} came to believe that {name} holds {_contents(after)}"
 
 
 def _how(acts: Iterable[PerceivedEvent], edited: bool) -> str:

@@ -17,6 +17,7 @@ from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
+from beliefnest.world.words import counted
 from beliefnest.worlds.scripted.world_facts import WorldFacts
 
 if TYPE_CHECKING:  # These take long to import, and few histories are drawn or listed.
@@ -281,7 +282,10 @@ class Imagined:
                 journal.append(key, self._starts.entries(course), course.tick)
 
     def __repr__(self) -> str:
-        head = f"<{self.n} histories of {path_text(self._path)}, ticks {self.since} to {self.until}"
+        head = (
+            f"<{counted(self.n, 'history')} of {path_text(self._path)}, ticks {self.since} to "
+            f"{self.until}"
+        )
         for agent, named in self.failed.items():
             head += "".join(f", {agent} {name!r} failed ({why})" for name, why in named.items())
         if self.impossible is not None:

@@ -88,7 +88,9 @@ class Checked:
 def _tolerance(given: object) -> Tolerance:
     parts = [whole(part) for part in given] if isinstance(given, Sequence) else []
     if len(parts) != 2 or any(part is None or part < 0 for part in parts):
-        raise InputError(f"tolerance is {given!r}; give (cells, ticks), whole numbers from 0")
+        raise InputError(
+            f"tolerance is {given!r}; give (cells, ticks), whole numbers that are 0 or more"
+        )
     return Tolerance(int(parts[0] or 0), int(parts[1] or 0))
 
 
@@ -116,7 +118,9 @@ def _weights(
             )
         listed = [mine.get(name, 0.0) for name in named]
         if not all(_is_weight(weight) for weight in listed):
-            raise InputError(f"weights of {agent} are {dict(mine)!r}; give numbers from 0")
+            raise InputError(
+                f"weights of {agent} are {dict(mine)!r}; give numbers that are 0 or more"
+            )
         total = math.fsum(listed)
         if abs(total - 1) > _SUM_SLACK:
             raise InputError(f"the weights of {agent} sum to {total:.6g}; let them sum to 1")

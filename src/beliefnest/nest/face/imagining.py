@@ -24,6 +24,7 @@ from beliefnest.timeline.side import SideJournal
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Block, Position
+from beliefnest.world.words import counted
 
 __all__ = ["ImaginationWarning", "imagine_in"]
 
@@ -179,15 +180,15 @@ def _warn(imagined: Imagined) -> None:
     for agent, named in imagined.failed.items():
         for name, why in named.items():
             warnings.warn(
-                f"the program of candidate {name!r} of {agent} failed: {why}. From there on it "
-                f"does nothing in that history, which counts all the same; correct the program, or "
-                "look at history.failed",
+                f"the program of candidate {name!r} of {agent} failed: {why.rstrip('.')}. From "
+                "there on it does nothing in that history, which counts all the same; correct the "
+                "program, or look at history.failed",
                 ImaginationWarning,
                 stacklevel=5,
             )
     if imagined.impossible is not None:
         warnings.warn(
-            f"none of {imagined.n} histories agrees with what was perceived: "
+            f"none of {counted(imagined.n, 'history')} agrees with what was perceived: "
             f"{imagined.impossible}. "
             "Add a candidate that explains it, draw more histories, or allow a tolerance",
             ImaginationWarning,

@@ -51,7 +51,7 @@ def infer_in(
     if not work.reading.has_seen:
         raise InputError(
             f"{path_text(path)} has not seen {model.agent} from tick {since} to "
-            f"{work.reading.latest}; infer from a node and a tick at which it sees the agent"
+            f"{work.reading.latest}; infer in a simulator that sees it, or up to a later tick"
         )
     step_ticks = model.step_ticks or _STEP_TICKS.get(recording.world, _MINECRAFT_STEP)
     _check_goals(model, work.reading.moments)
