@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beliefnest.world.texts import escaped, formula_free, on_one_line, visible, visible_json
+from beliefnest.world.words import counted
 
 HIDDEN = (
     "\u061c\u200b\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2060\u2066\u2067\u2068\u2069\ufeff"
@@ -65,3 +66,12 @@ def test_formulas_are_texts(text: str) -> None:
 )
 def test_numbers_and_words_stay(text: str) -> None:
     assert formula_free(text) == text
+
+
+def test_numbers_stand_with_their_nouns() -> None:
+    assert [counted(n, noun) for noun in ("cell", "history") for n in (1, 2)] == [
+        "1 cell",
+        "2 cells",
+        "1 history",
+        "2 histories",
+    ]
