@@ -241,7 +241,9 @@ def test_a_server_that_is_stopped_under_a_program_is_the_cause_that_is_told():
     with GameServer() as server:
         nest = Nest.open(Scenario.load("sally-anne", 1), server.address(patience=3))
         server.type("after 20 stop")
-        with pytest.raises(BodyError, match=r"was lost .*with the same command and --out"):
+        with pytest.raises(
+            BodyError, match=r"was lost \(Server closed; .*with the same command and --out"
+        ):
             nest["/"].run("sally", FAR)
         nest.close()
 

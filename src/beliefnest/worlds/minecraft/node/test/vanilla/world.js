@@ -23,6 +23,12 @@ const NEWCOMER = { position: SPAWN, yaw: 0, pitch: 0, on_ground: true, health: 2
 const BROKEN_OFF = ['EPIPE', 'ECONNRESET']
 const ALL_MAY = ['tell', 'msg', 'w']
 
+/** Disconnect a player for a reason that the client has in words; `reason` ends its key. */
+function sendAway ({ _client: { client } }, reason) {
+  const translate = `multiplayer.disconnect.${reason}`
+  client.end(reason, client._supportFeature('chatPacketsUseNbtComponents') ? nbt.comp({ translate: nbt.string(translate) }) : JSON.stringify({ translate }))
+}
+
 class OpenWorld {
   /**
    * @param {object} serv server from createServer
@@ -65,7 +71,7 @@ class OpenWorld {
     const other = serv.players.find(({ username }) => username === client.username)
     if (other !== undefined) {
       other.once('disconnected', () => this.join(client))
-      other._client.client.end('another', nbt.comp({ translate: nbt.string('multiplayer.disconnect.duplicate_login') }))
+      sendAway(other, 'duplicate_login')
       return
     }
     const state = this.known.get(client.username) ?? NEWCOMER
@@ -140,7 +146,7 @@ class OpenWorld {
     if (here === 0) process.exit(0)
     for (const player of [...this.serv.players]) {
       player.once('disconnected', () => { if (--here === 0) process.exit(0) })
-      player._client.end(JSON.stringify({ translate: 'multiplayer.disconnect.server_shutdown' }))
+      sendAway(player, 'server_shutdown')
     }
   }
 
@@ -167,7 +173,7 @@ class OpenWorld {
     else if (word === 'trust') delete this.verified[name.toLowerCase()]
     else if (word === 'op') this.ops.add(name)
     else if (word === 'deop') this.ops.delete(name)
-    else if (word === 'kick') player?._client.end(JSON.stringify({ text: 'Kicked by an operator' }))
+    else if (word === 'kick') { if (player) sendAway(player, 'kicked') }
     else if (word === 'drop') player?._client.client.socket.destroy()
     else if (player === undefined) runCommand(this.serv, line, null)
     if (player !== undefined && (word.endsWith('op') || word === 'tell')) this.tellCommands(player)
