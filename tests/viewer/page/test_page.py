@@ -188,9 +188,9 @@ def test_what_is_written_on_a_sign_is_an_event_and_false_where_it_was_missed(bro
         blocks={**blocks, sign: "oak_sign"},
         agents={"ann": (1.5, 1, 3.5), "bob": (1.5, 1, 2.5)},
         signs={sign: "in"},
-        sign_claims={sign: [bn.Claim.located("diamond", (5, 1, 5))]},
+        sign_claims={sign: [bn.Claim.located("diamond", (1, 1, 6))]},
     )
-    nest = bn.Nest(world, store=tmp_path / "sign.bn")
+    nest = bn.Nest(world, bn.Perception(testimony="accept"), store=tmp_path / "sign.bn")
     world.place_agent("bob", (5.5, 1, 1.5))
     world.write_sign("ann", sign, "out")
     nest.close()
@@ -201,7 +201,8 @@ def test_what_is_written_on_a_sign_is_an_event_and_false_where_it_was_missed(bro
     assert "ann writes “out” on the sign" in browser.script(told, ".events")
     assert "1 block is false" in browser.script(told, "main, body")
     # The claims of the start are told with the sign, not only as events.
-    assert "“in”, which claims that diamond is in (5, 1, 5)" in browser.script(told, ".detail")
+    assert "“in”, which claims that diamond is in (1, 1, 6)" in browser.script(told, ".detail")
+    assert "told by a sign" in browser.script(told, ".detail")
 
 
 def test_claims_hearsay_and_signs_are_told_and_long_paths_keep_their_ends(browser, tmp_path):

@@ -65,11 +65,11 @@ function containerThing (run, track, tick, cell, wrong) {
 }
 
 /**
- * Return the speaker of a claim that is the only ground for a belief; null if there are other grounds.
+ * Return the speaker of a claim, or `a sign`, that is the only ground for a belief; null if there are other grounds.
  * @returns {string|null}
  */
 export function tellerOf (held) {
-  return held !== null && !held.current && held.source === 'heard' ? held.speaker ?? 'somebody' : null
+  return held !== null && !held.current && held.source === 'heard' ? held.speaker ?? 'a sign' : null
 }
 
 function memoryMark (held) {
