@@ -77,7 +77,8 @@ def test_programs_go_on_together(nest: bn.Nest) -> None:
     [
         ("\nawait goToPosition(bot, new Vec3(4, 1, 8), 0)", "skill", 2, "no way to it on foot"),
         ("await bot.findBlocks({})", "refused", 1, "no bot.findBlocks"),
-        ("await craftItem(bot, 'stick')", "error", 1, "craftItem"),
+        ("await craftItem(bot, 'stick')", "error", 1, "the scripted world has no craftItem"),
+        ("await eat(bot, 'apple')", "error", 1, "the scripted world has no eat"),
         ("await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})", "skill", 1, "no container"),
         ("const = 3", "syntax", 1, ""),
         ("\n\nthrow new TypeError('oh')", "error", 3, "TypeError: oh"),

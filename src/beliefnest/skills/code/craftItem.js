@@ -53,7 +53,6 @@ module.exports = {
   description: 'Make at least count of an item from what you carry. What fits into 2 by 2 needs no table: craftingTablePos may be null then.',
   fails: 'there is no recipe; ingredients are missing (the error lists them); a crafting table is needed, but none is given or there; there is no path to it; the inventory has no room for the product',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item to make' },
     { name: 'craftingTablePos', type: 'Vec3 | null', description: 'position of a crafting table', aim: 'uses' },
     { name: 'count', type: 'number', description: 'how many to make; 1 if left out' }

@@ -14,7 +14,6 @@ module.exports = {
   description: 'Go to the chest, open it, put the items in, close it. If you have fewer items, put them in and fail; the error names the missing ones.',
   fails: 'there is no path on foot; there is no container; its lid is blocked; you have fewer items, or it has less room (as many as possible are put in); somebody closed it meanwhile',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'chestPosition', type: 'Vec3', description: 'position of a chest or barrel', aim: 'uses', action: ['container'] },
     { name: 'items', type: '{[name: string]: number}', description: 'how many of which items', action: ['item', 'count'] }
   ],

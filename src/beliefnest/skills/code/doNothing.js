@@ -6,7 +6,7 @@ module.exports = {
   scripted: true,
   description: 'Do nothing for one tick.',
   fails: 'never',
-  parameters: [{ name: 'bot', type: 'Bot', description: 'your own bot' }],
+  parameters: [],
   example: 'await doNothing(bot)',
   run: context => ticks(context, 1)
 }

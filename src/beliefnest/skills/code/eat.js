@@ -11,7 +11,6 @@ module.exports = {
   description: 'Eat one piece of food from your inventory. Works only when you are not full.',
   fails: 'the item is not food, or you do not carry it; you are not hungry; you did not finish eating',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the food' }
   ],
   example: 'await eat(bot, "bread")',

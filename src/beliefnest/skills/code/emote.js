@@ -5,6 +5,7 @@ const { utterance } = require('./lib/speech')
 module.exports = {
   name: 'emote',
   cost: 'message',
+  takesBot: false,
   description: 'Make a gesture, such as "wave" or "nod". Agents that see you perceive it.',
   fails: 'nobody has that name; the gesture is not one line of at most 256 characters',
   parameters: [

@@ -10,7 +10,6 @@ module.exports = {
   description: 'Take an item from your inventory in hand, or put it on: hand, off-hand, head, torso, legs, feet.',
   fails: 'you do not carry the item; it does not fit the destination',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item' },
     { name: 'destination', type: 'string', description: 'where to', default: '"hand"' }
   ],

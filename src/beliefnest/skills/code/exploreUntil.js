@@ -9,7 +9,6 @@ module.exports = {
   description: 'Walk in a direction until callback returns a true value, and return that value; return null after maxDistance blocks.',
   fails: 'the direction has no length; the callback is not a function, or it throws an error',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'direction', type: 'Vec3', description: 'level direction, such as new Vec3(1, 0, 0)' },
     { name: 'maxDistance', type: 'number', description: 'how far to go at most, in blocks' },
     { name: 'callback', type: '() => any', description: 'function that is called every few steps, for instance () => bot.findBlock({matching: 1})' }

@@ -25,7 +25,6 @@ module.exports = {
   description: 'Follow another agent for a number of ticks, staying within dist blocks. Fails if it is not near at the end.',
   fails: 'the other agent is absent, not visible, or not near at the end',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'name of the agent to follow', aim: 'walks' },
     { name: 'number', type: 'number', description: 'how many ticks', default: '100' },
     { name: 'dist', type: 'number', description: 'how near, in blocks', default: '2' }

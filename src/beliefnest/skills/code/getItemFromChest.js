@@ -14,7 +14,6 @@ module.exports = {
   description: 'Go to the chest, open it, take the items, close it. If there are fewer items, take them and fail; the error names the missing ones.',
   fails: 'there is no path on foot; there is no container; its lid is blocked; it holds fewer items (those are taken); somebody closed it meanwhile',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'chestPosition', type: 'Vec3', description: 'position of a chest or barrel', aim: 'uses', action: ['container'] },
     { name: 'items', type: '{[name: string]: number}', description: 'how many of which items', action: ['item', 'count'] }
   ],

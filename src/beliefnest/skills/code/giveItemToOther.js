@@ -40,7 +40,6 @@ module.exports = {
   description: 'Go to another agent, toss the items to it, and wait until it has picked them up.',
   fails: 'you carry fewer items; the other agent is absent or not visible; there is no path to them; they picked up fewer items within 10 seconds',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'name of the agent that gets the items', aim: 'uses', action: ['agent'] },
     { name: 'item', type: 'string', description: 'name of the item', action: ['item'] },
     { name: 'num', type: 'number', description: 'how many; 1 if left out', action: ['count'] }

@@ -8,7 +8,6 @@ module.exports = {
   description: 'Take back a block that was placed, such as a crafting table: mine it and pick it up.',
   fails: 'there is no path on foot; another block is there; you have no suitable tool; you did not get the item back',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the placed item' },
     { name: 'position', type: 'Vec3', description: 'where it was placed', aim: 'uses' }
   ],

@@ -10,7 +10,6 @@ module.exports = {
   description: 'Walk until the position is at most dist blocks away. Goes through open doors of any kind and opens shut doors on its way, except iron ones; a fourth argument {openDoors: false, closeDoors: true} keeps it from opening any, and lets it shut those it goes through. Fails, saying how near it came, if there is no way on foot.',
   fails: 'there is no path on foot (`reason` is `no_way`); you were stopped on the way (the error says where you are)',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'where to go', aim: 'walks', action: ['position'] },
     { name: 'dist', type: 'number', description: 'how near is near enough, in blocks; 0 is the very block', default: '2', action: 0 }
   ],

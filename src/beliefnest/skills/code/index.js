@@ -9,6 +9,7 @@
  * - `parameters` in order: `name`, `type`, `description`; `default` as in the signature; `aim` if the argument is a
  *   target, a position or the name of an agent: `walks` or `uses`; `action`: the parts of a structured action
  *   (adapters/pettingzoo/actions.py) that give the argument, or its constant value there
+ * - `takesBot`: false if `bot` is no parameter; otherwise `bot` is the first one, unless it is listed elsewhere
  * - `run(context, ...args)`: `args` are the arguments without `bot`, which is `context.bot`
  */
 const { numbers } = require('./lib/answers')
@@ -54,10 +55,14 @@ const MANIFESTS = [
   require('./doNothing')
 ]
 
-/** Manifests with their `signature`, as a model reads it. */
-const SKILLS = MANIFESTS.map(skill => {
-  const parameters = skill.parameters.map(({ name, default: value }) => (value === undefined ? name : `${name}=${value}`))
-  return { ...skill, signature: `${skill.name}(${parameters.join(', ')})` }
+const BOT = { name: 'bot', type: 'Bot', description: 'your own bot' }
+
+/** Manifests with all their parameters, and their `signature`, as a model reads it. */
+const SKILLS = MANIFESTS.map(({ takesBot = true, ...skill }) => {
+  const isGiven = !takesBot || skill.parameters.some(({ type }) => type === 'Bot')
+  const parameters = isGiven ? skill.parameters : [BOT, ...skill.parameters]
+  const listed = parameters.map(({ name, default: value }) => (value === undefined ? name : `${name}=${value}`))
+  return { ...skill, parameters, signature: `${skill.name}(${listed.join(', ')})` }
 })
 
 /**

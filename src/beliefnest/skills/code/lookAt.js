@@ -8,7 +8,6 @@ module.exports = {
   description: 'Turn to look at a point.',
   fails: 'only for invalid arguments',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'what to look at' }
   ],
   example: 'await lookAt(bot, new Vec3(2.5, -50, -3.5))',

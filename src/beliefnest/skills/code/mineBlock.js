@@ -8,7 +8,6 @@ module.exports = {
   description: 'Go to the block, mine it with the best tool you carry, and pick up what it drops.',
   fails: 'there is no path on foot; another block is there; the block cannot be mined, or not with your tools; the inventory has no room for the drops',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the block', aim: 'uses' },
     { name: 'name', type: 'string', description: 'name of the block that is there' }
   ],

@@ -7,7 +7,6 @@ module.exports = {
   description: 'Go to the door, trapdoor or fence gate and open it; does nothing if it is open already. Iron ones move by levers and buttons alone.',
   fails: 'there is no path on foot; there is no door, trapdoor or gate; it is an iron one; it did not move',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the door, of either half', aim: 'uses', action: ['door'] }
   ],
   example: 'await openDoor(bot, new Vec3(4, -51, -3))',

@@ -48,7 +48,6 @@ module.exports = {
   description: 'Go there and place a block from your inventory at the position, which must be free and beside a solid block.',
   fails: 'you do not carry the item; the position is not free, or has no solid block beside it; there is no path on foot; somebody stands there',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'name', type: 'string', description: 'name of the item to place' },
     { name: 'position', type: 'Vec3', description: 'where it is to stand', aim: 'uses' }
   ],

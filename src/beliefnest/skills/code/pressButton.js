@@ -7,7 +7,6 @@ module.exports = {
   description: 'Go to the button and press it; it comes out again by itself.',
   fails: 'there is no path on foot; there is no button; it stays pressed, or did not move',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the button', aim: 'uses' }
   ],
   example: 'await pressButton(bot, new Vec3(3, -50, 0))',

@@ -7,7 +7,6 @@ module.exports = {
   description: 'Look at the sign, without going there, and get what is written on it, lines split by \\n; empty if nothing is.',
   fails: 'there is no sign, or you cannot see it',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the sign' }
   ],
   example: 'const text = await readSign(bot, new Vec3(4, -51, -3))',

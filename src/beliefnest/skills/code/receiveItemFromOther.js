@@ -10,7 +10,6 @@ module.exports = {
   description: 'Wait, for at most 30 seconds, until another agent has given you the items with giveItemToOther.',
   fails: 'fewer items came within 30 seconds (the error says how many)',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'name of the agent that gives the items', aim: 'uses' },
     { name: 'item', type: 'string', description: 'name of the item' },
     { name: 'num', type: 'number', description: 'how many; 1 if left out' }

@@ -11,7 +11,6 @@ module.exports = {
     'such as [located("diamond", new Vec3(2, -51, -4))]. Hearers may believe claims.',
   fails: 'the text is not one line of at most 256 characters, is empty, or begins with a slash; a claim is invalid, or there are more than 16',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'msg', type: 'string', description: 'what to say', action: ['phrase'] },
     PARAMETER
   ],

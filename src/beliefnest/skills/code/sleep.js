@@ -10,7 +10,6 @@ module.exports = {
   description: 'Go to a bed, sleep in it for a number of ticks, and get up.',
   fails: 'there is no path on foot; there is no bed; somebody lies in it; nobody can sleep in it now',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'bedPosition', type: 'Vec3', description: 'position of the bed', aim: 'uses' },
     { name: 'number', type: 'number', description: 'how many ticks to sleep', default: '100' }
   ],

@@ -94,7 +94,6 @@ module.exports = {
   description: 'Go to the furnace, smelt count of an item with the fuel, wait for it, and take out what was made and what is left.',
   fails: 'there is no path on foot; there is no furnace, or it is in use; you carry fewer items; the fuel does not burn, or it runs out (finished items are taken); the item cannot be smelted',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'itemName', type: 'string', description: 'what to smelt' },
     { name: 'fuelName', type: 'string', description: 'what to burn' },
     { name: 'furnacePos', type: 'Vec3', description: 'position of a furnace, blast furnace or smoker', aim: 'uses' },

@@ -8,7 +8,6 @@ module.exports = {
   description: 'Think something to yourself. Nobody else perceives it.',
   fails: 'the text is not one line of at most 256 characters',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'msg', type: 'string', description: 'the thought' }
   ],
   example: 'await think(bot, "Where is the diamond?")',

@@ -9,7 +9,6 @@ module.exports = {
     'within a number of ticks.',
   fails: 'only for invalid arguments',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'number', type: 'number', description: 'how many ticks at most', default: '100' }
   ],
   example: 'const answer = await waitForChat(bot, 200)',

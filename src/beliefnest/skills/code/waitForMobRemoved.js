@@ -9,7 +9,6 @@ module.exports = {
   description: 'Wait until an entity is gone; fails after timeout seconds (300 if left out).',
   fails: 'the entity is still there at the end',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'entity', type: 'Entity', description: 'an entity, for instance from bot.nearestEntity()' },
     { name: 'timeout', type: 'number', description: 'seconds' }
   ],

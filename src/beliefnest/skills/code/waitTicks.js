@@ -8,7 +8,6 @@ module.exports = {
   description: 'Wait for a number of ticks; 20 are a second.',
   fails: 'only for invalid arguments',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'number', type: 'number', description: 'how many ticks' }
   ],
   example: 'await waitTicks(bot, 20)',

@@ -7,7 +7,6 @@ module.exports = {
   description: 'Call condition at every tick until it returns a true value, and return that value. Fails after a number of ticks.',
   fails: 'the condition did not become true in time, or it throws an error',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'condition', type: '() => any', description: 'function that returns a true value when the wait shall end' },
     { name: 'number', type: 'number', description: 'how many ticks at most', default: '200' }
   ],

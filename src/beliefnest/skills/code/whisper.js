@@ -14,7 +14,6 @@ module.exports = {
   description: `Say something to one other agent alone, in at most ${LONGEST} characters. Nobody else perceives it. Claims as for say.`,
   fails: 'nobody has that name; the text is not one line of at most 256 characters, or is empty; a claim is invalid',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'otherName', type: 'string', description: 'name of the agent that hears it', action: ['agent'] },
     { name: 'msg', type: 'string', description: 'what to say', action: ['phrase'] },
     PARAMETER

@@ -10,7 +10,6 @@ module.exports = {
     'You can also give the facts that it states as claims. An agent that reads the text for the first time may believe them.',
   fails: 'there is no path on foot; there is no sign; the text does not fit on it; the sign did not change; a claim is invalid, or there are more than 16',
   parameters: [
-    { name: 'bot', type: 'Bot', description: 'your own bot' },
     { name: 'position', type: 'Vec3', description: 'position of the sign', aim: 'uses', action: ['sign'] },
     { name: 'lines', type: 'string', description: 'up to 4 lines of at most 45 characters, split by \\n, or a list of lines', action: ['phrase'] },
     PARAMETER

@@ -16,6 +16,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from beliefnest.skills.manifests import skills as all_skills
+
 __all__ = ["MEMORY_BYTES", "Engines", "JavaScriptEngine", "leaves_nothing", "only_acts"]
 
 MEMORY_BYTES = 64 << 20
@@ -82,7 +84,8 @@ class JavaScriptEngine:
         self._context.set_memory_limit(MEMORY_BYTES)
         self._context.set_max_stack_size(_STACK_BYTES)
         self._context.set_time_limit(_SECONDS)
-        given = json.dumps([_words(seed), sorted(skills), username])
+        missing = [each.name for each in all_skills() if not each.scripted]
+        given = json.dumps([_words(seed), sorted(skills), missing, username])
         self.call: Callable[..., Any] = self._context.eval(_text())(given)
         self.skills = frozenset(skills)
         self.names: str = ", ".join(json.loads(self.call("names")))

@@ -1,7 +1,7 @@
-// Scope of programs of the scripted world. The file evaluates to a function of (Vec3, hints, time, skills, username)
-// that returns the functions for Python: again, names, start, take, settle, see, hear. No code here calls Python:
-// Python takes the program's requests after each turn.
-(Vec3, hints, time, skills, username) => {
+// Scope of programs of the scripted world. The file evaluates to a function of (Vec3, hints, time, skills, missing,
+// username), where `missing` are skills without a twin here. That function returns the functions for Python: again,
+// names, start, take, settle, see, hear. No code here calls Python: Python takes the program's requests after each turn.
+(Vec3, hints, time, skills, missing, username) => {
   'use strict'
   const { parse, stringify } = JSON
   const waiting = new Map()
@@ -31,7 +31,9 @@
   }
 
   const failure = (message, more) => Object.assign(new Error(message), more)
-  const refuse = what => { throw failure(`the scripted world has no ${what}; open the nest with world="embedded" for that`, { kind: 'refused' }) }
+  const lacks = what => `the scripted world has no ${what}; open the nest with world="embedded" for that`
+  const refuse = what => { throw failure(lacks(what), { kind: 'refused' }) }
+  const elsewhere = { ...hints.ELSEWHERE, ...Object.fromEntries(missing.map(name => [name, lacks(name)])) }
   const offering = (object, what) => new Proxy(object, {
     get (target, key) {
       if (typeof key === 'symbol' || key === 'then' || key === 'toJSON' || key in target) return target[key]
@@ -158,7 +160,7 @@
   function ended (error) {
     const { message, name, stack, skill = null, reason = null, kind = null, place = '', slip = '' } = error instanceof Error ? error : { message: `the program threw ${shown(error)}` }
     const whole = `${name}: ${message}`
-    const hint = hints.nearName(whole, Object.keys(scope)) + hints.notAwaited(whole, Array.from(waiting.values(), each => each.name))
+    const hint = hints.nearName(whole, Object.keys(scope), elsewhere) + hints.notAwaited(whole, Array.from(waiting.values(), each => each.name))
     done = { ok: false, message: `${message}${hint}${slip}`, name: String(name ?? 'Error'), stack: `${place}${stack ?? ''}`, skill, reason, kind }
   }
 

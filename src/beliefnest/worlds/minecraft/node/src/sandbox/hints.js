@@ -44,12 +44,13 @@ const ELSEWHERE = {
  * Return a hint for a message about an undefined name.
  * @param {string} message message of the error
  * @param {string[]} names names in scope of the program
+ * @param {Object<string, string>} [elsewhere] names that are not in scope, each with its hint
  * @returns {string} a similar name in scope, or the replacement of a name from another system; otherwise empty
  */
-function nearName (message, names) {
+function nearName (message, names, elsewhere = ELSEWHERE) {
   const found = UNDEFINED.exec(message)
   if (found !== null && /^Goal[A-Z]/.test(found[1]) && names.includes('goals')) return `; write goals.${found[1]}`
-  if (found !== null && Object.hasOwn(ELSEWHERE, found[1])) return `; ${ELSEWHERE[found[1]]}`
+  if (found !== null && Object.hasOwn(elsewhere, found[1])) return `; ${elsewhere[found[1]]}`
   const near = found === null ? null : nearest(found[1], names)
   return near === null ? '' : `; did you mean ${near}?`
 }
@@ -65,4 +66,4 @@ function notAwaited (message, under) {
   return ` (${under[0]} had not ended yet: was await forgotten before it?)`
 }
 
-module.exports = { NOT_AWAITED, nearName, notAwaited }
+module.exports = { ELSEWHERE, NOT_AWAITED, nearName, notAwaited }
