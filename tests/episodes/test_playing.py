@@ -64,6 +64,17 @@ def test_who_says_too_much_has_failed() -> None:
         assert (played.success, played.rounds, played.messages) == (False, 2, 4)
 
 
+def test_each_condition_of_an_entry_is_told_as_one_to_reach() -> None:
+    dishes = {"reach": [{"container": [11, 1, 5], "items": {"apple": 1, "bread": 1}}]}
+    never = {"never": [{"agent": "ann", "items": {"apple": 1, "bread": 1}}]}
+    with bn.Episode(task(goal=dishes | never), {}) as played:
+        told = told_episode(played.nest)
+    assert told is not None
+    assert [is_never for _, is_never, _ in told["branches"]["main"]["goal"]] == [False] * 2 + [
+        True
+    ] * 2
+
+
 def test_what_must_never_be_is_checked_at_every_tick() -> None:
     goal = {"never": [{"agent": "ann", "items": {"apple": 1}}]}
     takes_and_returns = """

@@ -9,7 +9,9 @@ import msgspec
 from beliefnest.episodes.decided import Part
 from beliefnest.episodes.record import Branch, EpisodeStart, Keeps, holds_episode, kept_in
 from beliefnest.episodes.task_form import TaskForm
-from beliefnest.errors import StoreError
+from beliefnest.errors import BeliefNestError, StoreError
+from beliefnest.scenarios.goals import Goal
+from beliefnest.scenarios.rules import goal_of
 
 __all__ = ["goal_rows", "round_rows", "told_episode"]
 
@@ -25,14 +27,15 @@ def told_episode(run: Keeps) -> dict[str, Any] | None:
     start, branches = kept_in(run)
     try:
         form = msgspec.convert(start.task, TaskForm)
-    except msgspec.ValidationError as fault:
+        goal = goal_of(form.goal, form.scenario["agents"])
+    except (msgspec.ValidationError, BeliefNestError) as fault:
         raise StoreError(f"the task of the episode in this run cannot be read: {fault}") from None
     return {
         "task": form.name,
         "instance": start.task_seed,
         "start": start.start,
         "rounds": form.rounds,
-        "branches": {name: _branch(form, start, branch) for name, branch in branches.items()},
+        "branches": {name: _branch(form, goal, start, branch) for name, branch in branches.items()},
     }
 
 
@@ -68,12 +71,12 @@ def goal_rows(told: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
             yield {"branch": name, "condition": condition, "never": never, "tick": tick}
 
 
-def _branch(form: TaskForm, start: EpisodeStart, branch: Branch) -> dict[str, Any]:
+def _branch(form: TaskForm, goal: Goal, start: EpisodeStart, branch: Branch) -> dict[str, Any]:
     parts_of_round = len(branch.policies) if form.play == "turns" else 1
     return {
         "policies": branch.policies,
         "goal": [
-            [text, number >= len(form.goal.reach), tick]
+            [text, number >= len(goal.reach), tick]
             for number, (text, tick) in enumerate(branch.goal)
         ],
         "reached": branch.reached,
