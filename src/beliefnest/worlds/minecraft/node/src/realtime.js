@@ -3,6 +3,7 @@
  * Program for remote Minecraft servers: one process with an operator and all bots in real time, driven in the same way
  * as main.js. The embedded world's process opens no sockets and contains none of this code.
  */
+require('./time/ownTime').installOwnTime()
 const { serve } = require('./channel/serving')
 const { RemoteHandler } = require('./remote/remoteHandler')
 

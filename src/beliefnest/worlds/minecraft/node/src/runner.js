@@ -35,7 +35,7 @@ class Runner {
    * Run programs until all have ended.
    * @param {string} name name of the region
    * @param {object} programs code by agent
-   * @param {number} timeoutTicks number of ticks after which running programs are ended
+   * @param {number} timeoutTicks number of ticks, followed by this process, after which running programs are ended
    * @param {object} [senses] PERCEPTS by agent, for the agents whose programs read only percepts
    * @param {{speechTicks: number, remembers: boolean, past: object}} [rules] ticks per utterance; whether calls of
    *   programs are remembered; and PAST by agent, for programs that are resumed
@@ -93,20 +93,22 @@ class Runner {
   // Run ticks until the end. The last tick ends unfinished acts before its frame is made, so that the frame contains
   // their effects.
   async untilEnded (region, runs, timeoutTicks) {
-    let lastTick = region.tick + timeoutTicks
+    // Ticks that pass elsewhere while this process does not run count as one: no program can use them.
+    let left = timeoutTicks
     let over = false
     const look = async () => {
       region.faults = region.faults.filter(fault => !this.blame(region, runs, fault))
       for (const run of runs) await this.bringToRest(region, run)
-      over = runs.some(({ crash }) => crash !== null) || runs.every(({ rests }) => rests) || region.tick >= lastTick
+      over = runs.some(({ crash }) => crash !== null) || runs.every(({ rests }) => rests) || left <= 0
       if (!over) return
       await this.endAll(region, runs, timeoutTicks)
       for (const run of runs) await this.breakOff(region, run)
       await this.regions.bodies.finish(region, runs.map(({ agent }) => agent))
     }
     while (!over) {
+      left -= 1
       const changed = await this.regions.tick(region, look)
-      if (!over && !await this.look(region, runs, changed)) lastTick = region.tick
+      if (!over && !await this.look(region, runs, changed)) left = 0
     }
   }
 

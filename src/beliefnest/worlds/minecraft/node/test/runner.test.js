@@ -1,7 +1,9 @@
 'use strict'
 const assert = require('node:assert/strict')
+const { once } = require('node:events')
 const { after, before, describe, it } = require('node:test')
 const { agent, floor, Node, region, THREE } = require('./harness')
+const { Runner } = require('../src/runner')
 
 describe('programs', () => {
   let node
@@ -226,5 +228,40 @@ describe('programs', () => {
     const { tick, results } = await run({ sally: 'await bot.pathfinder.goto(new goals.GoalNear(300, -51, 300, 0))' }, 400)
     assert.ok(tick <= 400)
     assert.equal(results.sally.ok, false)
+  })
+})
+
+describe('limits of programs where ticks pass by themselves', () => {
+  /** Run a program that takes a number of ticks of this process, while `jump` ticks pass in each. Return its result. */
+  async function run (needed, jump, timeoutTicks) {
+    const region = { tick: 0, faults: [], body: () => ({ bot: bodiless }) }
+    let turns = 0
+    const { promise, resolve } = Promise.withResolvers()
+    const regions = {
+      get: () => region,
+      clock: { advance: () => new Promise(setImmediate) },
+      bodies: { rest: async () => {}, stand: async () => true, finish: async () => {} },
+      resumed: async (_, action) => { await action(); return { tick: region.tick } },
+      async tick (_, before) {
+        region.tick += jump
+        if (++turns === needed) resolve({ ok: true, error: null, lines: [], log: [], unfinished: [] })
+        await new Promise(setImmediate)
+        await before()
+      }
+    }
+    const ended = ({ signal }) => Promise.race([promise, once(signal, 'abort').then(() => ({ ok: false, error: null, lines: [], log: [], unfinished: [] }))])
+    const { results } = await new Runner(regions, ended, () => ({})).run('/', { sally: '' }, timeoutTicks)
+    return results.sally
+  }
+  const bodiless = { pathfinder: { setGoal () {}, reset () {} }, getControlState: () => false, clearControlStates () {}, deactivateItem () {}, _client: {} }
+
+  it('count the ticks that this process could follow', async () => {
+    const { ok, ticks } = await run(10, 100, 20)
+    assert.deepEqual([ok, ticks], [true, 1000])
+  })
+
+  it('end a program at its limit', async () => {
+    const { error, ticks } = await run(30, 1, 20)
+    assert.deepEqual([error.kind, ticks], ['timeout', 20])
   })
 })

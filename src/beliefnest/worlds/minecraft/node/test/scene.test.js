@@ -22,7 +22,7 @@ function place () {
   const box = new Box([0, 0, 0], [0, 1, 0])
   const told = []
   const recorder = { blockChanged () {}, event: ({ kind, actor, detail }) => told.push([kind, actor, detail.open]) }
-  const region = { box, recorder, tick: 0, toServer: ([x, y, z]) => new Vec3(x, y, z), emit () {} }
+  const region = { box, recorder, tick: 0, followed: 0, toServer: ([x, y, z]) => new Vec3(x, y, z), emit () {} }
   const scene = new Scene(region, new BlockMapping(registry, registry), {}, {}, async () => null)
   scene.settle(Int32Array.from([half('lower', false), half('upper', false)]))
   const witness = new Witness('sally', region, scene, Item)
@@ -51,4 +51,17 @@ test('a bot that is on its way back is where it stood', () => {
   witness.stoodAt = new Vec3(3, 1, 4)
   witness.bot = { entity: undefined }
   assert.deepEqual(witness.position, new Vec3(3, 1, 4))
+})
+
+test('a click is remembered for as many ticks as this process follows', () => {
+  const { witness, witness: { windows, region } } = place()
+  windows.open({ windowId: 1 })
+  windows.opened.own.set(0, { before: null, after: [], at: witness.followed, told: undefined })
+  region.tick += 1000
+  region.followed += 1
+  windows.forgetClicks()
+  assert.equal(windows.opened.own.size, 1)
+  region.followed += 20
+  windows.forgetClicks()
+  assert.equal(windows.opened.own.size, 0)
 })

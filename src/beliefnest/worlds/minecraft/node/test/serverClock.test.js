@@ -1,7 +1,13 @@
 'use strict'
+require('../src/prepare').prepare()
 const assert = require('node:assert/strict')
+const { EventEmitter } = require('node:events')
 const { test } = require('node:test')
+const { Vec3 } = require('vec3')
+const { Operator } = require('../src/remote/operator')
+const { RemotePlace } = require('../src/remote/remotePlace')
 const { ServerClock } = require('../src/remote/serverClock')
+const { Witness } = require('../src/remote/witness')
 
 /** Return a clock and the ticks it shows while the server sends its age at arbitrary times. */
 function following (tellings) {
@@ -34,14 +40,52 @@ test('a server that tells nothing is waited for', () => {
   assert.equal(following([[0, 100], [1000, 120], [60_000, 120]]).at(-1), 139)
 })
 
-test('time in which this process was stopped is not the silence of a server', () => {
+test('ticks that pass between two looks count as one for limits', () => {
   let now = 0
   const clock = new ServerClock(() => now)
   clock.tell(100)
-  now = 60_000
-  assert.ok(!clock.isSilentFor(5000))
-  for (; now < 70_000; now += 100) clock.isSilentFor(5000)
-  assert.ok(clock.isSilentFor(5000))
-  clock.tell(120)
-  assert.ok(!clock.isSilentFor(5000))
+  const before = clock.followed
+  for (let age = 120; age <= 200; age += 20) {
+    for (const end = now + 1000; now < end; now += 5) clock.look()
+    clock.tell(age)
+  }
+  assert.equal(clock.followed - before, 100)
+  // The process is stopped for a minute, and then reads what the server has sent meanwhile.
+  for (let age = 220; age <= 1400; age += 20) clock.tell(age)
+  assert.equal(clock.age, 1400)
+  assert.equal(clock.followed - before, 101)
+})
+
+test('an answer that comes with the ticks of a stop is waited for', async () => {
+  const clock = new ServerClock()
+  const link = Object.assign(new EventEmitter(), { isHere: true, failure: null, closed: false })
+  const operator = new Operator(link, { patience: 30 }, clock)
+  clock.tell(100)
+  let isAnswered = false
+  const waiting = operator.until(() => isAnswered)
+  // The age is read from one connection, and then the answer from another one.
+  clock.tell(1000)
+  setTimeout(() => { isAnswered = true }, 30)
+  assert.ok(await waiting)
+})
+
+test('what the server says long after a stop is still the answer to an attempt before it', () => {
+  let now = 0
+  const clock = new ServerClock(() => now)
+  clock.tell(100)
+  const place = new RemotePlace({ name: '/', box: null, origin: { x: 0, z: 0 }, tick: 0, known: [] }, clock)
+  const witness = new Witness('sally', place, { serv: { players: [] } }, null)
+  const chest = new Vec3(1, 2, 3)
+  witness.use({ location: chest })
+  clock.tell(1000)
+  place.tick = place.now()
+  assert.equal(place.tick, 900)
+  assert.ok(witness.usesNow(chest))
+  assert.ok(witness.hasTried('use', chest))
+  witness.use({ location: chest })
+  for (const end = now + 4000; now < end; now += 5) {
+    if (now % 1000 === 0) clock.tell(1000 + now / 50)
+    clock.look()
+  }
+  assert.ok(!witness.hasTried('use', chest))
 })

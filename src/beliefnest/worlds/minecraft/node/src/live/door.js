@@ -8,6 +8,7 @@ const { TcpEnd } = require('../net/tcpEnd')
 const versions = require('../versions')
 const { Earshot } = require('./earshot')
 const { Gallery } = require('./gallery')
+const { keepAlive } = require('./keepAlive')
 const { Standstill } = require('./standstill')
 const { ease } = require('./visitor')
 const { canGo } = require('./way')
@@ -92,13 +93,16 @@ class Door {
   /** Open the port; 0 chooses any free one. @returns {Promise<number>} the port */
   async listen ({ host, port }) {
     const listening = minecraft.createServer({
-      host, port, version: versions.minecraft, 'online-mode': false, maxPlayers: MOST_CONNECTIONS, motd: 'BeliefNest', hideErrors: true,
+      host, port, version: versions.minecraft, 'online-mode': false, maxPlayers: MOST_CONNECTIONS, motd: 'BeliefNest', hideErrors: true, keepAlive: false,
       // The library would answer with an error object instead of a text.
       errorHandler: client => client.socket.destroy()
     })
     // Run before the library's own listener, which ends such a connection without a message.
     listening.prependListener('connection', client => client.once('set_protocol', asked => refuseVersion(client, asked, listening.mcversion)))
-    listening.on('playerJoin', client => this.greet(client))
+    listening.on('playerJoin', client => {
+      keepAlive(client)
+      this.greet(client)
+    })
     try {
       await once(listening, 'listening')
     } catch (error) {

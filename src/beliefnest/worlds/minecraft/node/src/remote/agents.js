@@ -176,9 +176,9 @@ class Agents {
     const has = () => isDeepStrictEqual(this.look(agent).inventory, sorted(state.inventory))
     const isDone = person === null || this.operator.can('data') ? () => there() && has() : there
     const { operator, operator: { clock } } = this
-    const due = clock.age + PLACING_TICKS
+    const due = clock.followed + PLACING_TICKS
     await person?.ask()
-    while (!await operator.until(isDone, ASKED_EVERY_TICKS) && clock.age < due) await (person?.ask() ?? this.askSlots(agent))
+    while (!await operator.until(isDone, ASKED_EVERY_TICKS) && clock.followed < due) await (person?.ask() ?? this.askSlots(agent))
     if (isDone()) {
       // Set this before any further wait, during which the bot may lose its connection.
       witnesses.get(agent).stoodAt = position().floored()

@@ -7,7 +7,7 @@ const minecraft = require('minecraft-protocol')
 const { OFFLINE, requireName } = require('./accounts')
 const { Translator } = require('../net/translate')
 
-// Milliseconds of silence after which a connection counts as lost.
+// Milliseconds of silence, in this process's own time (time/ownTime.js), after which a connection counts as lost.
 const SILENCE_MS = 30_000
 
 /**

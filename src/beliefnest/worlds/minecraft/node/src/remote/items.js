@@ -28,7 +28,7 @@ class Items {
     const index = this.awaited.findIndex(({ name, count }) => name === stack.name && count === stack.count)
     const number = index < 0 ? this.nextNumber() : this.awaited.splice(index, 1)[0].number
     const by = thrown.findIndex(({ name, count }) => name === stack.name && count === stack.count)
-    const throws = by < 0 ? [] : thrown.splice(by, 1).map(({ agent, count, tick }) => [agent, count, tick])
+    const throws = by < 0 ? [] : thrown.splice(by, 1).map(({ agent, count, at }) => [agent, count, at])
     this.known.set(entity.id, { number, throws })
   }
 

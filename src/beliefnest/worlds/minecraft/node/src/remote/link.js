@@ -72,23 +72,25 @@ class Link extends EventEmitter {
   async spawned (bot, client) {
     const ending = new AbortController()
     const { signal } = ending
+    const { promise: late, reject } = Promise.withResolvers()
     const failed = (event, make) => once(client, event, { signal }).then(args => { throw make(...args) })
     const wait = this.server.accounts === null ? this.server.patience * 1000 : ACCOUNT_MS
-    const late = sleep(wait, null, { signal }).then(() => { throw reasons.unreachable(this.server, `${wait / 1000} s passed before it let ${this.name} in`) })
+    const timer = setTimeout(() => reject(reasons.unreachable(this.server, `${wait / 1000} s passed before it let ${this.name} in`)), wait)
     const refused = packet => reasons.refusal(this.server, this.name, reasonOf(bot, packet.reason))
     const waiting = [
-      once(bot, 'spawn', { signal }), late,
+      once(bot, 'spawn', { signal }),
       ...this.server.accounts === null ? [failed('encryption_begin', () => reasons.onlineMode(this.server))] : [],
       failed('disconnect', refused),
       failed('kick_disconnect', refused),
       failed('end', reason => reasons.unreachable(this.server, `it ended the connection: ${reason}`))
     ]
     try {
-      await Promise.race(waiting)
+      await Promise.race([late, ...waiting])
     } catch (error) {
       // Whatever the wait was for, an error of the connection ends it.
       throw error instanceof reasons.Unplayable ? error : this.broken(error)
     } finally {
+      clearTimeout(timer)
       ending.abort()
       await Promise.allSettled(waiting)
     }

@@ -103,8 +103,8 @@ class Operator {
    * @throws {Unplayable} if the server does not answer within its patience
    */
   async settled () {
-    const due = this.clock.age + this.patienceTicks
-    while (this.clock.age <= due) {
+    const due = this.clock.followed + this.patienceTicks
+    while (this.clock.followed <= due) {
       if (!this.link.isHere) await this.link.present()
       if (await this.hasSettled(this.bot, ANSWER_TICKS)) return
     }
@@ -150,17 +150,17 @@ class Operator {
   }
 
   /**
-   * Wait for an effect in the server's time: for a slow server, or on a slow machine, the wait is longer.
+   * Wait for an effect. For a slow server, or on a slow machine, the wait is longer.
    * @param {() => boolean} condition
-   * @param {number} [ticks] number of server ticks
+   * @param {number} [ticks] number of server ticks that this process follows
    * @returns {Promise<boolean>} true if the condition held before that number of ticks had passed
    * @throws {Unplayable} if the server hangs, or the operator's connection is given up
    */
   async until (condition, ticks = ANSWER_TICKS) {
-    const due = this.clock.age + ticks
+    const due = this.clock.followed + ticks
     while (!condition()) {
       this.requireServer()
-      if (this.clock.age > due) return false
+      if (this.clock.followed > due) return false
       await sleep(POLL_MS)
     }
     return true
@@ -171,7 +171,7 @@ class Operator {
     const { link, server, clock } = this
     if (link.failure !== null) throw link.failure
     if (link.closed) throw reasons.left(server, link.name)
-    if (link.isHere && clock.isSilentFor(server.patience * 1000)) throw reasons.stalled(server, server.patience)
+    if (link.isHere && clock.silence > server.patience * 1000) throw reasons.stalled(server, server.patience)
   }
 
   /**

@@ -43,7 +43,7 @@ class People {
 
   /** Listen to the operator's connection. */
   attach (bot) {
-    bot.on('entitySwingArm', ({ username }) => this.here.get(username)?.swing(this.region.tick))
+    bot.on('entitySwingArm', ({ username }) => this.here.get(username)?.swing(this.region.followed))
     bot.on('chat', (speaker, text) => this.said(speaker, text))
   }
 
@@ -58,7 +58,7 @@ class People {
    * @returns {object | null}
    */
   whoActed (position) {
-    return this.nearest(position, person => person.mayHaveActedOn(position, this.region.tick))
+    return this.nearest(position, person => person.mayHaveActedOn(position, this.region.followed))
   }
 
   /**

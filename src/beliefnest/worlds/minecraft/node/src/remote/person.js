@@ -56,8 +56,8 @@ class Person {
     return this.entity.position.offset(0, EYE_HEIGHT, 0)
   }
 
-  swing (tick) {
-    this.swungAt = tick
+  swing (now) {
+    this.swungAt = now
   }
 
   /**
@@ -75,8 +75,8 @@ class Person {
   }
 
   /** Return true if they may just have used, mined or placed the block. */
-  mayHaveActedOn (position, tick) {
-    return tick - this.swungAt <= SWUNG_WITHIN && this.offAim(position) <= AIM
+  mayHaveActedOn (position, now) {
+    return now - this.swungAt <= SWUNG_WITHIN && this.offAim(position) <= AIM
   }
 
   /** Return true if an item that appears at a position may come from their hand. */

@@ -23,6 +23,11 @@ class RemotePlace extends Place {
     this.start = this.clock.age - tick
   }
 
+  /** Return the number of ticks that this process has followed, for limits (serverClock.js). @returns {number} */
+  get followed () {
+    return this.clock.followed
+  }
+
   /** Return the tick of the server's present age. @returns {number} */
   now () {
     return Math.max(this.tick, this.clock.age - this.start)

@@ -54,7 +54,7 @@ class RemoteRegions {
 
   /** Return the function with which skills wait for ticks of the server (bots/ticking.js). @returns {Function} */
   waitOf (region, bot, ended) {
-    return waitFor(bot, () => region.now(), ended)
+    return waitFor(bot, () => region.followed, ended)
   }
 
   /** Return the region. @throws {BadRequest} if there is no such region */

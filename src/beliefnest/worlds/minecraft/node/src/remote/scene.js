@@ -123,7 +123,7 @@ class Scene {
       if (after.name === 'barrel' && before.properties.open !== properties.open) this.lids.moved(position, Number(properties.open))
       if (BY_HAND.test(after.name) && before.properties.open !== properties.open) this.usedDoor(position, after)
     } else if (after.name === 'air' || after.name === 'water') {
-      this.mined.push({ position: vecOf(position), tick: this.region.tick })
+      this.mined.push({ position: vecOf(position), at: this.region.followed })
       this.did(this.whoTried('dig', position), position, 'mine_block', { ...detail, block: this.states.text(before.stateId) })
     } else {
       this.placed(position, after)
@@ -149,15 +149,15 @@ class Scene {
    * call it if nobody is.
    */
   explainLater (position, tell) {
-    this.unexplained.push({ position: vecOf(position), tick: this.region.tick, tell })
+    this.unexplained.push({ position: vecOf(position), at: this.region.followed, tell })
   }
 
   explain () {
-    const now = this.region.tick
-    this.unexplained = this.unexplained.filter(({ position, tick, tell }) => {
+    const now = this.region.followed
+    this.unexplained = this.unexplained.filter(({ position, at, tell }) => {
       const who = this.people.whoActed(position)
       if (who !== null) tell(who)
-      return who === null && now - tick <= SWINGS_WITHIN
+      return who === null && now - at <= SWINGS_WITHIN
     })
   }
 
@@ -198,15 +198,15 @@ class Scene {
 
   /** Attribute an item to a person if no bot threw it and it is not the drop of a mined block. */
   thrownByPerson ({ position }, { name, count }) {
-    const now = this.region.tick
-    const isMined = this.mined.some(({ position: place, tick }) => now - tick <= FALLS_WITHIN && place.offset(0.5, 0.5, 0.5).distanceTo(position) <= 1)
+    const now = this.region.followed
+    const isMined = this.mined.some(({ position: place, at }) => now - at <= FALLS_WITHIN && place.offset(0.5, 0.5, 0.5).distanceTo(position) <= 1)
     const agent = isMined ? null : this.people.whoThrew(position)
-    if (agent !== null) this.thrown.push({ agent, name, count, tick: now })
+    if (agent !== null) this.thrown.push({ agent, name, count, at: now })
   }
 
   /** Remember words that an agent has sent; they are recorded when they are heard. */
   expect (words) {
-    this.expected.push({ ...words, tick: this.region.tick })
+    this.expected.push({ ...words, at: this.region.followed })
   }
 
   /** Handle a line that a player received; agent `null` is the operator. */
@@ -222,7 +222,7 @@ class Scene {
   /** Return true if all words of agents have been heard or given up, and no container is being checked. */
   get isQuiet () {
     if (!this.lids.isQuiet) return false
-    this.expected = this.expected.filter(({ tick }) => this.region.tick - tick <= UNHEARD_AFTER)
+    this.expected = this.expected.filter(({ at }) => this.region.followed - at <= UNHEARD_AFTER)
     return this.expected.length === 0
   }
 
@@ -252,15 +252,15 @@ class Scene {
     if (receiver === undefined || item === null) return
     const { by, left } = without(this.items.throwsOf(collectedEntityId), pickupItemCount)
     this.items.setThrows(collectedEntityId, left)
-    handOver([...this.witnesses.values()], this.region.tick, receiver, by, item)
+    handOver([...this.witnesses.values()], this.region.followed, receiver, by, item)
   }
 
   endTick () {
     for (const witness of this.witnesses.values()) witness.endTick()
     this.explain()
     for (const { who, kind, detail } of this.deeds.splice(0)) who.emitEvent({ kind, detail })
-    this.thrown = this.thrown.filter(({ tick }) => this.region.tick - tick <= UNHEARD_AFTER)
-    this.mined = this.mined.filter(({ tick }) => this.region.tick - tick <= FALLS_WITHIN)
+    this.thrown = this.thrown.filter(({ at }) => this.region.followed - at <= UNHEARD_AFTER)
+    this.mined = this.mined.filter(({ at }) => this.region.followed - at <= FALLS_WITHIN)
     this.lids.endTick()
   }
 }

@@ -6,12 +6,10 @@
 const TICK_MS = 50
 // A vanilla server sends its age every 20 ticks.
 const TELLS_EVERY = 20
-// Largest time, in milliseconds, that counts between two checks of whether the server is silent.
-const MOST_BETWEEN_LOOKS = 1000
 
 class ServerClock {
   /**
-   * @param {() => number} now returns milliseconds
+   * @param {() => number} now returns milliseconds of this process's own time (time/ownTime.js)
    */
   constructor (now = () => performance.now()) {
     this.now = now
@@ -21,8 +19,7 @@ class ServerClock {
     this.tickMs = TICK_MS
     this.offset = 0
     this.latest = 0
-    this.waited = 0
-    this.lookedAt = now()
+    this.seen = 0
   }
 
   /** Set the age that the server sent. If it has decreased, the server was set up anew; count on from here. */
@@ -31,7 +28,6 @@ class ServerClock {
     if (this.told !== null && age > this.told) this.tickMs = Math.max(TICK_MS, this.silence / (age - this.told))
     this.told = age
     this.toldAt = this.now()
-    this.waited = 0
   }
 
   /** Return true if the server has ever sent its age. */
@@ -44,22 +40,28 @@ class ServerClock {
     return this.now() - this.toldAt
   }
 
-  /**
-   * Return true if the server has been silent for a number of milliseconds, measured by repeated calls. Time in which
-   * this process itself was stopped does not count.
-   */
-  isSilentFor (milliseconds) {
-    const now = this.now()
-    this.waited += Math.min(now - this.lookedAt, MOST_BETWEEN_LOOKS)
-    this.lookedAt = now
-    return this.waited > milliseconds
+  get age () {
+    this.look()
+    return this.latest
   }
 
-  get age () {
-    if (this.told === null) return this.latest
+  /**
+   * Return the number of ticks that this process has followed. Ticks that pass between two looks at the clock count as
+   * one. Limits are counted in these ticks, because a process without a processor sees neither the ticks that pass nor
+   * the answers that arrive in them.
+   */
+  get followed () {
+    this.look()
+    return this.seen
+  }
+
+  look () {
+    if (this.told === null) return
     const passed = Math.min(Math.floor(this.silence / this.tickMs), TELLS_EVERY - 1)
-    this.latest = Math.max(this.latest, this.told + this.offset + passed)
-    return this.latest
+    const age = this.told + this.offset + passed
+    if (age <= this.latest) return
+    this.latest = age
+    this.seen += 1
   }
 }
 

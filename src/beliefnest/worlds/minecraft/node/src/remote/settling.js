@@ -66,8 +66,8 @@ class ByWaiting {
     const hear = (_, position) => { isSaid ||= position === 'system' }
     bot.on('messagestr', hear)
     bot._client.chat(`/${command}`)
-    const due = this.clock.age + SILENT_TICKS
-    while (!isSaid && !bot._client.ended && this.clock.age < due) await sleep(POLL_MS)
+    const due = this.clock.followed + SILENT_TICKS
+    while (!isSaid && !bot._client.ended && this.clock.followed < due) await sleep(POLL_MS)
     bot.off('messagestr', hear)
     this.done += 1
   }
@@ -80,8 +80,8 @@ class ByWaiting {
       const { done } = this
       if (!await until(() => isTyped || this.done > done, ticks)) return false
     }
-    const due = this.clock.age + TICKS
-    return until(() => this.clock.age >= due, ticks)
+    const due = this.clock.followed + TICKS
+    return until(() => this.clock.followed >= due, ticks)
   }
 }
 

@@ -19,7 +19,7 @@ const ANSWERED_WITHIN = 20
 class Windows {
   /**
    * @param {object} witness witness of the agent: `emitEvent`, `countAct`, `threw(item)`, `lookedAt()` for the block
-   *   it used last, `tick`
+   *   it used last, `followed`
    * @param {object} scene `at(position)`, `halvesAt(position)`, `contents`
    * @param {object} Item Item class of the version
    */
@@ -125,8 +125,8 @@ class Windows {
    */
   forgetClicks () {
     const { opened, witness } = this
-    for (const [slot, { tick, told }] of opened.own) {
-      if (witness.tick - tick <= ANSWERED_WITHIN) continue
+    for (const [slot, { at, told }] of opened.own) {
+      if (witness.followed - at <= ANSWERED_WITHIN) continue
       opened.own.delete(slot)
       if (told === undefined || equal(told, opened.slots[slot])) continue
       const set = () => { opened.slots[slot] = told }
@@ -158,7 +158,7 @@ class Windows {
     for (const { location } of changedSlots) {
       const clicks = opened.own.get(location) ?? { before: before.slots[location] ?? null, after: [] }
       clicks.after.push(opened.slots[location] ?? null)
-      clicks.tick = this.witness.tick
+      clicks.at = this.witness.followed
       clicks.told = undefined
       opened.own.set(location, clicks)
     }

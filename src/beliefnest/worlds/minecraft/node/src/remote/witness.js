@@ -31,7 +31,7 @@ class Witness extends EventEmitter {
     this.bot = null
     // The person who plays this agent, visible only to the operator; null if a bot does.
     this.person = null
-    // Latest attempts on blocks: {position, tick, kind}, the latest first.
+    // Latest attempts on blocks: {position, at, kind}, the latest first; `at` is in ticks that the region followed.
     this.tries = []
     this.used = null
     this.usedAt = -Infinity
@@ -41,8 +41,8 @@ class Witness extends EventEmitter {
     reports.player(this, scene.serv)
   }
 
-  get tick () {
-    return this.region.tick
+  get followed () {
+    return this.region.followed
   }
 
   /** Return the agent's position; for a bot that is reconnecting, its last one. */
@@ -74,15 +74,15 @@ class Witness extends EventEmitter {
   }
 
   try (kind, position) {
-    this.tries.unshift({ kind, position, tick: this.region.tick })
-    this.tries = this.tries.filter(({ tick }) => this.region.tick - tick <= ANSWERED_WITHIN)
+    this.tries.unshift({ kind, position, at: this.followed })
+    this.tries = this.tries.filter(({ at }) => this.followed - at <= ANSWERED_WITHIN)
   }
 
   /**
    * Return true if this agent attempted this kind of act at the position a moment ago; the attempt is then used up.
    */
   hasTried (kind, position) {
-    const index = this.tries.findIndex(each => each.kind === kind && each.position.equals(position) && this.region.tick - each.tick <= ANSWERED_WITHIN)
+    const index = this.tries.findIndex(each => each.kind === kind && each.position.equals(position) && this.followed - each.at <= ANSWERED_WITHIN)
     if (index < 0) return false
     this.tries.splice(index, 1)
     return true
@@ -93,7 +93,7 @@ class Witness extends EventEmitter {
    * block's contents.
    */
   usesNow (position) {
-    return this.windows.shows(position) || (this.used !== null && this.used.equals(position) && this.region.tick - this.usedAt <= ANSWERED_WITHIN)
+    return this.windows.shows(position) || (this.used !== null && this.used.equals(position) && this.followed - this.usedAt <= ANSWERED_WITHIN)
   }
 
   dig ({ status, location }) {
@@ -105,12 +105,12 @@ class Witness extends EventEmitter {
 
   use ({ location }) {
     this.used = vecOf(location)
-    this.usedAt = this.region.tick
+    this.usedAt = this.followed
     this.try('use', this.used)
   }
 
   threw (item) {
-    this.scene.thrown.push({ agent: this.agent, name: item.name, count: item.count, tick: this.region.tick })
+    this.scene.thrown.push({ agent: this.agent, name: item.name, count: item.count, at: this.followed })
   }
 
   command (command) {
