@@ -2,15 +2,24 @@
 
 A fork copies an open run file, the connection to Node and their locks into the child. SQLite
 forbids such use (https://www.sqlite.org/howtocorrupt.html, section 2.6), and two processes that
-write to one connection mix up their messages.
+write to one connection mix up their messages. What is in memory only would go apart: parent and
+child would each see its own changes.
 """
 
 import os
+from typing import ClassVar, Self, cast
 from weakref import WeakSet
 
 from beliefnest.errors import ForkedError
 
-__all__ = ["Owned"]
+__all__ = ["Barred", "Owned", "is_own"]
+
+
+def _refusal(what: str, owner: int) -> ForkedError:
+    return ForkedError(
+        f"{what} was opened by process {owner} and cannot be used in process {os.getpid()}, which "
+        "was forked from it; open it in the process that uses it, or start processes by 'spawn'"
+    )
 
 
 class Owned:
@@ -35,22 +44,57 @@ class Owned:
             ForkedError: Another process created the object.
         """
         if not self.is_own:
-            raise ForkedError(
-                f"{what} was opened by process {self._owner} and cannot be used in process "
-                f"{os.getpid()}, which was forked from it; open it in the process that uses it, "
-                "or start processes by 'spawn'"
-            )
+            raise _refusal(what, self._owner)
 
     def disown(self) -> None:
         """Release inherited resources in a forked child."""
 
 
+class Barred:
+    """Base class of objects whose attributes are refused in a forked child, except `close`.
+
+    The fork itself bars them in the child, so that no use needs a check. Copies are barred too.
+    """
+
+    _called: ClassVar[str]
+    """Name of the object in messages."""
+
+    _opened_by: ClassVar[int | None] = None
+    """In a forked child, the process that created the object."""
+
+    def __new__(cls, *_: object, **__: object) -> Self:
+        """Create the object, and note that a fork bars it."""
+        made = super().__new__(cls)
+        _to_bar.add(made)
+        return made
+
+
+def is_own(barred: Barred) -> bool:
+    """Return True if this process created an object; False in a forked child."""
+    return type(barred)._opened_by is None
+
+
+def _refuse(barred: Barred, name: str) -> object:
+    if name == "close" or name.startswith("__"):
+        return object.__getattribute__(barred, name)
+    kind = type(barred)
+    raise _refusal(kind._called, cast(int, kind._opened_by))
+
+
 _all: WeakSet[Owned] = WeakSet()
+_to_bar: WeakSet[Barred] = WeakSet()
+_process = os.getpid()
 
 
 def _disown_all() -> None:
+    global _process  # noqa: PLW0603 - each process has its own
     for each in list(_all):
         each.disown()
+    for barred in filter(is_own, list(_to_bar)):
+        kind = type(barred)
+        barring = {"__getattribute__": _refuse, "_opened_by": _process}
+        barred.__class__ = type(kind.__name__, (kind,), barring)
+    _process = os.getpid()
 
 
 if hasattr(os, "register_at_fork"):

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import textwrap
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -38,11 +39,13 @@ def in_child(act: Callable[[], object]) -> str:
     return told
 
 
-@pytest.fixture(params=["scripted", "embedded"])
+@pytest.fixture(params=["scripted", "embedded", "memory"])
 def nest(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[bn.Nest]:
-    """A nest with a run file, and a belief in control mode."""
+    """A nest with a belief in control mode; with a run file, except `memory`."""
     scenario = bn.Scenario.load("sally-anne", 3)
-    with bn.Nest.open(scenario, world=request.param, store=tmp_path / "run.bn") as opened:
+    in_memory = request.param == "memory"
+    world, store = ("scripted", None) if in_memory else (request.param, tmp_path / "run.bn")
+    with bn.Nest.open(scenario, world=world, store=store) as opened:
         opened["/sally"].switch("plan")
         yield opened
 
@@ -59,6 +62,8 @@ ACTS: dict[str, Callable[[bn.Nest], object]] = {
     "programs": lambda nest: nest.programs(),
     "play": lambda nest: nest.play(),
     "tick": lambda nest: nest.tick,
+    "branch": lambda nest: nest["/sally"].branch,
+    "seed": lambda nest: nest.seed,
 }
 
 
@@ -82,9 +87,11 @@ def test_parent_goes_on_after_a_child_tried_everything(nest: bn.Nest, tmp_path: 
     assert result.ok, result.error
     assert nest.tick == before
     assert nest["/"].run("anne", "think(bot, 'still here')").ok
+    assert [program.ok for program in nest.programs()] == [True, True]
     nest.close()
-    with bn.Nest.read(tmp_path / "run.bn") as again:
-        assert [program.ok for program in again.programs()] == [True, True]
+    if (tmp_path / "run.bn").exists():
+        with bn.Nest.read(tmp_path / "run.bn") as again:
+            assert [program.ok for program in again.programs()] == [True, True]
 
 
 def test_a_child_that_ends_by_itself_ends_nothing_of_its_parent(tmp_path: Path) -> None:
@@ -220,3 +227,63 @@ def test_episodes_are_refused(tmp_path: Path) -> None:
         assert asked.read_text() == before, "a policy was asked in the child"
         assert in_child(episode.close) == "done"
         episode.play(rounds=1)
+
+
+def test_scripted_worlds_are_refused() -> None:
+    world = bn.ScriptedWorld(((0, 0, 0), (4, 4, 4)), agents={"anne": (1.5, 1, 1.5)})
+    copied = world.again()
+    for act in (
+        lambda: world.say("anne", "hello"),
+        lambda: world.step(1),
+        world.snapshot,
+        lambda: world.agents,
+        world.tick,
+        copied.step,
+    ):
+        told = in_child(act)
+        assert told.startswith("ForkedError: the scripted world was opened by process ")
+
+    def fork_again() -> None:
+        raise RuntimeError(in_child(world.step))
+
+    assert f"was opened by process {os.getpid()} and" in in_child(fork_again)
+
+    def make_anew() -> None:
+        bn.ScriptedWorld(((0, 0, 0), (4, 4, 4))).step(1)
+
+    assert in_child(make_anew) == "done"
+    world.step(1)
+    assert world.now == 1
+
+
+def test_imagined_histories_are_refused() -> None:
+    with bn.Nest.open(bn.Scenario.load("sally-anne", 3), world="scripted") as nest:
+        nest.scripted_world.step(5)
+        imagined = nest["/sally"].imagine(0, actors={"anne": {"idle": ""}}, n=2)
+        history = imagined[0]
+        simulator = history.fork()
+        for act in (
+            lambda: imagined.weights,
+            lambda: imagined[0],
+            lambda: imagined.share({"agent": "anne", "items": {}}),
+            lambda: history.candidates,
+            lambda: history.state,
+            lambda: history.at(1),
+            lambda: simulator.state,
+            lambda: simulator.run("sally", "think(bot, 'here')"),
+        ):
+            assert in_child(act).startswith("ForkedError: ")
+        assert simulator.run("sally", "think(bot, 'here')").ok
+
+
+def test_environments_are_refused() -> None:
+    pytest.importorskip("pettingzoo", reason="the extra `pettingzoo` is not installed")
+    from beliefnest.adapters.pettingzoo import parallel_env
+
+    env = parallel_env("sally-anne", world="scripted")
+    with closing(env):
+        env.reset(seed=3)
+        assert in_child(lambda: env.step({})).startswith("ForkedError: ")
+        assert in_child(env.state).startswith("ForkedError: ")
+        assert in_child(env.close) == "done"
+        env.state()

@@ -15,6 +15,7 @@ from beliefnest.nest.face.given import check_branch_name, tick_of, whole
 from beliefnest.nest.face.history_starts import Starts
 from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
 from beliefnest.nest.past.recording import Recording
+from beliefnest.owned import Barred
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.words import counted
@@ -41,7 +42,7 @@ class Faces:
     live: Callable[[Recording], Any]
 
 
-class History:
+class History(Barred):
     """Possible course of events, as a branch that is not recorded.
 
     Belief paths are those inside the history: `/` is its world, `/bob` is Bob's belief in it.
@@ -50,6 +51,8 @@ class History:
         number: Number of the history among those that were drawn.
         weight: Probability of the history, given that one of the drawn ones is true.
     """
+
+    _called = "the imagined history"
 
     def __init__(self, imagined: "Imagined", number: int, particle: Particle) -> None:
         self.number, self.weight = number, particle.weight
@@ -134,7 +137,7 @@ class History:
         return f"<history {self.number}, weight {self.weight:.3g}, tick {self.tick}: {names}>"
 
 
-class Imagined:
+class Imagined(Barred):
     """Weighted histories of a simulator, drawn by `imagine`.
 
     If no history agrees with the percepts, `impossible` names the tick at which the last ones
@@ -147,6 +150,8 @@ class Imagined:
         impossible: When and why the last ones stopped agreeing; None: some agree.
         log_evidence: Estimated natural logarithm of the probability of the percepts.
     """
+
+    _called = "the set of imagined histories"
 
     def __init__(
         self,

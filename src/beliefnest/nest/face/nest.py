@@ -22,6 +22,7 @@ from beliefnest.nest.face.visiting import Visiting
 from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.unique import unique_items
+from beliefnest.owned import is_own
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.run_records import Senses
@@ -176,9 +177,8 @@ class Nest(Joining, Visiting):
 
     def close(self) -> None:
         """End the world and close the store. Do nothing in a forked child: its parent owns them."""
-        turn = self._recording.turn
-        if turn.is_own:
-            with turn:
+        if is_own(self._recording):
+            with self._recording.turn:
                 self._engine.close()
 
     @property

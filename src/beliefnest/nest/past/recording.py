@@ -17,6 +17,7 @@ from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.nest.past.turn import Turn
 from beliefnest.nest.past.views import LiveState
+from beliefnest.owned import Barred, is_own
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import Records, RunJournal
@@ -27,7 +28,7 @@ from beliefnest.world.values import Box
 __all__ = ["Recording", "read_recording"]
 
 
-class Recording:
+class Recording(Barred):
     """Timelines and states of one nest.
 
     Attributes:
@@ -41,6 +42,8 @@ class Recording:
         world: Name of the world in which the nest was opened.
         remembered: Caches of readers, by keys of their own.
     """
+
+    _called = "the nest"
 
     def __init__(
         self,
@@ -176,7 +179,7 @@ class Recording:
 
         Do nothing in a forked child: the journal belongs to its parent.
         """
-        if not self.turn.is_own:
+        if not is_own(self):
             return
         try:
             # Without these checkpoints the run reads the same, only more slowly.

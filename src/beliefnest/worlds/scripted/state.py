@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError, WorldError
+from beliefnest.owned import Barred
 from beliefnest.world.frames import BlockGrid, PlainClaims
 from beliefnest.world.limits import items_fault
 from beliefnest.world.registry import AIR, Registry
@@ -34,7 +35,7 @@ from beliefnest.worlds.scripted.facts import (
 __all__ = ["ScriptedState"]
 
 
-class ScriptedState:
+class ScriptedState(Barred):
     """Facts of a scripted world, with access to single parts.
 
     Args:
@@ -43,6 +44,8 @@ class ScriptedState:
     Raises:
         WorldError: The box is invalid.
     """
+
+    _called = "the scripted world"
 
     def __init__(self, box: tuple[Position, Position]) -> None:
         self._registry = Registry.load()
