@@ -38,7 +38,7 @@ class Basis:
     """The ground of an entry.
 
     Attributes:
-        observed_at: The last tick at which the value was current: now, while it still is.
+        observed_at: The last tick at which the value was current; if it still is, the present tick.
         source: Kind of ground.
         event: The kind of the event that was witnessed or heard, if it was one.
         speaker: Name of the speaker, if the value was heard from somebody known.

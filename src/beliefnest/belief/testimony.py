@@ -416,9 +416,10 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
 def believe_located(holdings: Holdings, cell: int, item: str, basis: Basis) -> None:
     """Put one such item into a container and take one out of where it was believed (section 8.2).
 
-    If several containers are believed to hold the item, the one last observed gives it up, and of
-    these the one with the lowest cell. Items left there keep their basis: the claim was not about
-    them. Nothing moves if the claimed container is believed to hold the item already.
+    If several containers are believed to hold the item, the container that was observed last loses
+    it; among several such containers, the one with the lowest cell. Items left there keep their
+    basis: the claim was not about them. Nothing moves if the claimed container is believed to hold
+    the item already.
     """
     content = holdings.containers.get(cell)
     items = {} if content is None else content.items

@@ -131,8 +131,8 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
             found = "another one" if isinstance(of_held, dict) else of_held
             verb = "are" if what == "policies" else "is"
             raise InputError(
-                f"{options.out} holds an episode of which the {what} {verb} {found}; ask for the "
-                "same to go on with it, or name another folder"
+                f"{options.out} holds an episode whose {what} {verb} {found}; give the same to "
+                "continue it, or name another folder"
             )
     return held
 

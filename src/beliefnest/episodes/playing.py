@@ -70,8 +70,8 @@ def play_part_with_people(
 def look_around(nest: Nest) -> None:
     """Let all agents perceive the present state.
 
-    Otherwise times of observation would be updated only at ticks with an event, even an event out
-    of sight, and an agent could infer from them that something happened.
+    Without this call, the times of observation in all beliefs change only at ticks with an event.
+    An agent could then infer from its own times that something happened out of its sight.
     """
     nest["/"].edit()
 

@@ -191,7 +191,7 @@ class Task:
         return goal_of(self.form.goal, self.form.scenario["agents"])
 
     def goal_of(self, agent: str) -> Goal:
-        """Return the goal of an agent; if it helps another agent, the goal of that one."""
+        """Return the goal of an agent; if it helps another agent, that agent's goal."""
         own = self.told_goal(agent)
         return own if own.helps is None else self.told_goal(own.helps)
 

@@ -15,11 +15,11 @@ class TaskForm(EpisodeEntry, frozen=True, kw_only=True):
     name: Annotated[str, msgspec.Meta(description="Short name, for tables and folders.")]
     scenario: Annotated[dict[str, Any], msgspec.Meta(description="As in a scenario file.")]
     goal: Annotated[
-        GoalEntry, msgspec.Meta(description="What makes it a success; the players' goal.")
+        GoalEntry, msgspec.Meta(description="Goal of the players; reaching it is success.")
     ]
     description: Annotated[
-        str, msgspec.Meta(description="What it is about, for people; who plays is not told.")
+        str, msgspec.Meta(description="Description for people; it need not name the players.")
     ] = ""
     pace: Annotated[
-        int, msgspec.Meta(ge=1, le=100, description="Ticks that one block on foot takes.")
+        int, msgspec.Meta(ge=1, le=100, description="Ticks that an agent needs to walk one block.")
     ] = 1

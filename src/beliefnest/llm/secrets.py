@@ -50,9 +50,10 @@ class Secrets:
 
 
 def secrets_in(url: str) -> list[str]:
-    """Return the secrets of a URL: what a client sends for its user, and keys in its query.
+    """Return the secrets of a URL: credentials of its user, and keys in its query.
 
-    These are the password, or else the user name, and both as in HTTP's `Basic` authorization.
+    Credentials are the password (without one, the user name), and the encoded pair of both that
+    HTTP's `Basic` authorization sends.
     """
     parts = urlsplit(url)
     query = (value for name, value in parse_qsl(parts.query) if _SECRET_PARAMETER.search(name))

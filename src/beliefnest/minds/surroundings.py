@@ -74,12 +74,12 @@ class Scene:
         return made
 
     def can_stand(self, cell: Position) -> bool:
-        """Return whether an agent can stand in a cell in any alternative."""
+        """Return True if an agent can stand in a cell in any alternative."""
         box = self.worlds.box
         return cell in box and any(bool(walk[box.index(cell)]) for walk in self._walks)
 
     def has_unknown_floor(self, cell: Position) -> bool:
-        """Return whether the block below a cell is unknown in all alternatives."""
+        """Return True if the block below a cell is unknown in all alternatives."""
         box, below = self.worlds.box, (cell[0], cell[1] - 1, cell[2])
         return below in box and all(
             int(world.blocks[box.index(below)]) < 0 for world in self.worlds.worlds

@@ -68,7 +68,7 @@ def put_labels(labels: Sequence[Label], room: Room) -> list[Put]:
 
 
 def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> list[Put]:
-    """Place labels greedily: first those of `first`, then always the one with the fewest places."""
+    """Place labels greedily: those in `first`, then always the label with the fewest places."""
     room = free.copy()
     waiting = [*first, *(label for label in labels if label not in first)]
     put: list[Put] = []

@@ -93,7 +93,7 @@ class AnswersEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         list[str], note("Texts that an answer in words must not contain.", "[text]")
     ] = []
     reason: Annotated[
-        bool, note("Whether the model is also asked for a reason, which is recorded.", "keep")
+        bool, note("True if the model is also asked for a reason, which is recorded.", "keep")
     ] = False
 
 

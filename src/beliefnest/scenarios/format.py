@@ -165,11 +165,11 @@ class PerceptionEntry(_Entry, frozen=True):
         Literal["global", "sight"] | RadiusEntry, note("Speakers that an agent hears.")
     ] = "global"
     containers: Annotated[
-        Literal["opaque", "transparent"], note("Whether contents are visible from outside.")
+        Literal["opaque", "transparent"], note("Visibility of contents from outside.")
     ] = "opaque"
     transparent_blocks: Annotated[list[str], note("Further blocks that do not block sight.")] = []
     negative_evidence: Annotated[
-        bool, note("Whether seeing an empty place makes a pose believed there unknown.")
+        bool, note("True if seeing an empty place makes a pose believed there unknown.")
     ] = False
     testimony: Annotated[
         Literal["none", "accept", "informed"],
@@ -180,7 +180,7 @@ class PerceptionEntry(_Entry, frozen=True):
         msgspec.Meta(ge=0, description="Ticks out of sight after which a speaker may know better."),
     ] = 100
     sincere: Annotated[
-        bool, note("Whether hearers assume that speakers believe what they say.")
+        bool, note("True if hearers assume that speakers believe what they say.")
     ] = True
     speech_ticks: Annotated[
         int, msgspec.Meta(ge=0, le=1200, description="Ticks needed to say something.")
@@ -192,7 +192,7 @@ class _BelievedContainerEntry(_Entry, frozen=True):
 
     at: Annotated[Position, note("Its position.")]
     items: _ItemsField = {}
-    complete: Annotated[bool, note("Whether these are believed to be all items in it.")] = True
+    complete: Annotated[bool, note("True if these are believed to be all items in it.")] = True
 
 
 class InitialBeliefEntry(_Entry, frozen=True):
@@ -303,11 +303,11 @@ class InferEntry(_Entry, frozen=True):
     step_cost: Annotated[float, note("Cost of a step.")] = 1.0
     stay_cost: Annotated[float, note("Cost of staying.")] = 0.0
     act_cost: Annotated[float, note("Cost of acting on a goal, and of opening.")] = 1.0
-    diagonal: Annotated[bool, note("Whether steps also lead to diagonal neighbours.")] = False
+    diagonal: Annotated[bool, note("True if steps also lead to diagonal neighbours.")] = False
     step_ticks: Annotated[
         int | None, note("Ticks without movement that are one stay; null: by the world.")
     ] = None
-    stays: Annotated[bool, note("Whether ticks without movement are evidence.")] = True
+    stays: Annotated[bool, note("True if ticks without movement are evidence.")] = True
     lapse: Annotated[float, note("Weight that a contradicted alternative keeps.")] = 0.0
     since: Annotated[int, msgspec.Meta(ge=0, description="The first tick that counts.")] = 0
     until: Annotated[
@@ -315,9 +315,9 @@ class InferEntry(_Entry, frozen=True):
         note("The last tick that counts; null: the script's end."),
     ] = None
     ended: Annotated[
-        bool, note("Whether the agent acts on the goal at its place after the last tick.")
+        bool, note("True if the agent acts on the goal at its place after the last tick.")
     ] = False
-    smooth: Annotated[bool, note("Whether credence_now uses later evidence too.")] = False
+    smooth: Annotated[bool, note("True if credence_now uses later evidence too.")] = False
 
 
 class ProbeEntry(_Entry, frozen=True):
@@ -406,7 +406,7 @@ class ScenarioFile(_Entry, frozen=True):
     ] = []
     labels: Annotated[
         bool,
-        note("Whether prompts contain `label` and `looks` of containers."),
+        note("True if prompts contain `label` and `looks` of containers."),
     ] = False
     initial_beliefs: Annotated[list[InitialBeliefEntry], note("Beliefs before the script.")] = []
     script: Annotated[list[StepEntry], note("Steps in the real world, in order.")] = []

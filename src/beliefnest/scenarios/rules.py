@@ -46,7 +46,7 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
 
     goal: Annotated[GoalEntry, note("Goal of the players; it decides about success.")] = GoalEntry()
     goals: Annotated[dict[str, GoalEntry], note("Goals of agents that have other goals.")] = {}
-    goals_known: Annotated[bool, note("Whether every agent knows the goals of the others.")] = True
+    goals_known: Annotated[bool, note("True if every agent knows the goals of the others.")] = True
     possible_goals: Annotated[
         dict[str, dict[str, GoalEntry]],
         note("By agent and name the goals that it may have, as far as the others know."),
@@ -59,7 +59,7 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
     policies: Annotated[dict[str, str], note("Policies of agents that are no players.")] = {}
     talk: Annotated[list[str], note("Agents that may speak.")] = []
     play: Annotated[
-        Literal["together", "turns"], note("Whether programs of a round run together or in turn.")
+        Literal["together", "turns"], note("Order in which the programs of a round run.")
     ] = "together"
     rounds: Annotated[int, msgspec.Meta(ge=1, description="Greatest number of rounds.")] = 10
     round_ticks: Annotated[

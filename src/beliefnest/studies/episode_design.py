@@ -62,7 +62,7 @@ class EpisodeDesign:
     Attributes:
         tasks: Names of built-in tasks or scenarios, or paths of files of either.
         policies: Policies of all players, or mappings from agent to policy. `search` and `infer`
-            stand for these at each of the `orders`; other names are as on the command line.
+            are played at each of the `orders`; other names are as on the command line.
         models: Names of models that play, each at each of the `orders`.
         orders: Orders of Theory of Mind; `omniscient` is an upper bound.
         seeds: Numbers of instances; in the first repeat, they are also the seeds of episodes.
@@ -185,7 +185,7 @@ def policy_named(player: str, order: str) -> str:
 
 
 def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
-    """Return the numbers of instances: `seeds` many from `first` on, or the listed ones.
+    """Return the numbers of instances: the list `seeds`, or `seeds` numbers from `first` on.
 
     Raises:
         InputError: `seeds` is neither a count nor a list of whole numbers.

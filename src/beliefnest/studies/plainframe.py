@@ -100,7 +100,7 @@ def write_parquet(columns: Mapping[str, Typed], file: Path) -> None:
         from pyarrow import parquet
     except ModuleNotFoundError:
         raise MissingExtraError("Parquet files need pyarrow", "study") from None
-    # Without pandas metadata, which would make pandas read other types than plain ones.
+    # Write no pandas metadata: with it, pandas would read back types that are not plain.
     parquet.write_table(
         pyarrow.table({name: _arrow(column) for name, column in columns.items()}), file
     )

@@ -73,8 +73,8 @@ class ProgramRecord:
         step: Index of its step in the scenario's script, from 0; None if it is not part of a
             script.
         kept: True if its effects were recorded; False if the world's process died under it.
-        senses: What it could read. Older files do not say; they are read as `world`.
-        past: What it had done before it was interrupted, if it was resumed; otherwise unset.
+        senses: `world` or `percepts`: what it could read. Older files lack it, which means `world`.
+        past: Its calls before it was interrupted, if it was resumed; otherwise unset.
     """
 
     path: BeliefPath

@@ -198,7 +198,7 @@ def did_to_block(act: _Event) -> str:
 
 
 def kind_words(kind: EventKind | None) -> str:
-    """Return words for an act of which only the kind is known; None: not even that."""
+    """Return words for an act if only its kind is known, or not even its kind (None)."""
     return "an act" if kind is None else EVENT_WORDS[kind].somehow or _plain(kind)
 
 

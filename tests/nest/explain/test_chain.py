@@ -370,7 +370,7 @@ def test_what_the_simulator_around_lost_sight_of():
     told = nest["/a/b"].explain(agent="c")
     missed = told.levels[1].missed
     assert (missed.tick, missed.before, missed.after) == (2, GAP, None)
-    assert lines(told)[-1].endswith("So b missed this: c went out of knowledge.")
+    assert lines(told)[-1].endswith("So b missed this: c became unknown.")
 
 
 def test_a_container_that_is_seen_to_be_gone():

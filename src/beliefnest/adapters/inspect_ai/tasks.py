@@ -38,7 +38,7 @@ def scenario_task(
         conditions: Numbers of conditions; None for all.
         variations: Number of variations to draw; None for the scenario as written.
         world: Name of the world.
-        seed: Seed that selects the variations and, together with a cell, determines its seed.
+        seed: Seed from which the variations are drawn and the seed of each cell is derived.
 
     Raises:
         BeliefNestError: There is no such scenario, or an argument is invalid.

@@ -166,8 +166,8 @@ class Engine:
         for key in keys:
             if self.recording.selected.get(key.path) == key:
                 raise BranchError(
-                    f"{path_text(key.path)} is on branch {key.branch!r}, so that cannot be "
-                    "deleted; switch it to another branch first"
+                    f"{path_text(key.path)} is on branch {key.branch!r}, so this branch cannot "
+                    "be deleted; switch the simulator to another branch first"
                 )
         with self.recording.journal.together():
             for key in keys:
@@ -202,8 +202,8 @@ class Engine:
             timeout_ticks: Ticks after which programs are stopped.
             step: Number of the step of the script; None: the programs are not from the script.
             senses: `world` or `percepts`: what programs can read.
-            past: Pasts of agents whose programs continue interrupted ones. None: none does, and
-                results carry no past for later programs.
+            past: Pasts of agents whose programs continue interrupted ones. None: no program
+                continues another, and results contain no past for later programs.
         """
         rules = self._rules if past is None else replace(self._rules, remembers=True, past=past)
         request = _Request(programs, timeout_ticks, step, senses, rules)

@@ -50,7 +50,7 @@ class Speculation:
 
 
 class SpeculatedBody:
-    """Body that stands for one in which programs have run already. Its only act is to run them."""
+    """Stand-in for a body whose programs have run already. It can only replay their result."""
 
     def __init__(self, speculation: Speculation, sink: Sink) -> None:
         self._speculation = speculation

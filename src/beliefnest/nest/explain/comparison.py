@@ -34,7 +34,7 @@ _MOST = 12
 """Number of differences that a terminal shows; the others are only counted."""
 
 _APART = 0.5
-"""Distance in blocks from which on a believed position is false."""
+"""Smallest distance in blocks at which a believed position counts as false."""
 
 
 class BelievedThings(Protocol):
@@ -193,10 +193,10 @@ def _is_false(thing: Difference) -> bool:
 def are_elsewhere(
     real: npt.NDArray[np.float64], held: npt.NDArray[np.float64]
 ) -> npt.NDArray[np.bool_]:
-    """Return by agent if its believed position is false: half a block or more away.
+    """Return for each agent True if its believed position is at least half a block off.
 
-    A smaller distance is a shuffle on the spot. Angles are not compared: agents turn all the time,
-    and a remembered position makes no statement about them.
+    A smaller distance does not count as a change of place. Angles are not compared: agents turn all
+    the time, and a remembered position makes no statement about them.
 
     Args:
         real: Feet positions, shape (..., 3).

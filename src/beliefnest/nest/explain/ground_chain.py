@@ -72,7 +72,7 @@ class Grounds:
             self.chain = [*moves]
             return
         self._perceive(step, old, self.content, is_moved=bool(moves))
-        # Of a claim that was repeated, the last time counts.
+        # If a claim was repeated, keep only its last utterance.
         said = [_said(each) for each in moves]
         self.chain = [each for each in self.chain if _said(each) not in said] + moves
         self._refute(forest, held)
@@ -153,7 +153,7 @@ class Grounds:
                 )
 
     def _elsewhere(self, step: LogStep, lost: Sequence[str]) -> Iterator[SeenElsewhere]:
-        """Yield the unique items among those `lost` that one entry told to be elsewhere."""
+        """Yield the items among `lost` that are unique and that one entry placed elsewhere."""
         forest = step.forest
         tick, sole = forest.tick, forest.holdings.of(forest.node(self.path)).sole
         for item in lost:
@@ -167,7 +167,7 @@ class Grounds:
                     yield SeenElsewhere(tick, item, where)
 
     def _refute(self, forest: Forest, held: Holdings) -> None:
-        """Date claims whose container the owner now perceives to lack the item."""
+        """Set `refuted` of claims if the owner now perceives that the item is not there."""
         for number, each in enumerate(self.chain):
             if (
                 not isinstance(each, HeardClaim)
@@ -197,9 +197,9 @@ def _said(each: Reason) -> object:
 def mattering(chain: Sequence[Reason], value: Contents, here: Position) -> tuple[Reason, ...]:
     """Return the part of a chain that explains some contents: its last element and what it needs.
 
-    A deposit explains as many items as were put in. A claim explains nothing away that was
-    perceived before it. Of removals the last one of each item matters, if the contents are known to
-    be complete.
+    A deposit explains as many items as were put in. A claim that an item is there does not replace
+    earlier perceptions of this item. If the contents are known to be complete, the last removal of
+    each item is part of the explanation.
 
     Args:
         chain: Grounds and claims in the order in which they came; not empty.

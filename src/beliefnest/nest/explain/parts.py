@@ -252,7 +252,7 @@ class Level:
         missed: The first later change that did not reach the belief. For an element that was never
             known, the reason why it is not perceived now. None: there is none.
         weighed: True if hearers weigh claims (`testimony: informed`).
-        reasons: What the value rests on, in the order in which it came; empty if nothing is known.
+        reasons: Reasons for the value, oldest first; empty if nothing is known.
     """
 
     path: BeliefPath

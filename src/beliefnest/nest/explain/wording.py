@@ -232,7 +232,7 @@ def _change_text(missed: Missed, name: str, level: Level) -> str:
     if how:
         return how
     if missed.after is None:
-        return f"{name} went out of knowledge"
+        return f"{name} became unknown"
     if isinstance(missed.after, str):
         return f"{name} became {missed.after}"
     if isinstance(missed.after, tuple):

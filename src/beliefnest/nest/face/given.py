@@ -31,7 +31,7 @@ def tick_of(value: object) -> int:
 
 
 def check_branch_name(name: object) -> None:
-    """Refuse what can name no branch; BranchError says so."""
+    """Raise BranchError if a value is not a valid branch name."""
     if not isinstance(name, str) or not name or not name.isprintable() or set(name) & set("/[]"):
         raise BranchError(
             f"{name!r} is not a branch name; use printable text without '/', '[' and ']'"

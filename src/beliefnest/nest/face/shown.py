@@ -26,7 +26,7 @@ from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Placements, Position
 from beliefnest.world.words import counted, point_words
 
-if TYPE_CHECKING:  # What draws or infers takes long to import, and few nests are asked to.
+if TYPE_CHECKING:  # Modules for drawing and inference take long to import, and few nests use them.
     from beliefnest.minds.inference import Inference
     from beliefnest.minds.mind_model import MindModel
     from beliefnest.nest.face.histories import Imagined

@@ -420,8 +420,8 @@ class History:
     def _leap(self, key: TimelineKey, forest: Forest, position: int) -> None:
         """Fold a forest that has node 0 alone, without most entries on the way.
 
-        Node 0 perceives nothing: its state is the sum of all changes. Of an agent only the last
-        state counts, which the journal can look up. So the stretch has the entries that change
+        Node 0 perceives nothing: its state is the sum of all changes. Only the last state of an
+        agent matters, and the journal can look it up. So the stretch has the entries that change
         blocks, contents or dropped items, without agents and without events that do not concern
         signs, and then one frame with all agents. Edits at the very end are folded as they are.
         """

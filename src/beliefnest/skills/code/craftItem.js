@@ -50,8 +50,8 @@ async function goToTable (context, craftingTablePos) {
 
 module.exports = {
   name: 'craftItem',
-  description: 'Make at least count of an item from what you carry. What fits into 2 by 2 needs no table: craftingTablePos may be null then.',
-  fails: 'there is no recipe; ingredients are missing (the error lists them); a crafting table is needed, but none is given or there; there is no path to it; the inventory has no room for the product',
+  description: 'Make at least count of an item from what you carry. Recipes that fit into 2 by 2 slots need no table; craftingTablePos may then be null.',
+  fails: 'there is no recipe; ingredients are missing (the error lists them); the recipe needs a crafting table, but craftingTablePos is null or no table stands there; there is no path to it; the inventory has no room for the product',
   parameters: [
     { name: 'name', type: 'string', description: 'name of the item to make' },
     { name: 'craftingTablePos', type: 'Vec3 | null', description: 'position of a crafting table', aim: 'uses' },

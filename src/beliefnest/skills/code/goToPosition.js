@@ -11,7 +11,7 @@ module.exports = {
   fails: 'there is no path on foot (`reason` is `no_way`); you were stopped on the way (the error says where you are)',
   parameters: [
     { name: 'position', type: 'Vec3', description: 'where to go', aim: 'walks', action: ['position'] },
-    { name: 'dist', type: 'number', description: 'how near is near enough, in blocks; 0 is the very block', default: '2', action: 0 }
+    { name: 'dist', type: 'number', description: 'greatest distance at the end, in blocks; 0: stand in exactly this block', default: '2', action: 0 }
   ],
   example: 'await goToPosition(bot, new Vec3(0, -51, -8))',
   async run (context, position, dist = 2, doors = {}) {

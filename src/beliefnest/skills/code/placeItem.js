@@ -49,7 +49,7 @@ module.exports = {
   fails: 'you do not carry the item; the position is not free, or has no solid block beside it; there is no path on foot; somebody stands there',
   parameters: [
     { name: 'name', type: 'string', description: 'name of the item to place' },
-    { name: 'position', type: 'Vec3', description: 'where it is to stand', aim: 'uses' }
+    { name: 'position', type: 'Vec3', description: 'where to place it', aim: 'uses' }
   ],
   example: 'await placeItem(bot, "crafting_table", new Vec3(4, -51, 2))',
   async run (context, name, position) {

@@ -125,7 +125,9 @@ def parameters_from(content: Mapping[str, Any]) -> FilmParameters:
 def _levels(given: object) -> tuple[float, ...]:
     values = [given] if _is_number(given) else given
     if not isinstance(values, list) or not values or not all(map(_is_number, values)):
-        raise InputError(f"parameters: reward_levels are {given!r}; give numbers, or them by goal")
+        raise InputError(
+            f"parameters: reward_levels are {given!r}; give a list of numbers, or one for each goal"
+        )
     return tuple(map(float, values))
 
 
@@ -156,8 +158,8 @@ class _Reader:
     Args:
         owner: The film, in messages.
         world: The world that it is set in.
-        entry: What the film says.
-        said: What film, world and file say together.
+        entry: Keys of the film.
+        said: Keys of the film; missing ones come from its world, then from the file.
     """
 
     def __init__(
@@ -280,8 +282,9 @@ class _Reader:
     ) -> dict[str, str | None]:
         """Return the contents of the places that are not in doubt.
 
-        Goals that nothing else places stand there in order; without such goals each place holds
-        one of its own, named after it.
+        The file names the contents of some places. The goals that stand at no such place are
+        distributed over the other places in order. If there are none, each other place holds a goal
+        with the name of the place.
         """
         known: dict[str, str | None] = {}
         silent = []
@@ -296,11 +299,11 @@ class _Reader:
         left = [goal for goal in goals if goal not in used]
         if left and len(left) < len(silent):
             raise self.fault(
-                f"{' and '.join(silent)} hold {', '.join(left)} in an order that nothing tells; "
-                f"say true_{silent[0]}"
+                f"{' and '.join(silent)} hold {', '.join(left)}, but the file does not say "
+                f"which place holds which; add true_{silent[0]}"
             )
         if len(left) > len(silent) > 0:
-            raise self.fault(f"{', '.join(left)} may each be at {silent[0]}; say true_{silent[0]}")
+            raise self.fault(f"{', '.join(left)} may each be at {silent[0]}; add true_{silent[0]}")
         known.update(zip(silent, left or silent, strict=False))
         return {place: known[place] for place in places}
 
@@ -409,7 +412,7 @@ class _Reader:
         return [by_contents.get(chunk, chunk) for chunk in chunks]
 
     def spelled(self, words: Iterable[str], names: Iterable[str]) -> list[str] | None:
-        """Return the names that words are made of; None: they are not."""
+        """Split words into names and return these; None if a word does not consist of names."""
         longest_first = sorted(names, key=len, reverse=True)
         pattern = re.compile("|".join(map(re.escape, longest_first)))
         found: list[str] = []
@@ -431,7 +434,7 @@ class _Reader:
         return [None if value is None else float(value) for value in values]
 
     def normalised(self, key: str, ratings: Sequence[float | None]) -> list[float | None]:
-        """Return ratings from 1 to 7 as the published ones: less 1, and summing to 1."""
+        """Return ratings from 1 to 7, normalised as published: minus 1, divided by their sum."""
         shares = [0.0 if rating is None else rating - 1 for rating in ratings]
         if min(shares) < 0 or sum(shares) <= 0:
             raise self.fault(f"human.{key} has no ratings from 1 to 7; let one be above 1")
@@ -522,7 +525,7 @@ def _groups(given: object) -> dict[str, str]:
 def _list(given: object, owner: str, key: str) -> list[Any]:
     if not isinstance(given, list) or not given:
         raise InputError(
-            f"{owner} has no list of {key}, as files of films in the form of the food trucks have"
+            f"{owner} has no list of {key}, which a file of films in this format must have"
         )
     return given
 

@@ -21,7 +21,7 @@ class _Sent:
     def fresh(self, name: str, rows: Sequence[Any]) -> tuple[int, Sequence[Any]] | None:
         """Return the number of the first new row, and the new rows; None if there are none."""
         count, last = self._done.get(name, (0, None))
-        # Of several changes in one tick the last one counts, so that the last row may have changed.
+        # A row has the last change of its tick, so the last row may have been replaced.
         first = count - 1 if count and rows[count - 1] != last else count
         if first == len(rows):
             return None

@@ -88,7 +88,7 @@ class Child(Owned):
         return self.is_own and self._process.poll() is None
 
     def ends(self) -> bool:
-        """Wait a moment for the end of the process; return whether it has ended."""
+        """Wait a moment for the end of the process; return True if it has ended."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(timeout=_GRACE_SECONDS)
         return not self.alive

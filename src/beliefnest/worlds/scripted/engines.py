@@ -54,7 +54,7 @@ def leaves_nothing(code: str, skills: Collection[str]) -> bool:
 def only_acts(code: str, skills: Collection[str]) -> bool:
     """Return True if a program uses its bot as an argument of skills only, and reads no clock.
 
-    Then it can read nothing of the world but what skills return.
+    Such a program learns about the world only from the results of skills.
     """
     passed = re.sub(rf"\b(?:{'|'.join(skills)})\s*\(\s*bot\s*(?=[,)])", "", code)
     # A skill's name that is left may be defined anew, as a function that reads its bot.

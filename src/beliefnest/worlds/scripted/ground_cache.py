@@ -1,4 +1,4 @@
-"""Data that programs of the scripted world read of blocks, computed once for each grid."""
+"""Cache of block data for programs of the scripted world, computed once for each grid."""
 
 import json
 from dataclasses import dataclass

@@ -158,7 +158,7 @@ def _bring(hand: Hand, cell: Position, *, opens: bool) -> Doing:
 
 
 def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_DOOR) -> Doing:
-    """Walk until the goal is met, one cell a tick; return whether the agent walked."""
+    """Walk until the goal is met, one cell a tick; return True if the agent walked."""
     moved = False
     bumped: set[Position] = set()
     while not goal.is_met(hand.cell):

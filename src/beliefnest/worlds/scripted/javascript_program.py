@@ -42,7 +42,7 @@ class JavaScriptProgram:
         engines: Pool of engines to share.
 
     Attributes:
-        reads: False if the program can read nothing of the world but what skills return.
+        reads: False if the program learns about the world only from the results of skills.
     """
 
     def __init__(

@@ -141,8 +141,8 @@ class Track {
   }
 
   /**
-   * Return whether a claim was believed, and by which condition of the semantics; null if the simulator's agent did
-   * not hear it or the run has no verdict.
+   * Return the verdict on a claim: `believed`, and the deciding `condition` of the semantics; null if the simulator's
+   * agent did not hear it or the run has no verdict.
    * @returns {object|null}
    */
   verdict (event, claim) {

@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Real world of the embedded server in real time: one region, which runs on between calls and which people can enter.
- * The next call reports the events in between.
+ * Real world of the embedded server in real time: one region, which people can enter and whose time continues between
+ * calls. Each call first reports the events since the previous one.
  */
 const { waitFor } = require('../bots/ticking')
 const { BadRequest } = require('../channel/errors')

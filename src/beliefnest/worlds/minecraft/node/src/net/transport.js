@@ -119,8 +119,8 @@ class ServerEnd extends MemoryEnd {
 /** Queue of the packets of one region, which keeps them in order. */
 class Mail {
   /**
-   * @param {(owner: string, action: function(): void) => void} run runs the handling of a packet as code of the agent
-   *   whose connection it is, in either direction, and catches its errors
+   * @param {(owner: string, action: function(): void) => void} run handles a packet in the name of the agent that
+   *   owns the connection, whoever sent the packet, and catches errors
    * @param {(error: Error, owner: string) => void} report called with errors that such code throws later
    */
   constructor (run, report) {

@@ -300,7 +300,7 @@ class Guest {
     }
   }
 
-  /** Return whether the interpreter should stop; it polls this. */
+  /** Return true if the interpreter should stop. The interpreter polls this. */
   interrupt () {
     this.alive()
     return this.interpreter.fuel.value <= GRACE

@@ -33,8 +33,8 @@ class ProgramSyntaxError extends Error {
 
 /**
  * Read a program and prepare it for execution.
- * @param {string} given body of an async function, or only function declarations, of which the last async one (or the
- *   only one) is called with `bot`
+ * @param {string} given body of an async function. If it consists only of function declarations, the last async function (or
+ *   the only function) is called with `bot`
  * @param {string[]} parameters names in scope, `bot` among them
  * @returns {{text: string, marks: number, locate: function(number, number): ?{line: number, column: number}, callee:
  *   function(number, number): ?string, statement: function(number): ?{line: number, column: number}, linesOf:

@@ -1,7 +1,7 @@
 'use strict'
 /**
  * Virtual time. Every region has a `Context`: its own time, timers and random numbers. The `Clock` knows which context
- * is active; code that uses time and timers affects only that one. Time moves only inside `advance`.
+ * is active; code that uses time and timers affects only this context. Time moves only inside `advance`.
  */
 const { Random } = require('./random')
 const { TimerQueue } = require('./timers')

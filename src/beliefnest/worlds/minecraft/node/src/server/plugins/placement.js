@@ -19,7 +19,7 @@ module.exports.server = (serv) => {
     serv.blocks.set(other, serv.blocks.stateWith(serv.blocks.at(other), { type }), player)
   }
 
-  /** Use the item in hand on a block. Return whether that had an effect. */
+  /** Use the item in hand on a block. Return true if that had an effect. */
   serv.useItemOn = (use) => {
     const { player, hand } = use
     const item = player.itemInHand(hand)

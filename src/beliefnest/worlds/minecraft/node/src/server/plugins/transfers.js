@@ -16,8 +16,8 @@ module.exports.player = (player, serv) => {
   let ledgers = []
 
   /**
-   * Open a window on the containers at `window.positions` (see PlayerWindows.open), of which the player used the one
-   * at `clicked`.
+   * Open a window on the containers at `window.positions` (see PlayerWindows.open). The player clicked the
+   * container at `clicked`.
    */
   player.lookInto = (window, clicked) => {
     const { positions } = window

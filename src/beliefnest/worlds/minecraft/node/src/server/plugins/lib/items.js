@@ -51,7 +51,7 @@ function slotsOf (Item, registry, rows, size) {
   return slots
 }
 
-/** Return stacks of at most the stack size for counts by name, in order of names. */
+/** Return stacks for counts by name, sorted by name; a count above the maximum stack size gives several stacks. */
 function stacksOf (Item, registry, counts) {
   const stacks = []
   for (const [name, count] of Object.entries(counts).sort(([a], [b]) => (a < b ? -1 : 1))) {

@@ -28,12 +28,13 @@ const anyItem = () => true
 const wholeStack = (item) => item.stackSize
 
 /**
- * Return the menu of a window over `cells`, its first slots, and the player's 36. `rules` has `mayPlace(i, item)` for
- * the cells, `result`, the index of a crafting result or -1, `takeResult()`, and `into(item)`, the cells that a
- * shift-click from the inventory may fill.
+ * Return the menu of a window: its own slots (`cells`) followed by the player's 36. `rules` contains
  *
- * `craftSlots` of the menu is the last slot of a crafting grid, for whose result a client waits; -1 if there is no
- * grid.
+ * - `mayPlace(i, item)`: true if cell `i` accepts the item
+ * - `result`: index of the slot with a crafting result, or -1; `takeResult()` takes it
+ * - `into(item)`: the cells that a shift-click from the inventory may fill
+ *
+ * `craftSlots` of the menu is the last slot of the crafting grid, or -1. A client waits for the result of a grid.
  */
 function containerMenu (cells, player, rules = {}) {
   const own = range(INVENTORY_START, INVENTORY_END).map((i) => cell(player.inventory.slots, i))

@@ -107,7 +107,7 @@ class PlayerWindows {
     this.player.inventoryChanged()
   }
 
-  /** Close everything, because the next call remembers nothing of it. */
+  /** Close all windows, because open windows are not part of the state that the next call starts from. */
   rest () {
     const { menu } = this.own
     const inGrid = () => range(0, menu.craftSlots + 1).some((slot) => menu.get(slot))
