@@ -117,7 +117,7 @@ def _decided(policy: Policy, view: AgentView) -> Decision:
         return Decision(fault=fault, spent=spent)
     if program.strip() == GO_ON:
         if view.last.how != "cut":
-            return Decision(fault="there is no program of its that was cut and could go on")
+            return Decision(fault="it has no interrupted program to continue")
         return Decision(program=view.last.program, spent=spent, goes_on=True)
     return Decision(program=program if program.strip() else "", spent=spent)
 

@@ -21,7 +21,8 @@ class Goal:
         messages: Greatest number of utterances of all players until then; None: no limit.
         ticks: Greatest number of ticks until then, from the start of the first round; None: no
             limit.
-        helps: Agent whose goal it is too; None: none. Such a goal sets nothing else.
+        helps: Agent whose goal this agent shares. If set, all other attributes are unset. None: the
+            agent does not help.
     """
 
     reach: tuple[GoalCondition, ...] = ()

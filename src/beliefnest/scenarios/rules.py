@@ -37,7 +37,7 @@ class GoalEntry(_Entry, frozen=True):
         note("Most ticks from the first round until all of `reach` holds."),
     ] = None
     helps: Annotated[
-        str | None, note("Agent whose goal it is too, whatever that is; given alone.")
+        str | None, note("Agent whose goal this agent shares; allows no other key.")
     ] = None
 
 
@@ -49,7 +49,7 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
     goals_known: Annotated[bool, note("True if every agent knows the goals of the others.")] = True
     possible_goals: Annotated[
         dict[str, dict[str, GoalEntry]],
-        note("By agent and name the goals that it may have, as far as the others know."),
+        note("Goals that an agent may have as far as others know, by agent and name."),
     ] = {}
     order: Annotated[int, msgspec.Meta(ge=0, description="Order of Theory of Mind it needs.")] = 0
     players: Annotated[
@@ -87,7 +87,7 @@ def goal_of(entry: GoalEntry, agents: Collection[str]) -> Goal:
 def rule_faults(
     entry: EpisodeEntry, agents: Collection[str]
 ) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield what is wrong with who helps whom and with possible goals: the keys, and a message."""
+    """Yield the faults of `helps` and of possible goals: the keys, and a message."""
     yield from _faults_of_help(entry, agents)
     yield from _faults_of_possible_goals(entry, agents)
 
@@ -103,7 +103,10 @@ def _faults_of_help(
         where = ("goals", name, "helps")
         helped = entry.goals.get(goal.helps, entry.goal)
         if goal.reach or goal.never or goal.ticks is not None or goal.messages is not None:
-            yield where, "stands beside other keys; a goal that helps an agent has no more to say"
+            yield (
+                where,
+                "stands beside other keys; remove them, because the goal is that of the helped agent",
+            )
         elif goal.helps not in agents:
             yield where, f"{goal.helps!r} is none of the agents {_listed(agents)}"
         elif goal.helps == name or helped.helps is not None:

@@ -30,8 +30,8 @@ class Rewriting:
     """Functions that rewrite the parts of a program.
 
     Attributes:
-        vector: Function from the coordinates of `new Vec3(x, y, z)`, and True if it is a
-            direction, to new coordinates. None: positions stay, and are not checked.
+        vector: Function that takes the coordinates of `new Vec3(x, y, z)`, and True if this is a
+            direction, and returns new coordinates. None: leave positions as they are, unchecked.
         text: Function from the content of a text to new content.
         key: Function from a key or property, such as `diamond` in `{diamond: 1}`, to a new one.
     """

@@ -1,6 +1,6 @@
 'use strict'
 /**
- * Parser of SNBT, the game's text notation of data, as `/data get` answers in it: `[{Slot: 0b, id: "minecraft:bread",
+ * Parser of SNBT, the game's text notation of data, in which the server answers `/data get`: `[{Slot: 0b, id: "minecraft:bread",
  * Count: 2b}]`. Numbers lose their type; typed arrays become lists.
  */
 
@@ -12,7 +12,7 @@ const ARRAYS = ['B', 'I', 'L']
 function parseSnbt (text) {
   const tokens = tokensOf(text)
   const value = valueAt(tokens)
-  if (tokens.length > 0) throw new SyntaxError('data goes on after its end')
+  if (tokens.length > 0) throw new SyntaxError('there is text after the end of the data')
   return value
 }
 

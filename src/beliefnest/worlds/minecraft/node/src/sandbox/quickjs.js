@@ -11,7 +11,7 @@ const { addTracker, setTracker } = require('./rejections')
 
 const CHUNK = 4096
 const EMPTY = Buffer.alloc(CHUNK)
-// Longer, in bytes, than the longest message (session.js), so that a message of more is recognised as too long.
+// Bytes that are read of a text. The limit is above that of messages (session.js), which can thus refuse longer ones.
 const MAX_TEXT = 4_000_000
 const ALL_INTRINSICS = 0
 const AS_SCRIPT = 0
