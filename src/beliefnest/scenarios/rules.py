@@ -103,10 +103,7 @@ def _faults_of_help(
         where = ("goals", name, "helps")
         helped = entry.goals.get(goal.helps, entry.goal)
         if goal.reach or goal.never or goal.ticks is not None or goal.messages is not None:
-            yield (
-                where,
-                "stands beside other keys; remove them, because the goal is that of the helped agent",
-            )
+            yield where, "stands beside other keys; remove them: the agent has no other goal"
         elif goal.helps not in agents:
             yield where, f"{goal.helps!r} is none of the agents {_listed(agents)}"
         elif goal.helps == name or helped.helps is not None:

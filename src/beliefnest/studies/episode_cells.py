@@ -121,8 +121,8 @@ class EpisodeCell:
 def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
     """Return the plan of a study of episodes.
 
-    Cells are ordered by repeat and then by instance, so an interrupted study has played a smaller study of
-    the same design.
+    Cells are ordered by repeat and then by instance, so an interrupted study has played a smaller
+    study of the same design.
 
     Raises:
         UnknownNameError: A task or policy does not exist.

@@ -21,7 +21,7 @@ __all__ = ["BlockAt", "Carried", "Contained", "Course", "Matter", "Owned", "Wher
 
 V = TypeVar("V")
 Course = list[tuple[int, V | None]]
-"""Values with the tick from which on each was believed; None: nothing was known."""
+"""Believed values, each with the tick at which the belief began; None: nothing was known."""
 
 Held = tuple[tuple[Position | str, int], ...]
 """Containers and agents that hold an item, with its number."""
@@ -30,7 +30,7 @@ _NEAR = 3.0
 """Greatest distance in blocks at which an agent counts as near a named thing."""
 _STEP = 1.5
 _PAUSE = 10
-"""Ticks within which an agent on its way goes on, by a step of at most `_STEP` blocks."""
+"""Greatest pause in ticks between two steps (of at most `_STEP` blocks) of one walk."""
 
 
 class Matter(Protocol[V]):
@@ -310,7 +310,7 @@ class Whereabouts:
 
 
 def _stays(course: Course[Point]) -> Course[Point]:
-    """Return a course in which a shuffle on the spot keeps the previous place."""
+    """Return a course in which a movement that is no real change of place is left out."""
     stays: Course[Point] = []
     for tick, place in course:
         last = stays[-1][1] if stays else None

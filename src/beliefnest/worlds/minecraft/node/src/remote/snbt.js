@@ -1,7 +1,7 @@
 'use strict'
 /**
- * Parser of SNBT, the game's text notation of data, in which the server answers `/data get`: `[{Slot: 0b, id: "minecraft:bread",
- * Count: 2b}]`. Numbers lose their type; typed arrays become lists.
+ * Parser of SNBT, the game's text notation of data, in which the server answers `/data get`:
+ * `[{Slot: 0b, id: "minecraft:bread", Count: 2b}]`. Numbers lose their type; typed arrays become lists.
  */
 
 const TOKEN = /\s*(?:([{}[\],:;])|"((?:[^"\\]|\\.)*)"|'((?:[^'\\]|\\.)*)'|([^\s{}[\],:;"']+))/sy
