@@ -170,7 +170,7 @@ def test_films_may_be_about_what_stands_where():
         ({}, {"size": [5, 0]}, "size is [5, 0]"),
         ({}, {"alternatives": [{"spot1": "K"}, {"spot2": "K"}]}, "do not all name goals"),
         ({}, {"alternatives": None}, "nothing is in doubt"),
-        ({"human": {"desire_KLMN_mean": [1, 2, 3, 4]}}, {"spot3": [2, 3]}, "say true_spot3"),
+        ({"human": {"desire_KLMN_mean": [1, 2, 3, 4]}}, {"spot3": [2, 3]}, "add true_spot3"),
     ],
 )
 def test_what_is_not_understood_is_refused_with_the_film(entry, world, told, tmp_path):
