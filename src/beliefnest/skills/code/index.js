@@ -6,9 +6,10 @@
  * - `name`, `description`, `example`; `fails`: reasons of failure
  * - `scripted`: true if the skill has a twin in the scripted world, in worlds/scripted/skills.py
  * - `cost`: name of its price in fuel (`COST` of sandbox/policy/kinds.js); `call` if left out
- * - `parameters` in order: `name`, `type`, `description`; `default` as in the signature; `aim` if the argument is a
- *   target, a position or the name of an agent: `walks` or `uses`; `action`: the parts of a structured action
- *   (adapters/pettingzoo/actions.py) that give the argument, or its constant value there
+ * - `parameters` in order: `name`, `type`, `description`; `default` as in the signature; `aim` if the argument is the
+ *   target of the skill (a position or the name of an agent): `walks` if the agent walks there, `uses` if it uses what is
+ *   there; `action`: the parts of a structured action (adapters/pettingzoo/actions.py) from which the argument is made,
+ *   or the value that it always has there
  * - `takesBot`: false if `bot` is no parameter; otherwise `bot` is the first one, unless it is listed elsewhere
  * - `run(context, ...args)`: `args` are the arguments without `bot`, which is `context.bot`
  */
