@@ -9,7 +9,6 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.errors import InputError
-from beliefnest.timeline.events import REQUIRED
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.timeline.trace import load_trace, read_trace, record_trace
@@ -241,5 +240,4 @@ def test_every_kind_of_event_is_documented_with_its_details():
     for kinds, details in re.findall(r"^\| (`.*?`) \| (.*?) \|$", section, re.MULTILINE):
         for kind in re.findall(r"`(\w+)`", kinds):
             listed[kind] = tuple(re.findall(r"`(\w+)`", details))
-    assert listed == {kind.value: needed for kind, needed in REQUIRED.items()}
-    assert set(REQUIRED) == set(EventKind)
+    assert listed == {kind.value: kind.traits.needs for kind in EventKind}

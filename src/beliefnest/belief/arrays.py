@@ -18,10 +18,6 @@ __all__ = [
     "HEAR_ALL",
     "HEAR_NEAR",
     "HEAR_SEEN",
-    "KIND_ACT",
-    "KIND_CHAT",
-    "KIND_THINK",
-    "KIND_UPDATE",
     "NOBODY",
     "READ",
     "SOURCE_SEEN",
@@ -51,9 +47,6 @@ READ = -2
 
 SOURCE_SEEN = 1
 """Row of `Source.SEEN` in `belief.entries.SOURCES`."""
-
-KIND_CHAT, KIND_THINK, KIND_UPDATE, KIND_ACT = range(4)
-"""Ways to perceive an event: hear it, be its thinker, see its place, or see its actor."""
 
 HEAR_ALL, HEAR_SEEN, HEAR_NEAR = range(3)
 """Hearing modes: global, sight, radius."""
@@ -120,9 +113,9 @@ class Facts(NamedTuple):
         tick: By entry.
         pose_at, pose_agent, pose_id: Agents that moved, and the ids of their new poses.
         block_at, block_cell, block_state: Blocks that changed.
-        event_at, event_kind, event_actor, event_cell, event_to: Events. A kind is one of
-            `KIND_...`. The cell is `UNKNOWN` for an event without a place. `event_to` is the
-            addressee of a whisper, `NOBODY` for speech aloud.
+        event_at, event_sense, event_actor, event_cell, event_to: Events. A sense is a number of
+            `world.event_kinds.Sense`. The cell is `UNKNOWN` for an event without a place.
+            `event_to` is the addressee of a whisper, `NOBODY` for speech aloud.
     """
 
     tick: Ints
@@ -133,7 +126,7 @@ class Facts(NamedTuple):
     block_cell: Ints
     block_state: Ints
     event_at: Ints
-    event_kind: Ints
+    event_sense: Ints
     event_actor: Ints
     event_cell: Ints
     event_to: Ints

@@ -5,28 +5,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beliefnest.belief.arrays import (
-    KIND_ACT,
-    KIND_CHAT,
-    KIND_THINK,
-    KIND_UPDATE,
-    NOBODY,
-    UNKNOWN,
-    Facts,
-)
+from beliefnest.belief.arrays import NOBODY, UNKNOWN, Facts
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.poses import Growing, PoseTable
 from beliefnest.world.claims import ClaimKind, claims_of, claims_written
+from beliefnest.world.event_kinds import Sense
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Box, Event, EventKind, Position, Sign
+from beliefnest.world.values import Box, Event, Position, Sign
 
 __all__ = ["Columns", "cell_of", "place_of"]
-
-_KINDS = {
-    EventKind.CHAT: KIND_CHAT,
-    EventKind.THINK: KIND_THINK,
-    EventKind.BLOCK_UPDATE: KIND_UPDATE,
-}
 
 
 def cell_of(box: Box, place: Position) -> int:
@@ -167,16 +154,16 @@ class Columns:
 
     def _add_event(self, entry: int, event: Event) -> None:
         context, columns = self._context, self._columns
-        kind, actor = _KINDS.get(event.kind, KIND_ACT), event.actor
+        sense, actor = event.kind.traits.sense, event.actor
         place = event.detail.get("position")
-        if kind == KIND_ACT:
+        if event.kind.is_act:
             if entry not in self.acts:
                 self.act_entries.append(entry)
             number = self._first_event + len(self.events)
             self.acts.setdefault(entry, []).append(number)
         cell = UNKNOWN if place is None or place not in context.box else cell_of(context.box, place)
-        to = event.detail.get("to") if kind == KIND_CHAT else None
-        columns["event_kind"].append(kind)
+        to = event.detail.get("to") if sense is Sense.HEARING else None
+        columns["event_sense"].append(sense)
         columns["event_actor"].append(NOBODY if actor is None else context.numbers[actor])
         columns["event_cell"].append(cell)
         columns["event_to"].append(NOBODY if to is None else context.numbers[to])
@@ -195,4 +182,4 @@ class Columns:
         columns = self._columns
         columns["pose_at"].append(len(columns["pose_id"]))
         columns["block_at"].append(len(columns["block_cell"]))
-        columns["event_at"].append(len(columns["event_kind"]))
+        columns["event_at"].append(len(columns["event_sense"]))

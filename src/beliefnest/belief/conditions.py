@@ -19,6 +19,7 @@ from beliefnest.belief.effort import FAR, PER_BLOCK, to_agent, to_block, to_cont
 from beliefnest.belief.facts import GoalFacts, Look, PlanFacts
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import InputError
+from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.forms import note
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.registry import Registry, block_name, parse_state
@@ -45,11 +46,6 @@ __all__ = [
 
 _REACH = 6.0
 """Greatest distance in blocks from the eyes to the middle of a lever that an agent holds."""
-_CHANGES_NO_BLOCK = (
-    EventKind.OPEN_CONTAINER,
-    EventKind.GET_ITEM_FROM_CHEST,
-    EventKind.DEPOSIT_ITEM_INTO_CHEST,
-)
 
 
 class ConditionEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -407,7 +403,7 @@ class _BlockFact(Fact):
 
     def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
         here = _acts_at(self.blocks[0], events)
-        changed = [each.actor for each in here if each.kind not in _CHANGES_NO_BLOCK]
+        changed = [each.actor for each in here if each.kind not in AT_CONTAINERS]
         return set(changed[-1:])
 
     def pursuit(self, agent: str, mine: Items) -> Pursuit:

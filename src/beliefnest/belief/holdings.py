@@ -9,11 +9,9 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
 from beliefnest.belief.grounds import Basis, Source
-from beliefnest.world.values import DroppedItem, Event, EventKind, Items
+from beliefnest.world.values import DroppedItem, Event, Items
 
 __all__ = [
-    "MOVES",
-    "TOUCHES",
     "Content",
     "Holdings",
     "SignTold",
@@ -24,22 +22,6 @@ __all__ = [
     "replaced_block",
     "witness",
 ]
-
-MOVES = {EventKind.DEPOSIT_ITEM_INTO_CHEST: 1, EventKind.GET_ITEM_FROM_CHEST: -1}
-"""Acts that move items into a container (1) or out of it (-1)."""
-
-TOUCHES = frozenset({EventKind.OPEN_CONTAINER, *MOVES})
-"""Acts by which an actor learns what a container holds."""
-
-# Acts that add items to the actor's possessions (1) or remove them (-1). Smelting is not listed:
-# the result is counted when it is taken out of the furnace.
-_POSSESSION = {
-    EventKind.GET_ITEM_FROM_CHEST: 1,
-    EventKind.RECEIVE_ITEM_FROM_OTHER: 1,
-    EventKind.CRAFT_ITEM: 1,
-    EventKind.DEPOSIT_ITEM_INTO_CHEST: -1,
-    EventKind.GIVE_ITEM_TO_OTHER: -1,
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,25 +259,23 @@ def witness(holdings: Holdings, cell: int, event: Event, tick: int) -> None:
 
     Moved items are added or subtracted. Opening a container shows nothing to others.
     """
-    if event.kind not in MOVES:
+    sign = event.kind.traits.stores
+    if not sign:
         return
     old = holdings.containers.get(cell)
-    items = changed_items(
-        {} if old is None else old.items, event.detail["items"], MOVES[event.kind]
-    )
+    items = changed_items({} if old is None else old.items, event.detail["items"], sign)
     holdings.containers[cell] = Content(
         items,
         complete=old is not None and old.complete,
         basis=Basis(tick, Source.WITNESSED, event.kind),
         by_act=True,
     )
-    holdings.see_moved(cell, event.detail["items"], MOVES[event.kind])
+    holdings.see_moved(cell, event.detail["items"], sign)
 
 
 def follow_acts(inventory: Items, acts: Iterable[Event]) -> Items:
     """Return an actor's believed possessions after the visible part of its acts."""
     for act in acts:
-        sign = _POSSESSION.get(act.kind)
-        if sign is not None:
-            inventory = changed_items(inventory, act.detail.get("items", {}), sign)
+        if act.kind.traits.gains:
+            inventory = changed_items(inventory, act.detail.get("items", {}), act.kind.traits.gains)
     return inventory

@@ -15,8 +15,6 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import SavedWriting
 from beliefnest.belief.grounds import Basis, Source
 from beliefnest.belief.holdings import (
-    MOVES,
-    TOUCHES,
     Content,
     Holdings,
     Sole,
@@ -26,6 +24,7 @@ from beliefnest.belief.holdings import (
     witness,
 )
 from beliefnest.belief.node_table import NodeTable
+from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import DroppedItem, Event, Items
 
@@ -322,12 +321,12 @@ class HoldingsTable:
         holdings, owner = self._holdings[node], self._context.agents[self._table.owner(node)]
         parent = self._table.parent(node)
         box, known = self._context.box, self._holdings[parent].containers
-        touched = [(cell_of(box, a.detail["position"]), a) for a in acts if a.kind in TOUCHES]
+        touched = [(cell_of(box, a.detail["position"]), a) for a in acts if a.kind in AT_CONTAINERS]
         own = {cell for cell, act in touched if act.actor == owner and cell in known}
         for cell, act in touched:
             if cell not in own | into and not self._is_gone(node, cell):
                 witness(holdings, cell, act, tick)
-                moved = act.detail["items"] if act.kind in MOVES else ()
+                moved = act.detail["items"] if act.kind.traits.stores else ()
                 self._seen_moved.update((node, cell, item) for item in moved)
                 self._note(node, cell)
         for cell, act in touched:

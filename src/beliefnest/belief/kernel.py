@@ -28,9 +28,6 @@ import numpy.typing as npt
 from beliefnest.belief.arrays import (
     HEAR_ALL,
     HEAR_SEEN,
-    KIND_CHAT,
-    KIND_THINK,
-    KIND_UPDATE,
     NOBODY,
     SOURCE_SEEN,
     UNKNOWN,
@@ -45,6 +42,7 @@ from beliefnest.belief.arrays import (
 from beliefnest.belief.seeing import eye_of, grid_cell, sees_agent, sees_cell, whole
 from beliefnest.perception.eyes import Eye, set_code
 from beliefnest.perception.rays import compiled, inlined, inner, merged
+from beliefnest.world.event_kinds import Sense
 
 __all__ = ["fold", "put", "put_all", "refresh_pending"]
 
@@ -322,16 +320,16 @@ def _perceive_events(
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         if not changes.perceived[event - first_event, parent]:
             continue
-        kind, actor = facts.event_kind[event], whole(facts.event_actor[event])
+        sense, actor = facts.event_sense[event], whole(facts.event_actor[event])
         if actor == me:
             got = True
-        elif kind == KIND_THINK:
+        elif sense == Sense.NONE:
             got = False
-        elif kind == KIND_CHAT:
+        elif sense == Sense.HEARING:
             got = _is_common_ground(space.senses, facts, event, me) or (
                 facts.event_to[event] == NOBODY and _hears(space.senses, poses, nodes, node, actor)
             )
-        elif kind == KIND_UPDATE:
+        elif sense == Sense.PLACE:
             cell, eye = whole(facts.event_cell[event]), eye_of(space, poses, whole(nodes.eye[node]))
             got = sees_cell(space, nodes, parent, eye, cell)
         else:
@@ -362,8 +360,8 @@ def _update_absent(
     me = whole(nodes.agent[node])
     first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
-        is_chat = facts.event_kind[event] == KIND_CHAT
-        if is_chat and _is_common_ground(senses, facts, event, me):
+        is_heard = facts.event_sense[event] == Sense.HEARING
+        if is_heard and _is_common_ground(senses, facts, event, me):
             heard = changes.perceived[event - first_event, nodes.parent[node]]
             changes.perceived[event - first_event, node] = heard
 

@@ -10,7 +10,7 @@ from beliefnest.episodes.policies.simple import Person
 from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
-from beliefnest.world.values import TICKS_PER_SECOND, EventKind
+from beliefnest.world.values import TICKS_PER_SECOND
 from beliefnest.worlds.names import world_name
 from beliefnest.worlds.protocol import ProgramPast, ProgramResult
 from beliefnest.worlds.servers.listening import is_hosted
@@ -19,7 +19,6 @@ __all__ = ["RealRound", "check_repeats", "people_in", "played_by_people", "world
 
 _LONGEST = 20
 """Number of round lengths after which the episode no longer waits for an idle person."""
-_NO_DEED = (EventKind.THINK, EventKind.BLOCK_UPDATE)
 
 
 def people_in(policies: Mapping[str, Policy]) -> frozenset[str]:
@@ -122,7 +121,7 @@ class RealRound:
     def acted(self) -> frozenset[str]:
         """Return the people who have done or said something in the round."""
         state = self._nest["/"].state
-        did = {e.actor for e in state.events if e.tick > self.began and e.kind not in _NO_DEED}
+        did = {e.actor for e in state.events if e.tick > self.began and e.kind.is_act}
         did |= {speaker for tick, speaker, _ in state.chat if tick > self.began}
         return frozenset(name for name in self._people if name in did)
 

@@ -9,11 +9,9 @@ from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.event_words import skill_of
 from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.signs import sign_words
-from beliefnest.world.values import TICKS_PER_SECOND, EventKind, Position
+from beliefnest.world.values import TICKS_PER_SECOND, Position
 
 __all__ = ["FILTERS", "memory"]
-
-_SAYINGS = frozenset({EventKind.CHAT, EventKind.THINK})
 
 
 @filter("containers")
@@ -143,7 +141,7 @@ def _use(state: State, at: Position) -> str:
 
 
 def _is_use(event: PerceivedEvent, at: Position) -> bool:
-    is_deed = event.actor is not None and event.kind not in _SAYINGS
+    is_deed = event.actor is not None and not event.kind.is_speech
     return is_deed and event.detail.get("position") == at
 
 

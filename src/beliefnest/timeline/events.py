@@ -1,54 +1,16 @@
 """Validation of events that other programs recorded."""
 
 from collections.abc import Collection, Mapping
-from types import MappingProxyType
 from typing import Any
 
 import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.world.claims import claims_from_plain
-from beliefnest.world.values import Event, EventKind, Point, Position
+from beliefnest.world.event_kinds import EventDetail, EventKind, Sense
+from beliefnest.world.values import Event
 
-__all__ = ["REQUIRED", "event_from"]
-
-REQUIRED: Mapping[EventKind, tuple[str, ...]] = MappingProxyType(
-    {
-        EventKind.CHAT: ("text",),
-        EventKind.THINK: ("text",),
-        EventKind.MOVE_TO: ("destination",),
-        EventKind.MINE_BLOCK: ("position",),
-        EventKind.PLACE_BLOCK: ("position",),
-        EventKind.CRAFT_ITEM: ("items",),
-        EventKind.SMELT_ITEM: ("items",),
-        EventKind.GET_ITEM_FROM_CHEST: ("position", "items"),
-        EventKind.DEPOSIT_ITEM_INTO_CHEST: ("position", "items"),
-        EventKind.OPEN_CONTAINER: ("position",),
-        EventKind.USE_LEVER: ("position",),
-        EventKind.PRESS_BUTTON: ("position",),
-        EventKind.USE_DOOR: ("position", "open"),
-        EventKind.GIVE_ITEM_TO_OTHER: ("other", "items"),
-        EventKind.RECEIVE_ITEM_FROM_OTHER: ("other", "items"),
-        EventKind.EMOTE: ("name",),
-        EventKind.BLOCK_UPDATE: ("position",),
-    }
-)
-"""Details that an event of each kind must have."""
-
-
-class _Detail(msgspec.Struct, forbid_unknown_fields=True):
-    text: str | msgspec.UnsetType = msgspec.UNSET
-    position: Position | msgspec.UnsetType = msgspec.UNSET
-    block: str | msgspec.UnsetType = msgspec.UNSET
-    items: dict[str, int] | msgspec.UnsetType = msgspec.UNSET
-    other: str | msgspec.UnsetType = msgspec.UNSET
-    powered: bool | msgspec.UnsetType = msgspec.UNSET
-    open: bool | msgspec.UnsetType = msgspec.UNSET
-    name: str | msgspec.UnsetType = msgspec.UNSET
-    destination: Point | msgspec.UnsetType = msgspec.UNSET
-    to: str | msgspec.UnsetType = msgspec.UNSET
-    claims: list[dict[str, Any]] | msgspec.UnsetType = msgspec.UNSET
-    claims_from: str | msgspec.UnsetType = msgspec.UNSET
+__all__ = ["event_from"]
 
 
 def event_from(
@@ -58,8 +20,8 @@ def event_from(
 
     Args:
         kind: A value of `EventKind`.
-        actor: Name of the agent that acted; only a block update may have none.
-        detail: Details as in `Event.detail`, with lists as sequences.
+        actor: Name of the agent that acted; only one perceived at its place may have none.
+        detail: Fields of `EventDetail`, with lists as sequences.
         agents: Names of all agents.
 
     Raises:
@@ -69,15 +31,15 @@ def event_from(
     if kind not in set(EventKind):
         raise InputError(f"unknown event {kind!r}; events are {', '.join(EventKind)}")
     known = EventKind(kind)
-    if actor is None and known is not EventKind.BLOCK_UPDATE:
+    if actor is None and known.traits.sense is not Sense.PLACE:
         raise InputError(f"event {kind!r} has no actor; name the agent who did it")
     try:
-        typed = msgspec.convert(detail, _Detail)
+        typed = msgspec.convert(detail, EventDetail)
     except msgspec.ValidationError as fault:
         raise InputError(f"detail of event {kind!r}: {fault}") from fault
     given = msgspec.structs.asdict(typed)
     values = {name: value for name, value in given.items() if value is not msgspec.UNSET}
-    missing = [name for name in REQUIRED[known] if name not in values]
+    missing = [name for name in known.traits.needs if name not in values]
     if missing:
         raise InputError(f"event {kind!r} lacks the detail {', '.join(missing)}")
     if "to" in values and known is not EventKind.CHAT:

@@ -20,6 +20,7 @@ from beliefnest.perception.options import ContainerMode, Perception, Testimony
 from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
 from beliefnest.world.claims import Claim, claims_from_plain, claims_of
+from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import Frame, PlainClaims, Snapshot
 from beliefnest.world.limits import (
     AGENT_SLOTS,
@@ -53,14 +54,6 @@ _LONGEST_LINE = 2**26
 """Greatest length of a line in bytes."""
 
 _AGENT_SLOTS = AGENT_SLOTS + WORN_SLOTS
-_AT_CONTAINERS = frozenset(
-    {
-        EventKind.OPEN_CONTAINER,
-        EventKind.GET_ITEM_FROM_CHEST,
-        EventKind.DEPOSIT_ITEM_INTO_CHEST,
-    }
-)
-"""Kinds of events that happen at a container."""
 
 _TOLD = 10
 """Number of bad lines that an error message quotes."""
@@ -434,7 +427,7 @@ class _Reader:
         before = int(self._grid[self._index(place)])
         states = (before, changed.get(place, before))
         names = [self._registry.name(state) for state in states]
-        if kind in _AT_CONTAINERS and not any(map(self._registry.is_container, names)):
+        if kind in AT_CONTAINERS and not any(map(self._registry.is_container, names)):
             raise InputError(
                 f"event {kind.value!r}: the block at {place} is {names[-1]}, which holds no items"
             )

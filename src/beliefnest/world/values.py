@@ -8,10 +8,10 @@ of 50 ms.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Any, NamedTuple
 
 from beliefnest.errors import PositionError
+from beliefnest.world.event_kinds import EventKind
 
 __all__ = [
     "AGENT_SAMPLE_HEIGHTS",
@@ -110,28 +110,6 @@ class Box:
                     yield (x, y, z)
 
 
-class EventKind(StrEnum):
-    """Kinds of events (semantics, section 1)."""
-
-    CHAT = "chat"
-    THINK = "think"
-    MOVE_TO = "move_to"
-    MINE_BLOCK = "mine_block"
-    PLACE_BLOCK = "place_block"
-    CRAFT_ITEM = "craft_item"
-    SMELT_ITEM = "smelt_item"
-    GET_ITEM_FROM_CHEST = "get_item_from_chest"
-    DEPOSIT_ITEM_INTO_CHEST = "deposit_item_into_chest"
-    OPEN_CONTAINER = "open_container"
-    USE_LEVER = "use_lever"
-    PRESS_BUTTON = "press_button"
-    USE_DOOR = "use_door"
-    GIVE_ITEM_TO_OTHER = "give_item_to_other"
-    RECEIVE_ITEM_FROM_OTHER = "receive_item_from_other"
-    EMOTE = "emote"
-    BLOCK_UPDATE = "block_update"
-
-
 @dataclass(frozen=True, slots=True)
 class Event:
     """An event during one tick.
@@ -139,15 +117,7 @@ class Event:
     Attributes:
         kind: Kind of event.
         actor: Agent that acted; None for a block update without a known actor.
-        detail: The part of the event that witnesses perceive. Keys by kind: `text` (chat, think;
-            block_update: new text of a sign), `to` (chat whispered to one agent; absent if it is
-            said aloud), `claims` (chat with claims: plain data, see `world.claims`),
-            `claims_from` (reader that extracted the claims from the text; absent if the speaker
-            gave them), `position` of a block (mine_block, place_block, use_lever, press_button,
-            use_door, containers, block_update), `block` (a block state text), `items` (name ->
-            count), `other` (an agent), `powered` (use_lever), `open` (use_door: doors, trapdoors
-            and gates; the position of a door is its lower half), `name` (emote), `destination`
-            (move_to, a point).
+        detail: The part of the event that witnesses perceive, with fields of `EventDetail`.
     """
 
     kind: EventKind

@@ -71,9 +71,6 @@ class Fault:
         return f"{place}{self.message}"
 
 
-_NO_DEEDS = (EventKind.CHAT, EventKind.THINK, EventKind.BLOCK_UPDATE)
-
-
 @dataclass(frozen=True, slots=True)
 class Aim:
     """Target that a program asked its bot to walk to or to use, whether or not it succeeded.
@@ -217,9 +214,7 @@ class ProgramResult:
     def actions(self) -> tuple[Event, ...]:
         """Acts of the program's agent, in order; speech and thoughts are not among them."""
         return tuple(
-            event
-            for _, event in self.happened
-            if event.actor == self.agent and event.kind not in _NO_DEEDS
+            event for _, event in self.happened if event.actor == self.agent and event.kind.is_act
         )
 
     @property

@@ -17,10 +17,11 @@ from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import InputError, WorldError
 from beliefnest.minds.alternatives import middle_of
 from beliefnest.minds.walking import Act, Changes, Draw, Open, Step, Strategy, Walker
-from beliefnest.nest.past.percepts import HANDLING, Deed, Percept, cell_in, deed_of
+from beliefnest.nest.past.percepts import Deed, Percept, cell_in, deed_of
+from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
 from beliefnest.world.signs import plain_state
-from beliefnest.world.values import AgentState, EventKind, Items, Point, Position
+from beliefnest.world.values import AgentState, Items, Point, Position
 from beliefnest.worlds.protocol import Fault, RunRules
 from beliefnest.worlds.scripted.engines import Engines
 from beliefnest.worlds.scripted.ground_cache import Grounds
@@ -343,7 +344,7 @@ class Course:
             if name not in self.plan.agents and name not in agents:
                 agents[name] = AgentState(feet)
         for event in now.events:
-            if event.kind not in _HANDED_OUT or event.actor in self.plan.agents:
+            if event.kind.traits.gains >= 0 or event.actor in self.plan.agents:
                 continue
             if (holder := agents.get(event.actor or "")) is not None:
                 held = dict(holder.inventory)
@@ -366,11 +367,11 @@ class Course:
                 self._do_event(event)
 
     def _do_event(self, event: PerceivedEvent) -> None:
-        name, do = event.actor or "", _AS_SEEN.get(event.kind)
-        if do is None or name not in self.world.agents:
+        name = event.actor or ""
+        if name not in self.world.agents:
             return
         try:
-            do(self.world, name, event.detail)
+            self.world.repeat(name, event.kind, event.detail)
         except WorldError as fault:
             self.contradiction = f"{name} was seen to {event.kind}, but {fault}"
 
@@ -387,8 +388,7 @@ class Course:
         for place, block in frame.blocks.items():
             self._changed_blocks[box.index(place)] = plain_state(block)
         for event in frame.events:
-            sign = _SIGNS.get(event.kind)
-            if sign is not None:
+            if sign := event.kind.traits.stores:
                 place = _place(event.detail)
                 for item, count in event.detail["items"].items():
                     key = (place, item)
@@ -406,16 +406,12 @@ class Course:
             found = [
                 deed_of(event.kind, event.actor, event.detail)
                 for event in frame.events
-                if event.kind in HANDLING and event.actor in self.plan.agents
+                if event.kind in AT_CONTAINERS and event.actor in self.plan.agents
             ]
             deeds = tuple(sorted(found))
         is_new = frame is None or not frame.is_empty
         containers = dict(world.containers)
         return Glimpse(world.now, world.blocks, world.agents, containers, deeds, is_new)
-
-
-_HANDED_OUT = (EventKind.DEPOSIT_ITEM_INTO_CHEST, EventKind.GIVE_ITEM_TO_OTHER)
-_SIGNS = {EventKind.GET_ITEM_FROM_CHEST: -1, EventKind.DEPOSIT_ITEM_INTO_CHEST: 1}
 
 
 def _place(detail: Mapping[str, Any]) -> Position:
@@ -425,25 +421,3 @@ def _place(detail: Mapping[str, Any]) -> Position:
 
 def _yaw(before: Point, after: Point) -> float:
     return float(np.arctan2(before[0] - after[0], before[2] - after[2]))
-
-
-def _spoken(world: ScriptedWorld, name: str, detail: Mapping[str, Any]) -> None:
-    if detail.get("to") is None:
-        world.say(name, detail["text"])
-    else:
-        world.whisper(name, detail["to"], detail["text"])
-
-
-_AS_SEEN: Mapping[EventKind, Callable[[ScriptedWorld, str, Mapping[str, Any]], None]] = {
-    EventKind.OPEN_CONTAINER: lambda world, name, d: world.open(name, _place(d)),
-    EventKind.GET_ITEM_FROM_CHEST: lambda w, name, d: w.withdraw(name, _place(d), d["items"]),
-    EventKind.DEPOSIT_ITEM_INTO_CHEST: lambda w, name, d: w.deposit(name, _place(d), d["items"]),
-    EventKind.USE_DOOR: lambda w, name, d: w.use_door(name, _place(d), open=d["open"]),
-    EventKind.USE_LEVER: lambda w, name, d: w.use_lever(name, _place(d), powered=d["powered"]),
-    EventKind.PRESS_BUTTON: lambda w, name, d: w.press_button(name, _place(d)),
-    EventKind.MINE_BLOCK: lambda w, name, d: w.set_block(_place(d), "air", name),
-    EventKind.PLACE_BLOCK: lambda w, name, d: w.set_block(_place(d), d["block"], name),
-    EventKind.CHAT: _spoken,
-    EventKind.GIVE_ITEM_TO_OTHER: lambda w, name, d: w.give(name, d["other"], d["items"]),
-}
-"""Calls that repeat the perceived acts of agents that are not in question."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis, PerceivedEvent, Source
-from beliefnest.belief.holdings import MOVES, Content, Holdings
+from beliefnest.belief.holdings import Content, Holdings
 from beliefnest.belief.testimony import Verdict
 from beliefnest.nest.explain.element_history import LogStep
 from beliefnest.nest.explain.parts import (
@@ -90,7 +90,7 @@ class Grounds:
         """
         tick, owner, basis = step.forest.tick, self.path[-1], new.basis
         acts = self.seen[0].get(tick, ()) if isinstance(step.entry, Frame) else ()
-        acts = tuple(act for act in acts if act.kind in MOVES or act.actor == owner)
+        acts = tuple(act for act in acts if act.kind.traits.stores or act.actor == owner)
         if is_moved and acts:
             basis = Basis(tick, Source.WITNESSED, acts[-1].kind)
         elif is_moved or (old is not None and (old.basis, old.items) == (basis, new.items)):
@@ -232,7 +232,7 @@ def _change(each: Reason, here: Position) -> Mapping[str, int]:
             change = Counter[str]()
             for act in acts:
                 for item, count in act.detail.get("items", {}).items():
-                    change[item] += MOVES.get(act.kind, 0) * count
+                    change[item] += (act.kind.traits.stores or 0) * count
             return change
         case SeenElsewhere(item=item):
             return {item: -1}

@@ -19,7 +19,7 @@ from beliefnest.minds.mind_model import Alternative
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry, parse_state
-from beliefnest.world.values import Box, EventKind, Items, Point, Position
+from beliefnest.world.values import Box, Items, Point, Position
 
 __all__ = ["Overlay"]
 
@@ -126,13 +126,13 @@ class Overlay:
                 self._blocks[place] = [state] * len(self._names)
         moved: set[Position] = set()
         for event in events:
-            if event.kind not in (EventKind.GET_ITEM_FROM_CHEST, EventKind.DEPOSIT_ITEM_INTO_CHEST):
+            sign = event.kind.traits.stores
+            if not sign:
                 continue
             used = event.detail.get("position")
             spot = (int(used[0]), int(used[1]), int(used[2])) if used else None
             if spot is not None and spot in self._contents:
                 moved.add(spot)
-                sign = 1 if event.kind is EventKind.DEPOSIT_ITEM_INTO_CHEST else -1
                 items = event.detail.get("items", {})
                 self._contents[spot] = [
                     _changed(each, items, sign) for each in self._contents[spot]

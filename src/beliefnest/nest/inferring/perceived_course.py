@@ -16,12 +16,12 @@ from beliefnest.nest.inferring.overlay import Overlay
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, Entry, TimelineKey
 from beliefnest.world.claims import Claim, claims_of
+from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.paths import BeliefPath, normalised, path_text
 from beliefnest.world.values import EventKind, Position
 
 __all__ = ["Question", "Reading"]
 
-_MOVES = (EventKind.GET_ITEM_FROM_CHEST, EventKind.DEPOSIT_ITEM_INTO_CHEST)
 _NO_DEEDS = (EventKind.MOVE_TO, EventKind.BLOCK_UPDATE)
 
 
@@ -207,8 +207,7 @@ class Reading:
         used = {
             _place(event)
             for event in events
-            if event.actor == self.question.agent
-            and event.kind in (EventKind.OPEN_CONTAINER, *_MOVES)
+            if event.actor == self.question.agent and event.kind in AT_CONTAINERS
         }
         return tuple(
             self._overlay.content_masks(place)

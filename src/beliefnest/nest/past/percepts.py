@@ -20,18 +20,12 @@ from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint
+from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import EventKind, Items, Point, Position
 
-__all__ = ["HANDLING", "Deed", "Percept", "cell_in", "deed_of", "percepts_of"]
-
-HANDLING = (
-    EventKind.OPEN_CONTAINER,
-    EventKind.GET_ITEM_FROM_CHEST,
-    EventKind.DEPOSIT_ITEM_INTO_CHEST,
-)
-"""Events from which an observer learns about contents."""
+__all__ = ["Deed", "Percept", "cell_in", "deed_of", "percepts_of"]
 
 Deed = tuple[str, str, Position, tuple[tuple[str, int], ...]]
 """Kind, actor, container, and the items that were seen being moved."""
@@ -147,7 +141,7 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
     deeds = [
         deed_of(event.kind, event.actor, event.detail)
         for event in events
-        if event.kind in HANDLING and event.actor is not None
+        if event.kind in AT_CONTAINERS and event.actor is not None
     ]
     lying = Counter(
         (item.name, cell_in(item.position))

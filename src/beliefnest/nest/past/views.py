@@ -23,7 +23,6 @@ __all__ = ["LiveState"]
 _FEW = 4
 _SMALL = 1024
 
-_SPEECH = (EventKind.CHAT, EventKind.THINK)
 
 _PARTS = (
     *("path", "tick", "box", "blocks", "signs", "containers", "agents", "items"),
@@ -201,7 +200,7 @@ class LiveState:
     @cached_property
     def events(self) -> tuple[PerceivedEvent, ...]:
         """The perceived events other than speech and thought, in order."""
-        return tuple(event for event in self._perceived if event.kind not in _SPEECH)
+        return tuple(event for event in self._perceived if not event.kind.is_speech)
 
     @cached_property
     def chat(self) -> list[tuple[int, str, str]]:

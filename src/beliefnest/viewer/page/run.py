@@ -21,8 +21,6 @@ __all__ = ["About", "RunData"]
 
 Onlookers = Callable[[TimelineInfo, Sequence[BeliefPath]], Onlooker]
 
-_SPEECH = (EventKind.CHAT, EventKind.THINK)
-
 
 @dataclass(frozen=True, slots=True)
 class About:
@@ -206,7 +204,7 @@ class RunData:
                     "kind": event.kind.value,
                     "actor": event.actor,
                     "text": happens(event, labels),
-                    "spoken": event.kind in _SPEECH,
+                    "spoken": event.kind.is_speech,
                 }
                 if place is not None:
                     told["at"] = list(place)

@@ -356,6 +356,17 @@ class ScriptedWorld(ScriptedState):
             ):
                 pending.events.append(Event(kind, name, {"other": partner, "items": moved}))
 
+    def repeat(self, name: str, kind: EventKind, detail: Mapping[str, Any]) -> None:
+        """Let an agent do again what it was seen to do; ignore kinds of events that are no calls.
+
+        Args:
+            name: Name of the agent.
+            kind: Kind of the event.
+            detail: Fields of `EventDetail` that were perceived.
+        """
+        if kind in _REPEATED:
+            _REPEATED[kind](self, name, detail)
+
     def _transfer(self, name: str, position: Position, items: Items, kind: EventKind) -> None:
         with self._act() as pending:
             agent = self._agent(name)
@@ -438,3 +449,27 @@ class ScriptedWorld(ScriptedState):
         )
         for listener in tuple(self._listeners):
             listener(frame)
+
+
+def _repeat_speech(world: ScriptedWorld, name: str, detail: Mapping[str, Any]) -> None:
+    if detail.get("to") is None:
+        world.say(name, detail["text"])
+    else:
+        world.whisper(name, detail["to"], detail["text"])
+
+
+_REPEATED: Mapping[EventKind, Callable[[ScriptedWorld, str, Mapping[str, Any]], None]] = {
+    EventKind.OPEN_CONTAINER: lambda w, name, d: w.open(name, d["position"]),
+    EventKind.GET_ITEM_FROM_CHEST: lambda w, name, d: w.withdraw(name, d["position"], d["items"]),
+    EventKind.DEPOSIT_ITEM_INTO_CHEST: lambda w, name, d: w.deposit(
+        name, d["position"], d["items"]
+    ),
+    EventKind.USE_DOOR: lambda w, name, d: w.use_door(name, d["position"], open=d["open"]),
+    EventKind.USE_LEVER: lambda w, name, d: w.use_lever(name, d["position"], powered=d["powered"]),
+    EventKind.PRESS_BUTTON: lambda w, name, d: w.press_button(name, d["position"]),
+    EventKind.MINE_BLOCK: lambda w, name, d: w.set_block(d["position"], "air", name),
+    EventKind.PLACE_BLOCK: lambda w, name, d: w.set_block(d["position"], d["block"], name),
+    EventKind.CHAT: _repeat_speech,
+    EventKind.GIVE_ITEM_TO_OTHER: lambda w, name, d: w.give(name, d["other"], d["items"]),
+}
+"""Calls that do what an event of each kind tells."""
