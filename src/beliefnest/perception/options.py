@@ -2,10 +2,13 @@
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import msgspec
 
 from beliefnest.errors import InputError
+from beliefnest.world.forms import note
+from beliefnest.world.limits import FARTHEST
 
 __all__ = ["ContainerMode", "Hearing", "Perception", "Radius", "Testimony"]
 
@@ -13,19 +16,24 @@ ContainerMode = Literal["opaque", "transparent"]
 Testimony = Literal["none", "accept", "informed"]
 
 
-@dataclass(frozen=True, slots=True)
-class Radius:
+class Radius(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename={"blocks": "radius"}):
     """Hearing up to a distance.
 
     Attributes:
         blocks: Greatest distance between listener's and speaker's feet, in blocks.
     """
 
-    blocks: float
+    blocks: Annotated[float, msgspec.Meta(gt=0, le=FARTHEST, description="In blocks.")]
 
 
 Hearing = Literal["global", "sight"] | Radius
 
+if TYPE_CHECKING:  # In code these options have further forms, which `__post_init__` makes one.
+    _Hearing = Hearing | Mapping[str, float] | str
+    _Names = Iterable[str]
+else:  # Files have one form.
+    _Hearing = Hearing
+    _Names = tuple[str, ...]
 
 _SPELLED_RADIUS = re.compile(r"radius:\s*([0-9]+(?:\.[0-9]+)?)")
 """The text form of the mapping that scenario files use."""
@@ -45,9 +53,8 @@ def _hearing(value: object) -> Hearing:
             )
 
 
-@dataclass(frozen=True)
-class Perception:
-    """Options of perception; the same for every agent at every depth.
+class Perception(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Perception of agents; the same for all agents, at every depth.
 
     Attributes:
         max_visible_distance: Greatest distance from an eye to the centre of a visible
@@ -75,16 +82,28 @@ class Perception:
         InputError: An option is out of range or of the wrong kind.
     """
 
-    max_visible_distance: float | None = 20.0
-    field_of_view: float = 360.0
-    hearing: Hearing | Mapping[str, float] | str = "global"
-    containers: ContainerMode = "opaque"
-    transparent_blocks: Iterable[str] = ()
-    negative_evidence: bool = False
-    testimony: Testimony = "none"
-    grace: int = 100
-    sincere: bool = True
-    speech_ticks: int = 0
+    max_visible_distance: Annotated[float | None, note("In blocks; null: no limit.")] = 20.0
+    field_of_view: Annotated[float, note("Full angle of sight in degrees, up to 360.")] = 360.0
+    hearing: Annotated[_Hearing, note("Speakers that an agent hears.")] = "global"
+    containers: Annotated[ContainerMode, note("Visibility of contents from outside.")] = "opaque"
+    transparent_blocks: Annotated[_Names, note("Further blocks that do not block sight.")] = ()
+    negative_evidence: Annotated[
+        bool, note("True if seeing an empty place makes a pose believed there unknown.")
+    ] = False
+    testimony: Annotated[
+        Testimony,
+        note("Claims that hearers believe: none, all, or those of speakers who may know better."),
+    ] = "none"
+    grace: Annotated[
+        int,
+        msgspec.Meta(ge=0, description="Ticks out of sight after which a speaker may know better."),
+    ] = 100
+    sincere: Annotated[
+        bool, note("True if hearers assume that speakers believe what they say.")
+    ] = True
+    speech_ticks: Annotated[
+        int, msgspec.Meta(ge=0, le=1200, description="Ticks needed to say something.")
+    ] = 0
 
     def __post_init__(self) -> None:
         distance = self.max_visible_distance
@@ -109,5 +128,7 @@ class Perception:
             raise InputError(f"speech_ticks is {speech!r}; it must be a whole number from 0")
         if not isinstance(self.sincere, bool):
             raise InputError(f"sincere is {self.sincere!r}; it must be True or False")
-        object.__setattr__(self, "hearing", _hearing(self.hearing))
-        object.__setattr__(self, "transparent_blocks", tuple(sorted(set(self.transparent_blocks))))
+        msgspec.structs.force_setattr(self, "hearing", _hearing(self.hearing))
+        msgspec.structs.force_setattr(
+            self, "transparent_blocks", tuple(sorted(set(self.transparent_blocks)))
+        )

@@ -22,9 +22,7 @@ from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.format import (
     BelievedSignEntry,
     InitialBeliefEntry,
-    PerceptionEntry,
     ProbeEntry,
-    RadiusEntry,
     ScenarioFile,
     StepEntry,
 )
@@ -259,23 +257,10 @@ class _Builder:
             senses=entry.senses or self._file.senses,
         )
 
-    def _perception(self, entry: PerceptionEntry) -> Perception:
-        for number, name in enumerate(entry.transparent_blocks):
+    def _perception(self, options: Perception) -> Perception:
+        for number, name in enumerate(options.transparent_blocks):
             self.checks.block_name(("perception", "transparent_blocks", number), name)
-        hearing = entry.hearing
-        with self._document.naming(("perception",)):
-            return Perception(
-                max_visible_distance=entry.max_visible_distance,
-                field_of_view=entry.field_of_view,
-                hearing={"radius": hearing.radius} if isinstance(hearing, RadiusEntry) else hearing,
-                containers=entry.containers,
-                transparent_blocks=entry.transparent_blocks,
-                negative_evidence=entry.negative_evidence,
-                testimony=entry.testimony,
-                grace=entry.grace,
-                sincere=entry.sincere,
-                speech_ticks=entry.speech_ticks,
-            )
+        return options
 
     def _initial_belief(self, number: int, entry: InitialBeliefEntry) -> InitialBelief:
         path = ("initial_beliefs", number)

@@ -5,7 +5,7 @@ import re
 
 import msgspec
 
-from beliefnest.errors import ScenarioError
+from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain
 from beliefnest.scenarios.format import ScenarioFile
 from beliefnest.scenarios.json_schema import allowed_keys, allowed_values
@@ -54,6 +54,8 @@ def _error_of(root: YamlNode) -> str:
         msgspec.convert(plain(root), ScenarioFile)
     except msgspec.ValidationError as error:
         return str(error)
+    except InputError as error:  # Options of perception are checked as in code.
+        return f"{error} - at `$.perception`"
     return ""
 
 

@@ -8,12 +8,12 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
+from beliefnest.perception.options import Perception
 from beliefnest.scenarios.expected import ExpectEntry
 from beliefnest.scenarios.expected_state import ExpectationEntry
 from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world import values as world
 from beliefnest.world.forms import Point, Position, note
-from beliefnest.world.limits import FARTHEST
 
 __all__ = [
     "AgentEntry",
@@ -27,9 +27,7 @@ __all__ = [
     "InitialBeliefEntry",
     "LevelsEntry",
     "ParameterEntry",
-    "PerceptionEntry",
     "ProbeEntry",
-    "RadiusEntry",
     "ScenarioFile",
     "SignEntry",
     "StepEntry",
@@ -148,43 +146,6 @@ class AgentEntry(_Entry, frozen=True):
         Literal["bot", "human"],
         note("A bot that runs programs, or a person who joins with the agent's name."),
     ] = "bot"
-
-
-class RadiusEntry(_Entry, frozen=True):
-    """Hearing up to a distance."""
-
-    radius: Annotated[float, msgspec.Meta(gt=0, le=FARTHEST, description="In blocks.")]
-
-
-class PerceptionEntry(_Entry, frozen=True):
-    """Perception of agents; the same for all agents, at every depth."""
-
-    max_visible_distance: Annotated[float | None, note("In blocks; null: no limit.")] = 20.0
-    field_of_view: Annotated[float, note("Full angle of sight in degrees, up to 360.")] = 360.0
-    hearing: Annotated[
-        Literal["global", "sight"] | RadiusEntry, note("Speakers that an agent hears.")
-    ] = "global"
-    containers: Annotated[
-        Literal["opaque", "transparent"], note("Visibility of contents from outside.")
-    ] = "opaque"
-    transparent_blocks: Annotated[list[str], note("Further blocks that do not block sight.")] = []
-    negative_evidence: Annotated[
-        bool, note("True if seeing an empty place makes a pose believed there unknown.")
-    ] = False
-    testimony: Annotated[
-        Literal["none", "accept", "informed"],
-        note("Claims that hearers believe: none, all, or those of speakers who may know better."),
-    ] = "none"
-    grace: Annotated[
-        int,
-        msgspec.Meta(ge=0, description="Ticks out of sight after which a speaker may know better."),
-    ] = 100
-    sincere: Annotated[
-        bool, note("True if hearers assume that speakers believe what they say.")
-    ] = True
-    speech_ticks: Annotated[
-        int, msgspec.Meta(ge=0, le=1200, description="Ticks needed to say something.")
-    ] = 0
 
 
 class _BelievedContainerEntry(_Entry, frozen=True):
@@ -389,9 +350,9 @@ class ScenarioFile(_Entry, frozen=True):
     signs: Annotated[list[SignEntry], note("Signs and their texts.")] = []
     places: Annotated[dict[str, Position], note("Named places: block positions by name.")] = {}
     perception: Annotated[
-        PerceptionEntry,
+        Perception,
         note("Range of sight and hearing, and effect of claims."),
-    ] = PerceptionEntry()
+    ] = Perception()
     senses: Annotated[_Senses, _SENSES] = "world"
     static_blocks: Annotated[
         list[str | Position],

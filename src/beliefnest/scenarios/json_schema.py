@@ -71,14 +71,15 @@ def _form() -> dict[str, Any]:
     definitions = published["$defs"]
     for entry in definitions.values():
         # Python 3.13 removes the indentation of docstrings; older versions keep it.
-        entry["description"] = cleandoc(entry["description"])
+        # Attributes have descriptions of their own.
+        entry["description"] = cleandoc(entry["description"]).partition("\n\nAttributes:")[0]
     overriding = {
         key: dict(value)
         for key, value in definitions["ScenarioFile"]["properties"].items()
         if key != "conditions"
     }
     overriding["agents"] = _mapping_of(_override_of("AgentEntry", definitions))
-    overriding["perception"] = _override_of("PerceptionEntry", definitions)
+    overriding["perception"] = _override_of("Perception", definitions)
     for key in LABELLED:
         entry = overriding[key]["items"]["$ref"].rpartition("/")[2]
         by_label = _mapping_of(_override_of(entry, definitions))

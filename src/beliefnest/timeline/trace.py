@@ -16,7 +16,7 @@ import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import decode_json, open_regular
-from beliefnest.perception.options import ContainerMode, Perception, Testimony
+from beliefnest.perception.options import Perception
 from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
 from beliefnest.world.claims import Claim, claims_from_plain, claims_of
@@ -94,34 +94,11 @@ _BlockLine = tuple[int, int, int, str]
 _ContainerLine = tuple[int, int, int, dict[str, int] | None]
 
 
-class _HearingLine(msgspec.Struct, forbid_unknown_fields=True):
-    radius: float
-
-
-class _PerceptionLine(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    max_visible_distance: float | msgspec.UnsetType | None = msgspec.UNSET
-    field_of_view: float | msgspec.UnsetType = msgspec.UNSET
-    hearing: str | _HearingLine | msgspec.UnsetType = msgspec.UNSET
-    containers: ContainerMode | msgspec.UnsetType = msgspec.UNSET
-    transparent_blocks: list[str] | msgspec.UnsetType = msgspec.UNSET
-    negative_evidence: bool | msgspec.UnsetType = msgspec.UNSET
-    testimony: Testimony | msgspec.UnsetType = msgspec.UNSET
-    grace: int | msgspec.UnsetType = msgspec.UNSET
-    sincere: bool | msgspec.UnsetType = msgspec.UNSET
-    speech_ticks: int | msgspec.UnsetType = msgspec.UNSET
-
-    def value(self, registry: Registry) -> Perception:
-        given = msgspec.to_builtins(self)
-        for name in given.get("transparent_blocks", ()):
-            registry.state_ids(name)
-        return Perception(**given)
-
-
 class _FirstLine(msgspec.Struct, forbid_unknown_fields=True):
     box: tuple[Position, Position]
     agents: dict[str, _AgentLine | None]
     tick: int = 0
-    perception: _PerceptionLine = _PerceptionLine()
+    perception: Perception = Perception()
     static_blocks: list[str] = []
     unique: list[str] = []
     fills: list[tuple[Position, Position, str]] = []
@@ -241,7 +218,9 @@ class _Reader:
             raise InputError(
                 f"there are {len(self.names)} agents; at most {MOST_AGENTS} are allowed"
             )
-        self.perception = line.perception.value(registry)
+        for name in line.perception.transparent_blocks:
+            registry.state_ids(name)
+        self.perception = line.perception
         for name in line.static_blocks:
             registry.state_ids(name)
         self.static_blocks = frozenset(line.static_blocks)

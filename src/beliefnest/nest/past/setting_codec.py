@@ -1,13 +1,14 @@
 """Codec of settings, as run files store them."""
 
-from typing import Literal
+from typing import Any
 
 import msgspec
+from msgspec.structs import asdict
 
 from beliefnest.belief.grounds import InitialBelief
-from beliefnest.errors import StoreError
+from beliefnest.errors import InputError, StoreError
 from beliefnest.nest.past.setting import Setting, Step
-from beliefnest.perception.options import ContainerMode, Perception, Radius, Testimony
+from beliefnest.perception.options import Perception, Radius
 from beliefnest.timeline import codec
 from beliefnest.world.values import Position
 
@@ -20,17 +21,8 @@ class _Form(msgspec.Struct):
     form: int
 
 
-class _Perception(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
-    max_visible_distance: float | None
-    field_of_view: float
-    hearing: Literal["global", "sight"] | float
-    containers: ContainerMode
-    transparent_blocks: tuple[str, ...]
-    negative_evidence: bool
-    testimony: Testimony = "none"
-    grace: int = 100
-    sincere: bool = True
-    speech_ticks: int = 0
+_ALWAYS_STORED = Perception.__struct_fields__[:6]
+"""Options that every run file has; others came later, and are stored unless they are default."""
 
 
 class _Start(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
@@ -38,7 +30,7 @@ class _Start(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
     world: str
     name: str
     snapshot: bytes
-    perception: _Perception
+    perception: dict[str, Any]
     static_blocks: tuple[str | Position, ...]
     initial_beliefs: tuple[InitialBelief, ...]
     script: tuple[Step, ...]
@@ -110,15 +102,21 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
     return setting, start.world
 
 
-def _perception_to(options: Perception) -> _Perception:
-    fields = {name: getattr(options, name) for name in _Perception.__struct_fields__}
+def _perception_to(options: Perception) -> dict[str, Any]:
+    default, given = asdict(Perception()), asdict(options)
     if isinstance(options.hearing, Radius):
-        fields["hearing"] = options.hearing.blocks
-    return _Perception(**fields)
+        given["hearing"] = options.hearing.blocks
+    return {
+        name: value
+        for name, value in given.items()
+        if name in _ALWAYS_STORED or value != default[name]
+    }
 
 
-def _perception_from(stored: _Perception) -> Perception:
-    fields = msgspec.structs.asdict(stored)
-    if not isinstance(stored.hearing, str):
-        fields["hearing"] = Radius(stored.hearing)
-    return Perception(**fields)
+def _perception_from(stored: dict[str, Any]) -> Perception:
+    hearing = stored.get("hearing")
+    given = {**stored, "hearing": hearing if isinstance(hearing, str) else {"radius": hearing}}
+    try:
+        return msgspec.convert(given, Perception)
+    except (msgspec.ValidationError, InputError) as error:
+        raise StoreError(f"the run file stores invalid options of perception: {error}") from None
