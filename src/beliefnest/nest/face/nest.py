@@ -1,24 +1,26 @@
 """Nest: the real world and all beliefs in it."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
 
 from beliefnest.belief.grounds import InitialBelief
 from beliefnest.belief.view import State
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, UnknownNameError, WorldError
 from beliefnest.nest.acting.engine import Engine
+from beliefnest.nest.acting.frame_recorder import ChatListener
 from beliefnest.nest.acting.script import Progress, play_script
+from beliefnest.nest.face.base import NestBase
 from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction
 from beliefnest.nest.face.given import tick_of
-from beliefnest.nest.face.joining import Joining
+from beliefnest.nest.face.layout import Layout, layout_of
 from beliefnest.nest.face.opening import BareSetting, HasSetting, as_scenario, begun, resumed
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import Past
 from beliefnest.nest.face.simulator import Simulator
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.face.visiting import Visiting
 from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.unique import unique_items
@@ -29,17 +31,21 @@ from beliefnest.timeline.run_records import Senses
 from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
-from beliefnest.world.values import Position
-from beliefnest.worlds.by_name import Worlds, is_real_time, open_world
+from beliefnest.world.values import TICKS_PER_SECOND, Position
+from beliefnest.worlds.by_name import Worlds, is_real_time, joined_of, open_world, realtime_of
 from beliefnest.worlds.names import world_name
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
 from beliefnest.worlds.scripted.world import ScriptedWorld
+from beliefnest.worlds.servers.realtime import RealtimeWorld
 
 __all__ = ["HasSetting", "Nest", "Past", "Progress"]
 
+_PATIENCE_S = 600.0
+_LONGEST_S = 24 * 60 * 60
 
-class Nest(Joining, Visiting):
+
+class Nest(NestBase):
     """The real world and every belief in it. Each simulator is made when it is first used.
 
     `Nest(world)` wraps a `ScriptedWorld` and follows what happens in it. `Nest.open` opens a
@@ -319,3 +325,193 @@ class Nest(Joining, Visiting):
         """
         self.wait_for_people(on_progress=on_progress)
         play_script(self._engine, on_progress)
+
+    def wait(self, until: Callable[[], bool] | None = None, timeout_s: float = 60.0) -> bool:
+        """Let time pass in the real world, tick by tick, and record what happens in it.
+
+        On a server time passes by itself, so everything since the last call is recorded first. In
+        the embedded and the scripted world time passes as fast as it can.
+
+        Args:
+            until: Function called after every tick; True ends the wait. None: wait for the whole
+                time.
+            timeout_s: Greatest time to wait, in seconds of the world's time (20 ticks each).
+
+        Returns:
+            True if `until` held, or if there is none.
+
+        Raises:
+            InputError: The time is below 0, or longer than a day.
+            BodyError: The Minecraft side failed, or the server has stopped.
+        """
+        if not 0 <= timeout_s <= _LONGEST_S:
+            raise InputError(
+                f"timeout_s is {timeout_s!r}; give a number of seconds from 0 to {_LONGEST_S}"
+            )
+        self._pass(0)
+        last = self._head() + round(timeout_s * TICKS_PER_SECOND)
+        while until is None or not until():
+            if self._head() >= last:
+                return until is None
+            self._pass(1)
+        return True
+
+    def on_chat(self, callback: ChatListener) -> None:
+        """Call a function with each utterance and whisper in the real world from now on.
+
+        Its arguments are tick, speaker and text. It is called in the thread, and at the end, of the
+        call of the nest that records the utterance. It may use the nest.
+
+        Raises:
+            InputError: The callback is not a function.
+        """
+        if not callable(callback):
+            raise InputError(
+                f"on_chat() was given {callback!r}; give a function of tick, speaker and text"
+            )
+        self._engine.bodies.chat_listeners.append(callback)
+
+    @in_turn
+    def _pass(self, ticks: int) -> None:
+        self._engine.step((), ticks)
+
+    @in_turn
+    def _head(self) -> int:
+        return self._recording.info(()).head
+
+    @property
+    def address(self) -> str | None:
+        """The address at which Minecraft clients join, `HOST:PORT`; None if people cannot join."""
+        host = joined_of(self._engine.world)
+        return None if host is None else host.address
+
+    @property
+    @in_turn
+    def people(self) -> frozenset[str]:
+        """The names of the people who are joined now."""
+        host = joined_of(self._engine.world)
+        return frozenset() if host is None else host.here()
+
+    def wait_for_people(
+        self, timeout_s: float = _PATIENCE_S, on_progress: Progress | None = None
+    ) -> None:
+        """Wait until all people of the scenario have joined. Time passes meanwhile.
+
+        Args:
+            timeout_s: Greatest number of seconds to wait.
+            on_progress: Function called with a line that says who has to join, where and how; None:
+                print the line to stderr.
+
+        Raises:
+            InputError: The time is below 0, or longer than a day.
+            WorldError: A person did not join.
+        """
+        host = joined_of(self._engine.world)
+        if host is None or not host.invited:
+            return
+        shown: frozenset[str] | None = None
+
+        def all_here() -> bool:
+            nonlocal shown
+            awaited = host.invited - self.people
+            if awaited and awaited != shown:
+                _tell(_line(host, awaited), len(host.invited - awaited), len(host.invited))
+            shown = awaited
+            return not awaited
+
+        def _tell(line: str, done: int, total: int) -> None:
+            if on_progress is None:
+                sys.stderr.write(f"{line}\n")
+            else:
+                on_progress(line, done, total)
+
+        if not self.wait(all_here, timeout_s):
+            awaited = host.invited - self.people
+            raise WorldError(
+                f"{_names(awaited)} did not join within {timeout_s:g} s; {_line(host, awaited)}; "
+                "or let programs act instead, with nest.take_over(NAME)"
+            )
+
+    @in_turn
+    def take_over(self, name: str) -> None:
+        """Let programs act for a person until `hand_back`. Disconnect the person if joined.
+
+        Raises:
+            UnknownNameError: The scenario has no person of that name.
+        """
+        host = self._host_of_person(name)
+        host.invite(host.invited - {name})
+
+    @in_turn
+    def hand_back(self, name: str) -> None:
+        """Let a person join again after `take_over`. The agent stands still until then.
+
+        Raises:
+            UnknownNameError: The scenario has no person of that name.
+        """
+        host = self._host_of_person(name)
+        host.invite(host.invited | {name})
+
+    @in_turn
+    def pause(self) -> None:
+        """Stop the real world until `go_on`.
+
+        No tick passes. Acts and utterances of people have no effect, and people see a message.
+        Beliefs can be read, forked and acted in meanwhile. A pause is not recorded, because no time
+        passes in it.
+
+        Raises:
+            WorldError: The world does not run in real time, or is on a server elsewhere.
+        """
+        self._real_time_world().pause(paused=True)
+
+    @in_turn
+    def go_on(self) -> None:
+        """Let the real world run again after `pause`. Do nothing if it runs.
+
+        Raises:
+            WorldError: The world does not run in real time, or is on a server elsewhere.
+        """
+        self._real_time_world().pause(paused=False)
+
+    def _real_time_world(self) -> RealtimeWorld:
+        world = realtime_of(self._engine.world)
+        if world is None:
+            raise WorldError(
+                "this world does not run in real time, so there is nothing to pause: no time "
+                "passes between calls"
+            )
+        return world
+
+    def _host_of_person(self, name: str) -> RealtimeWorld:
+        people = self._recording.setting.people
+        if name not in people:
+            known = ", ".join(sorted(people)) or "none"
+            raise UnknownNameError(f"this scenario has no person {name!r}; its people are {known}")
+        host = joined_of(self._engine.world)
+        if host is None:
+            raise InputError(
+                f"{name} is a person, and people cannot join this world; open it with "
+                "realtime=True, listen=25565"
+            )
+        return host
+
+    @in_turn
+    def layout(self) -> Layout:
+        """Return the places of the real world and of all embodied simulators in Minecraft.
+
+        Raises:
+            InputError: The real world does not run in real time, so nobody can visit it.
+        """
+        return layout_of(self._engine.embodying)
+
+
+def _names(people: frozenset[str]) -> str:
+    return " and ".join(sorted(people))
+
+
+def _line(host: RealtimeWorld, awaited: frozenset[str]) -> str:
+    return (
+        f"join as {' or '.join(sorted(awaited))}: "
+        f"Minecraft Java edition {host.minecraft}, Multiplayer, Direct Connection, {host.address}"
+    )

@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 from beliefnest.errors import InputError
-from beliefnest.nest.acting.engine import Engine
-from beliefnest.nest.face.base import NestBase
-from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import Position
 
-__all__ = ["Layout", "Standing", "Visiting"]
+__all__ = ["Layout", "Standing", "layout_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,35 +45,29 @@ class Layout(tuple[Standing, ...]):
         )
 
 
-class Visiting(NestBase):
-    """The part of `Nest` for people who visit beliefs."""
+def layout_of(embodying: Embodying) -> Layout:
+    """Return the places of the real world and of all embodied simulators in Minecraft.
 
-    _engine: Engine
-
-    @in_turn
-    def layout(self) -> Layout:
-        """Return the places of the real world and of all embodied simulators in Minecraft.
-
-        Raises:
-            InputError: The real world does not run in real time, so nobody can visit it.
-        """
-        plots = self._engine.embodying.plots()
-        if not plots:
-            raise InputError(
-                "nothing stands where people could go, because this world does not run in real "
-                "time; open the nest with realtime=True, listen=25565, or on a server"
-            )
-        lags = self._engine.embodying.lags()
-        return Layout(
-            Standing(
-                path_text(path),
-                *plot.corners,
-                plot.origin,
-                "/tp {} {} {}".format(*plot.stand),
-                lags.get(path, 0),
-            )
-            for path, plot in plots.items()
+    Raises:
+        InputError: The real world does not run in real time, so nobody can visit it.
+    """
+    plots = embodying.plots()
+    if not plots:
+        raise InputError(
+            "nothing stands where people could go, because this world does not run in real "
+            "time; open the nest with realtime=True, listen=25565, or on a server"
         )
+    lags = embodying.lags()
+    return Layout(
+        Standing(
+            path_text(path),
+            *plot.corners,
+            plot.origin,
+            "/tp {} {} {}".format(*plot.stand),
+            lags.get(path, 0),
+        )
+        for path, plot in plots.items()
+    )
 
 
 def _corner(position: Position) -> str:
