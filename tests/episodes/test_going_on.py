@@ -85,5 +85,5 @@ def test_one_that_goes_on_is_resumed_forked_and_replayed(tmp_path: Path) -> None
 def test_there_has_to_be_one_to_go_on_with() -> None:
     with bn.Episode(errand(7), {"ann": Scripted([bn.GO_ON, "await say(bot, 'hello')"])}) as e:
         e.play(2)
-        assert "no program" in e.parts[0].decisions["ann"].fault
+        assert "no interrupted program" in e.parts[0].decisions["ann"].fault
         assert said(e) == ["hello"]

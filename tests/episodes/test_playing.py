@@ -158,11 +158,14 @@ def test_the_command_goes_on_with_no_other_episode(
     assert run_command_line(["play", "help-find", "--seed", "1", "--rounds", "1", *out]) == 1
     before = (tmp_path / "run" / "run.bn").read_bytes()
     for other, found in (
-        (["recipe", "--seed", "1"], "the task is help-find"),
-        (["help-find"], "the seed is 1"),
-        (["help-find", "--seed", "1", "--world", "embedded"], "the world is scripted"),
-        (["help-find", "--seed", "1", "--set", "chests=5"], "the instance is another one"),
-        (["help-find", "--seed", "1", "--agent", "anne=random"], "the policies are anne=search:1"),
+        (["recipe", "--seed", "1"], "whose task is help-find"),
+        (["help-find"], "whose seed is 1"),
+        (["help-find", "--seed", "1", "--world", "embedded"], "whose world is scripted"),
+        (["help-find", "--seed", "1", "--set", "chests=5"], "whose instance is another one"),
+        (
+            ["help-find", "--seed", "1", "--agent", "anne=random"],
+            "whose policies are anne=search:1",
+        ),
     ):
         assert run_command_line(["play", *other, *out]) == 2
         assert found in " ".join(capsys.readouterr().err.split())

@@ -1,5 +1,3 @@
 """Scenarios, suites and episodes as tasks of Inspect AI (extra `inspect`)."""
 
-from beliefnest.adapters import inspect_ai
-
-__all__ = ["inspect_ai"]
+import beliefnest.adapters.inspect_ai  # noqa: F401  # refuses to be imported without the extra
