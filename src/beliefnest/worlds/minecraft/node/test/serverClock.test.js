@@ -36,6 +36,15 @@ test('ticks never fall, whatever the server tells', () => {
   assert.ok(rises(following([[0, 100], [1000, 120], [1100, 140], [5000, 141], [5500, 3], [6500, 23], [6600, 43]])))
 })
 
+test('an age of 0 at a login is no jump', () => {
+  const known = following([[0, 100], [1000, 5000], [1500, 0], [1510, 5012], [2500, 5032]])
+  assert.equal(known.at(-1), 5032)
+  assert.ok(rises(known))
+  assert.equal(following([[0, 5000], [500, 0], [510, 0], [520, 5012]]).at(-1), 5012)
+  // A server that was set up anew stays at its low age.
+  assert.ok(following([[0, 5000], [500, 3], [1500, 23], [2500, 43]]).at(-1) < 5100)
+})
+
 test('a server that tells nothing is waited for', () => {
   assert.equal(following([[0, 100], [1000, 120], [60_000, 120]]).at(-1), 139)
 })

@@ -18,13 +18,25 @@ class ServerClock {
     // Milliseconds per tick according to the last two messages, but at least the game's own 50.
     this.tickMs = TICK_MS
     this.offset = 0
+    // Age and offset before the server sent a lower age; null if it sent none.
+    this.before = null
     this.latest = 0
     this.seen = 0
   }
 
-  /** Set the age that the server sent. If it has decreased, the server was set up anew; count on from here. */
+  /**
+   * Set the age that the server sent. If it has decreased, count on from here: the server was set up anew. But some
+   * servers send age 0 to a player who joins, and then the true one: if the next age is not below the one before, the
+   * lower one is ignored.
+   */
   tell (age) {
-    if (this.told !== null && age < this.told) this.offset = this.latest - age
+    if (this.told !== null && age < this.told) {
+      this.before ??= { told: this.told, offset: this.offset }
+      this.offset = this.latest - age
+    } else if (age > this.told) {
+      if (age >= this.before?.told) this.offset = this.before.offset
+      this.before = null
+    }
     if (this.told !== null && age > this.told) this.tickMs = Math.max(TICK_MS, this.silence / (age - this.told))
     this.told = age
     this.toldAt = this.now()
