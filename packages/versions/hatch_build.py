@@ -7,7 +7,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 VERSIONS = ("1.19", "1.19.2", "1.19.3", "1.19.4", "1.20", "1.21.3", "1.21.6", "1.21.9")
-"""What Mineflayer is tested with from 1.19 on, and BeliefNest does not hold itself."""
+"""Versions from 1.19 on with which Mineflayer is tested and which BeliefNest does not contain."""
 
 
 class VersionsHook(BuildHookInterface[Any]):

@@ -203,7 +203,7 @@ def test_unique_items_and_what_signs_claim_move_with_the_scene(tmp_path, symmetr
     with bn.Nest.open(varied(path, symmetry=symmetry.name), world="scripted") as nest:
         belief = nest["/bob"].state
         place = placing.block((8, 1, 2))
-        # What is unique is believed in one place: no longer where the initial belief put it.
+        # A unique item is believed in one place, no longer where the initial belief put it.
         assert {at: dict(held.items) for at, held in belief.containers.items() if held.items} == {
             place: {"diamond": 1}
         }

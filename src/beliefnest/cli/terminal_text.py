@@ -1,4 +1,4 @@
-"""Texts of others on a terminal."""
+"""Safe output of foreign texts on a terminal."""
 
 from beliefnest.world.texts import escaped
 
@@ -6,5 +6,5 @@ __all__ = ["printable"]
 
 
 def printable(text: str) -> str:
-    """Return a text that others wrote, with nothing in it that commands the terminal."""
+    """Return a foreign text with its control characters escaped; line breaks stay."""
     return "\n".join(escaped(line) for line in text.split("\n"))

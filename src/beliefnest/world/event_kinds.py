@@ -97,7 +97,7 @@ class EventKind(StrEnum):
     MINE_BLOCK = "mine_block", Traits(("position",))
     PLACE_BLOCK = "place_block", Traits(("position",))
     CRAFT_ITEM = "craft_item", Traits(("items",), gains=1)
-    # What was smelted is counted when it is taken out of the furnace.
+    # The result of smelting is counted when the agent takes it out of the furnace.
     SMELT_ITEM = "smelt_item", Traits(("items",))
     GET_ITEM_FROM_CHEST = "get_item_from_chest", Traits(("position", "items"), stores=-1, gains=1)
     DEPOSIT_ITEM_INTO_CHEST = (
