@@ -1,4 +1,4 @@
-"""What models read of the skills, and what the worlds do."""
+"""Skills as models read of them and as worlds run them."""
 
 from beliefnest.programs import skills
 from beliefnest.worlds.scripted.skills import SKILLS

@@ -1,4 +1,4 @@
-"""What happened unseen: weighted histories."""
+"""Weighted histories of the unseen past."""
 
 import math
 import warnings
