@@ -2,8 +2,9 @@
 
 import hashlib
 import json
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, Protocol, TypeVar
 
 from beliefnest.errors import BeliefNestError, InputError
@@ -38,19 +39,24 @@ SEEDS = 2**32
 """Number of possible seeds of cells."""
 
 
-class Key(Protocol):
-    """Identity of a cell."""
+@dataclass(frozen=True, slots=True)
+class Key(ABC):
+    """Identity of a cell; subclasses add its parts as fields."""
 
     @property
     def name(self) -> str:
         """Sixteen letters and digits, the same for the same cell on every machine."""
+        return digest(self.content_json())[:16]
 
     @property
+    @abstractmethod
     def seed(self) -> int:
         """Return the seed of all random numbers of the cell."""
 
     def content_json(self) -> dict[str, Any]:
         """Return all of it as plain values."""
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        return {n: dict(v) if isinstance(v, Mapping) else v for n, v in values.items()}
 
 
 class Keyed(Protocol):
@@ -68,7 +74,7 @@ C = TypeVar("C", bound=Keyed)
 
 
 @dataclass(frozen=True, slots=True)
-class CellKey:
+class CellKey(Key):
     """Identity of a cell in a study of scenarios.
 
     Attributes:
@@ -91,24 +97,6 @@ class CellKey:
     template: str
     repeat: int
     setting: Mapping[str, Any]
-
-    @property
-    def name(self) -> str:
-        """Sixteen letters and digits, the same for the same cell on every machine."""
-        return digest(self.content_json())[:16]
-
-    def content_json(self) -> dict[str, Any]:
-        """Return all of it as plain values."""
-        return {
-            "scenario": self.scenario,
-            "content": self.content,
-            "condition": self.condition,
-            "variation": dict(self.variation),
-            "model": self.model,
-            "template": self.template,
-            "repeat": self.repeat,
-            "setting": dict(self.setting),
-        }
 
     @property
     def seed(self) -> int:

@@ -13,6 +13,7 @@ from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.cells import (
     Invalid,
+    Key,
     Plan,
     alike,
     cell_seed,
@@ -28,7 +29,7 @@ __all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
 
 
 @dataclass(frozen=True, slots=True)
-class EpisodeKey:
+class EpisodeKey(Key):
     """Identity of a cell.
 
     Attributes:
@@ -54,26 +55,6 @@ class EpisodeKey:
     instance: int
     repeat: int
     setting: Mapping[str, Any]
-
-    @property
-    def name(self) -> str:
-        """Return sixteen letters and digits, the same for the same cell on every machine."""
-        return digest(self.content_json())[:16]
-
-    def content_json(self) -> dict[str, Any]:
-        """Return the key as plain values."""
-        return {
-            "task": self.task,
-            "content": self.content,
-            "condition": self.condition,
-            "variation": dict(self.variation),
-            "player": self.player,
-            "order": self.order,
-            "policies": dict(self.policies),
-            "instance": self.instance,
-            "repeat": self.repeat,
-            "setting": dict(self.setting),
-        }
 
     @property
     def seed(self) -> int:
