@@ -42,7 +42,7 @@ def nest_of(
     world = bn.ScriptedWorld(BOX, blocks, agents, inventories=inventories, containers=chests or {})
     nest = bn.Nest(
         world,
-        bn.Perception(**perception),  # type: ignore[arg-type]
+        bn.Perception(**perception),  # type: ignore[arg-type]  # options of any type
         static_blocks=static_blocks,
         initial_beliefs=initial_beliefs,
     )

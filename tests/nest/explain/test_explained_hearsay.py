@@ -42,7 +42,7 @@ def hall(
     perception = {"max_visible_distance": 6, "testimony": "accept"} | (options or {})
     nest = bn.Nest(
         scripted,
-        bn.Perception(**perception),  # type: ignore[arg-type]
+        bn.Perception(**perception),  # type: ignore[arg-type]  # options of any type
         initial_beliefs=initial,
         unique=unique,
     )

@@ -28,7 +28,7 @@ def played(store: Path | None = None, **options: object) -> bn.Nest:
         inventories={"max": {"diamond": 1}},
     )
     perception = {"max_visible_distance": 6, "grace": 5, "testimony": "informed"} | options
-    nest = bn.Nest(world, bn.Perception(**perception), store=store)  # type: ignore[arg-type]
+    nest = bn.Nest(world, bn.Perception(**perception), store=store)  # type: ignore[arg-type]  # of any type
 
     def go(name: str, place: Point) -> None:
         world.place_agent(name, place)

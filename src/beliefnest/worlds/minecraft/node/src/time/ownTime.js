@@ -63,7 +63,11 @@ function installOwnTime () {
   const functions = time.timers({ setTimeout, clearTimeout })
   Object.assign(globalThis, functions)
   Object.defineProperty(perfHooks.performance, 'now', { value: () => time.now(), configurable: true })
-  timersPromises.setTimeout = (delay, value) => new Promise(resolve => functions.setTimeout(resolve, delay, value))
+  const { setTimeout: real } = timersPromises
+  // A wait with options, such as a signal that ends it, stays in real time: nothing in this process makes one.
+  timersPromises.setTimeout = (delay, value, options) => options === undefined
+    ? new Promise(resolve => functions.setTimeout(resolve, delay, value))
+    : real(delay, value, options)
 }
 
 module.exports = { installOwnTime, OwnTime }
