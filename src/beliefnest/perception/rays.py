@@ -9,6 +9,7 @@ Corners of shapes are multiples of 1/32, and a shape reaches out of its cell by 
 cell, along one axis. All shapes of Minecraft are so; tests/world/test_registry.py checks it.
 """
 
+import contextlib
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar, cast
@@ -16,6 +17,8 @@ from typing import Any, NamedTuple, TypeVar, cast
 import numba
 import numpy as np
 import numpy.typing as npt
+from numba.core.caching import FunctionCache
+from numba.core.runtime.nrt import rtsys
 
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
 
@@ -130,11 +133,29 @@ def inlined_allocating(function: F) -> F:
     return _jit(function, _KERNEL | _INNER | {"forceinline": True})
 
 
+class _KernelCache(FunctionCache):
+    """Cache of machine code that is loaded without numba's compiler.
+
+    Numba imports the compiler's 250 modules before it loads anything, 0.3 s of every process.
+    Machine code needs only the runtime that its wrapper uses. Code that is not in the cache is
+    compiled as always: the compiler imports its own modules.
+    """
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the compiled kernel for the types of the arguments; None if it is not cached."""
+        rtsys.initialize(target_context)
+        with self._guard_against_spurious_io_errors():
+            load: Callable[..., Any] = self._load_overload
+            return load(sig, target_context)
+
+
 def _kept(function: F, options: dict[str, Any]) -> F:
-    try:
-        return _jit(function, options | {"cache": True})
-    except RuntimeError:  # no writable cache folder; raised before anything is compiled
-        return _jit(function, options)
+    kernel: Any = _jit(function, options)
+    cache: Callable[..., Any] = _KernelCache
+    # Without a writable cache folder, which numba tells by this error, nothing is kept.
+    with contextlib.suppress(RuntimeError):
+        kernel._cache = cache(function)
+    return cast(F, kernel)
 
 
 def _jit(function: F, options: dict[str, Any]) -> F:
