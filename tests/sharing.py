@@ -6,28 +6,29 @@ __all__ = ["ByFile", "rank"]
 
 _LONGEST = (
     "tests/worlds/minecraft/test_node_suite.py::test_javascript[test/tcp/",
-    "tests/nest/test_on_servers.py",
+    "tests/worlds/servers/test_realtime.py",
     "tests/worlds/minecraft/test_node_suite.py::test_javascript[test/process.",
-    "tests/nest/test_people.py",
+    "tests/worlds/servers/test_people.py",
     "tests/viewer/page/test_page.py",
     "tests/studies/test_models.py",
     "tests/studies/test_study.py",
     "tests/worlds/minecraft/test_node_suite.py",
     "tests/adapters/inspect_ai/",
     "tests/cli/test_pictures.py",
-    "tests/cli/test_models.py",
-    "tests/nest/test_killed_node.py",
-    "tests/nest/test_percepts_embedded.py",
-    "tests/nest/test_against_reference.py",
-    "tests/nest/test_laws.py",
+    "tests/cli/test_run.py",
+    "tests/nest/acting/test_lives.py",
+    "tests/worlds/minecraft/test_percepts.py",
+    "tests/semantics/test_against_reference.py",
+    "tests/semantics/test_laws.py",
     "tests/worlds/",
     "tests/docs/",
     "tests/cli/",
     "tests/nest/",
+    "tests/semantics/",
 )
 """What takes long, by the beginnings of names: what waits for real time, then what computes."""
 
-_APART = ("tests/worlds/minecraft/test_node_suite.py", "tests/nest/test_against_reference.py")
+_APART = ("tests/worlds/minecraft/test_node_suite.py", "tests/semantics/test_against_reference.py")
 """Files whose tests have nothing in common, so that each may run anywhere."""
 
 

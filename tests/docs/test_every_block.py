@@ -39,19 +39,19 @@ RUN_BY = {
     ("looking.md", "python"): "docs/test_looking_page.py",
     ("minds.md", "python"): "docs/test_minds_page.py",
     ("models.md", "python"): "llm/test_docs.py",
-    ("people.md", "javascript"): "nest/test_people.py",
-    ("people.md", "python"): "nest/test_people.py",
+    ("people.md", "javascript"): "worlds/servers/test_people.py",
+    ("people.md", "python"): "worlds/servers/test_people.py",
     ("pettingzoo.md", "python"): "adapters/pettingzoo/test_environment.py",
     ("programs.md", "python"): "docs/test_nest_pages.py",
     ("python.md", "python"): "docs/test_nest_pages.py",
     ("scenarios.md", "python"): "docs/test_docs.py",
     ("scripted-world.md", "python"): "docs/test_nest_pages.py",
-    ("servers.md", "python"): "nest/test_on_servers.py",
+    ("servers.md", "python"): "worlds/servers/test_realtime.py",
     ("skills.md", "js"): "skills/test_examples.py",
     ("studies.md", "python"): "docs/test_studies_page.py",
     ("timelines.md", "python"): "docs/test_nest_pages.py",
     ("tutorial.md", "python"): "docs/test_tutorial.py",
-    ("visiting.md", "python"): "nest/face/test_visiting.py",
+    ("visiting.md", "python"): "nest/face/test_layout.py",
 }
 """Page and language to the test that runs its blocks."""
 SHELLS = {"bash", "console", "sh"}

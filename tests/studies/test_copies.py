@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from tests.studies.small import SMALL, small_in
-from tests.studies.test_episodes import TASK
+from tests.studies.test_episode_cells import TASK
 
 import beliefnest as bn
 from beliefnest.studies.counting import count_rows, paired_rows

@@ -2,7 +2,7 @@
 
 import pytest
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, OPEN, WEST, nest_of
-from tests.nest.test_sally_anne import BEFORE_LEFT, LEFT, RIGHT, walls
+from tests.semantics.test_sally_anne import BEFORE_LEFT, LEFT, RIGHT, walls
 
 import beliefnest as bn
 from beliefnest.belief.grounds import Basis, Source

@@ -1,7 +1,7 @@
 """What explanations say in words, and that they say what states say."""
 
 from hypothesis import given
-from tests.nest.stories import CONTAINERS, NAMES, Stage, Stories, Story
+from tests.semantics.stories import CONTAINERS, NAMES, Stage, Stories, Story
 
 import beliefnest as bn
 from beliefnest.nest.explain.parts import View

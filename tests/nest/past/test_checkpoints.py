@@ -10,7 +10,7 @@ from unittest.mock import patch
 from hypothesis import given
 from hypothesis import strategies as st
 from tests.nest.comparing import everything, values
-from tests.nest.stories import CONTAINERS, NAMES, Stage, Stories
+from tests.semantics.stories import CONTAINERS, NAMES, Stage, Stories
 
 import beliefnest as bn
 from beliefnest.nest.past.checkpoints import Pace

@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from tests.nest.comparing import everything, values
 from tests.nest.places import wall
-from tests.nest.reference import content_at, paths_to, seen_at
-from tests.nest.reference_rules import Block, Node, Rules
-from tests.nest.reference_testimony import Ear
-from tests.nest.stories import NAMES, REGISTRY, Act, Stage, Stories, Story
-from tests.nest.symmetries import SYMMETRIES, Symmetry, with_directions
+from tests.semantics.reference import content_at, paths_to, seen_at
+from tests.semantics.reference_rules import Block, Node, Rules
+from tests.semantics.reference_testimony import Ear
+from tests.semantics.stories import NAMES, REGISTRY, Act, Stage, Stories, Story
+from tests.semantics.symmetries import SYMMETRIES, Symmetry, with_directions
 
 from beliefnest.belief.view import State
 from beliefnest.world.frames import Frame

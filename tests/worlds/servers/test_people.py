@@ -268,7 +268,7 @@ def test_worlds_that_nobody_can_join_refuse_people(scenario):
 
 def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
     """The page's own example: what it prints, and what it writes down."""
-    page = (Path(__file__).parents[2] / "docs" / "people.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "people.md").read_text(encoding="utf-8")
     ((example,), (written,)) = (
         re.findall(rf"```{kind}\n(.*?)```", page, re.DOTALL) for kind in ("python", "yaml")
     )
@@ -301,7 +301,7 @@ def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
 
 @pytest.mark.parametrize("is_on", [True, False])
 def test_a_bot_waits_as_the_page_says(is_on):
-    page = (Path(__file__).parents[2] / "docs" / "people.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "people.md").read_text(encoding="utf-8")
     (wait,) = re.findall(r"```javascript\n(.*?)```", page, re.DOTALL)
     room = yaml.safe_load(WORKSHOP)
     del room["agents"]["anne"]

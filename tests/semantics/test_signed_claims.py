@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.nest.reference import Reference
-from tests.nest.test_against_reference import split
+from tests.semantics.reference import Reference
+from tests.semantics.test_against_reference import split
 
 import beliefnest as bn
 from beliefnest.belief.grounds import Basis, Source

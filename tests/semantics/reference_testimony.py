@@ -15,7 +15,7 @@ Where the text leaves something open, the choice made here is:
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from tests.nest.reference_unique import is_perceived_elsewhere, remove
+from tests.semantics.reference_unique import is_perceived_elsewhere, remove
 
 from beliefnest.belief.grounds import Basis, ContainerBelief, Source
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
@@ -25,7 +25,7 @@ from beliefnest.world.values import EventKind, Items, Point, Position
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from tests.nest.reference_rules import Block, Node, Rules, View
+    from tests.semantics.reference_rules import Block, Node, Rules, View
 
 Matter = tuple[str, Any]
 """A place that can be watched: `("cell", position)` or `("agent", name)`."""
@@ -283,7 +283,7 @@ def _believe(
 
 
 def _believe_block(registry: Registry, node: "Node", claim: Claim, basis: Basis) -> None:
-    from tests.nest.reference_rules import Block
+    from tests.semantics.reference_rules import Block
 
     place, text = claim.cell, claim.state or ""
     state, old = registry.state_id(text), node.blocks.get(place)

@@ -2,7 +2,7 @@
 
     python acting_nest.py STORE SEED
 
-A process of `test_kill_nest.py`; `calls` is what it does, also for the model in memory.
+A process of `test_killed_process.py`; `calls` is what it does, also for the model in memory.
 """
 
 import random

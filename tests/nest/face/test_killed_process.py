@@ -8,8 +8,8 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
-from tests.nest.acting_nest import OFTEN, PATHS, calls, nest_in
 from tests.nest.comparing import everything
+from tests.nest.face.acting_nest import OFTEN, PATHS, calls, nest_in
 from tests.profiles import at_night
 
 import beliefnest as bn

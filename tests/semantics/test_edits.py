@@ -3,7 +3,7 @@
 import pytest
 from tests.nest.comparing import everything
 from tests.nest.places import CHEST, CORNER, EAST, GAP, MEETING, WEST, nest_of
-from tests.nest.stories import REGISTRY
+from tests.semantics.stories import REGISTRY
 
 import beliefnest as bn
 from beliefnest.belief.grounds import Source

@@ -6,9 +6,9 @@ from pathlib import Path
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
-from tests.nest.acting_nest import BOX, CHEST, OFTEN, PATHS, nest_in
 from tests.nest.comparing import everything
-from tests.nest.linear import LinearModel
+from tests.nest.face.acting_nest import BOX, CHEST, OFTEN, PATHS, nest_in
+from tests.nest.face.linear import LinearModel
 
 import beliefnest as bn
 from beliefnest.errors import BeliefNestError, BranchError, TickError, WorldError

@@ -154,7 +154,7 @@ def test_skills_do_and_are_told_as_in_the_embedded_world(tmp_path):
 
 def test_the_example_of_the_page_runs(server, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    page = (Path(__file__).parents[2] / "docs" / "servers.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "servers.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     example = example.replace("minecraft://localhost:25565", server.address())
     exec(compile(example, "servers.md", "exec"), {"__name__": "example"})

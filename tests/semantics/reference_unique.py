@@ -17,7 +17,7 @@ from beliefnest.belief.grounds import Basis, Source
 from beliefnest.world.values import Position
 
 if TYPE_CHECKING:
-    from tests.nest.reference_rules import Node
+    from tests.semantics.reference_rules import Node
 
 Whereabouts = tuple[str, Any]
 """`("container", position)` or `("agent", name)`."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from math import cos, pi, sin
 from typing import Any
 
-from tests.nest.stories import HIGH, Act, Story
+from tests.semantics.stories import HIGH, Act, Story
 
 from beliefnest.belief.grounds import AgentBelief
 

@@ -187,7 +187,7 @@ def hidden_in(content: dict[str, Any], agent: str, unseen: Any, used: set[Any]) 
 
 
 LEFT_OUT = ("watch-and-help",)
-"""Tasks in which everybody sees all there is; they hide goals (test_hidden_goals.py)."""
+"""Tasks in which everybody sees all there is; they hide goals (policies/test_infer.py)."""
 
 AGENTS = [
     (name, agent)

@@ -7,8 +7,8 @@ away is out of sight. In most tests he goes away before he is told anything.
 from typing import Any
 
 import pytest
-from tests.nest.reference import Reference
-from tests.nest.test_against_reference import split
+from tests.semantics.reference import Reference
+from tests.semantics.test_against_reference import split
 
 import beliefnest as bn
 from beliefnest.belief.grounds import Basis, ContainerBelief, Source

@@ -5,8 +5,8 @@ from math import dist
 from typing import Any
 
 import numpy as np
-from tests.nest.reference_testimony import Ear, Matter, hear, read
-from tests.nest.reference_unique import see_alone, see_moved
+from tests.semantics.reference_testimony import Ear, Matter, hear, read
+from tests.semantics.reference_unique import see_alone, see_moved
 
 import beliefnest as bn
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source

@@ -8,7 +8,7 @@ from beliefnest.episodes.tasks import parameters_of, source_of
 
 SEEDS = at_night(50, 2)
 KNOWN = [name for name in bn.Task.names() if bn.Task.load(name).form.goals_known]
-"""Tasks whose goals are common knowledge; `test_hidden_goals.py` tries the others."""
+"""Tasks whose goals are common knowledge; `policies/test_infer.py` tries the others."""
 
 
 def played(task: bn.Task, order: int) -> bool:

@@ -2,8 +2,8 @@
 
 from hypothesis import given
 from tests.nest.comparing import everything
-from tests.nest.reference import Path, Reference, paths_to
-from tests.nest.stories import NAMES, REGISTRY, Act, Stage, Stories, Story
+from tests.semantics.reference import Path, Reference, paths_to
+from tests.semantics.stories import NAMES, REGISTRY, Act, Stage, Stories, Story
 
 DEPTH = 3
 

@@ -16,9 +16,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from tests.nest.reference_rules import UNKNOWN, Node, Rules, known_block
-from tests.nest.reference_testimony import Ear, read
-from tests.nest.reference_unique import remove
+from tests.semantics.reference_rules import UNKNOWN, Node, Rules, known_block
+from tests.semantics.reference_testimony import Ear, read
+from tests.semantics.reference_unique import remove
 
 import beliefnest as bn
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
