@@ -477,6 +477,9 @@ def play(
         str | None,
         typer.Option(help="Address for people to join: PORT of this machine, or HOST:PORT."),
     ] = None,
+    export: Annotated[
+        Path | None, typer.Option(help="Write the task to this scenario file; do not play it.")
+    ] = None,
     baselines: Annotated[
         bool, typer.Option("--baselines", help="Play the task, or all tasks, with all baselines.")
     ] = False,
@@ -508,6 +511,7 @@ def play(
         patience_s=patience,
         measures_help=measure_help,
         listen=_listening(listen),
+        export=export,
         as_json=json,
     )
     return play_task(options)

@@ -43,6 +43,7 @@ class PlayOptions:
         patience_s: Seconds after which a policy loses its round.
         measures_help: Measure help, which plays further branches.
         listen: Address HOST:PORT at which people join to play agents.
+        export: File to write the task to, instead of playing it.
         as_json: Print one JSON object instead of a table.
     """
 
@@ -58,6 +59,7 @@ class PlayOptions:
     patience_s: float | None
     measures_help: bool
     listen: str | None
+    export: Path | None
     as_json: bool
 
 
@@ -77,6 +79,8 @@ def play_task(options: PlayOptions) -> int:
     given = _pairs(options.parameters, "--set", "NAME=VALUE")
     parameters = {name: _value(text) for name, text in given.items()}
     task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
+    if options.export is not None:
+        return _export(task, options.export)
     with _episode(task, policies, options) as episode, progress_on(task.name) as on_progress:
         limit = task.form.rounds if options.rounds is None else options.rounds
         while episode.rounds < limit and not episode.is_over:
@@ -92,6 +96,21 @@ def play_task(options: PlayOptions) -> int:
     else:
         _print(report)
     return 0 if report["success"] else 1
+
+
+def _export(task: Task, file: Path) -> int:
+    """Write a task as a scenario file, which must be new."""
+    try:
+        with file.open("x", encoding="utf-8") as out:
+            out.write(task.text())
+    except FileExistsError:
+        raise InputError(f"{file} exists; name a new file") from None
+    except OSError as error:
+        raise InputError(f"{file} cannot be written: {error.strerror}") from None
+    stdout().print(
+        f"wrote {file}; play it with `beliefnest play {file}`", markup=False, soft_wrap=True
+    )
+    return 0
 
 
 def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> Episode:

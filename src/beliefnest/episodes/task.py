@@ -13,11 +13,14 @@ from beliefnest.episodes.tasks import builtin_tasks, generated
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
 from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.goals import Goal
-from beliefnest.scenarios.loading import condition_number
+from beliefnest.scenarios.instances import drawn_instance, has_instances
+from beliefnest.scenarios.loading import Change, condition_number
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names, read_document
 from beliefnest.scenarios.space import box_between
+from beliefnest.scenarios.writing import content_text
+from beliefnest.version import VERSION
 from beliefnest.world.values import Position
 
 __all__ = ["Task"]
@@ -32,7 +35,7 @@ class Task:
 
     Attributes:
         form: Content of the task, as in a task file.
-        seed: Number of the instance; None: the task is from a file or built in code.
+        seed: Number of the instance; None: the task has no instances.
     """
 
     form: TaskForm
@@ -56,7 +59,7 @@ class Task:
 
         Args:
             name_or_path: Name of a built-in task or scenario, or path of a YAML file of either.
-            seed: Number of the instance of a built-in task.
+            seed: Number of the instance of a built-in task, or of a scenario with `instances`.
             condition: Number of a scenario's condition; None: the scenario as written.
             parameters: Parameters of the task or scenario, such as `agents=3`.
 
@@ -70,7 +73,7 @@ class Task:
             return cls.from_mapping(generated(name_or_path, seed, parameters), seed)
         document = _written(name_or_path)
         if _is_scenario(document):
-            return cls.of(Scenario.varied(document, condition_number(condition), parameters))
+            return cls.instance_of(document, seed, condition_number(condition), parameters)
         _check_no_condition(name_or_path, condition)
         if parameters:
             raise InputError(f"{name_or_path} is a task and takes no {', '.join(parameters)}")
@@ -79,6 +82,32 @@ class Task:
             return cls.from_mapping(cast(dict[str, Any], plain(document.root)))
         except ScenarioError as fault:
             raise ScenarioError(f"{name_or_path}: {fault}") from None
+
+    @classmethod
+    def instance_of(
+        cls,
+        document: Document,
+        seed: int,
+        condition: int | None,
+        parameters: Mapping[str, object],
+        change: Change | None = None,
+    ) -> Self:
+        """Return an instance of a scenario; without `instances`, the scenario itself.
+
+        Args:
+            document: Document of the scenario.
+            seed: Number of the instance.
+            condition: Number of a condition; None: the scenario as written.
+            parameters: Values of parameters, which are not drawn.
+            change: Function that changes the document to another scene; None: no change.
+
+        Raises:
+            ScenarioError: The scenario is wrong, or no draw keeps the rules of its instances.
+        """
+        if not has_instances(document):
+            return cls.of(Scenario.varied(document, condition, parameters, change))
+        values = drawn_instance(document, seed, parameters)
+        return replace(cls.of(Scenario.varied(document, condition, values, change)), seed=seed)
 
     @staticmethod
     def scenario_document(name_or_path: str) -> Document | None:
@@ -241,6 +270,26 @@ class Task:
         if goal.ticks is None:
             return goal
         return msgspec.structs.replace(goal, ticks=goal.ticks * pace // self.form.pace)
+
+    def text(self) -> str:
+        """Return the task as the text of a scenario file with an `episode`.
+
+        Raises:
+            InputError: The task's pace is not that of a scenario file.
+        """
+        if self.form.pace != 1:
+            raise InputError(f"task {self.name} has the pace of another world; write it before")
+        rules = {
+            key: value
+            for key, value in self.plain().items()
+            if key not in _NO_RULES and key in EpisodeEntry.__struct_fields__
+        }
+        about: dict[str, Any] = {"name": self.name, "description": self.form.description or None}
+        scene = {key: value for key, value in self.form.scenario.items() if key not in about}
+        content = {key: value for key, value in about.items() if value is not None}
+        content |= {**scene, "episode": rules}
+        instance = "" if self.seed is None else f", instance {self.seed}"
+        return content_text(content, f"{self.name}{instance}, of BeliefNest {VERSION}")
 
     def plain(self) -> dict[str, Any]:
         """Return the task as plain values; `from_mapping` is the inverse."""

@@ -46,7 +46,7 @@ from beliefnest.world.values import Block, Position
 
 __all__ = ["build_scenario"]
 
-_WORKED_IN = ("conditions", "parameters", "constraints")
+_WORKED_IN = ("conditions", "parameters", "constraints", "instances")
 """Keys that are resolved before the scenario is built."""
 
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)

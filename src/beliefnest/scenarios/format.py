@@ -25,6 +25,7 @@ __all__ = [
     "GridEntry",
     "InferEntry",
     "InitialBeliefEntry",
+    "InstanceEntry",
     "LevelsEntry",
     "ParameterEntry",
     "ProbeEntry",
@@ -322,6 +323,28 @@ class ParameterEntry(_Entry, frozen=True):
     description: Annotated[str, note("Description.")] = ""
 
 
+class InstanceEntry(_Entry, frozen=True):
+    """Rules for the value of a parameter in a random instance."""
+
+    within: Annotated[
+        tuple[Position, Position] | None,
+        note("Two inclusive corners: the value is a position between them."),
+    ] = None
+    free: Annotated[bool, note("True if `blocks` must leave the position free, above a block.")] = (
+        True
+    )
+    apart: Annotated[
+        Annotated[float, msgspec.Meta(ge=0)],
+        note("Least distance to the other drawn positions, in blocks."),
+    ] = 1.0
+    seen_by: Annotated[list[str], note("Agents that see the position at the start.")] = []
+    hidden_from: Annotated[list[str], note("Agents that do not see it at the start.")] = []
+    reached_by: Annotated[
+        list[str], note("Agents that can walk to where their hand reaches the position.")
+    ] = []
+    differs_from: Annotated[list[str], note("Parameters that have other values.")] = []
+
+
 class ScenarioFile(_Entry, frozen=True):
     """A scenario: a world, agents, a script, and expected beliefs."""
 
@@ -343,6 +366,10 @@ class ScenarioFile(_Entry, frozen=True):
     constraints: Annotated[
         list[str], note("Expressions over parameters that must hold, such as `gap < 4`.")
     ] = []
+    instances: Annotated[
+        dict[str, InstanceEntry],
+        note("Parameters whose values the seed of a task draws, each with its rules."),
+    ] = {}
     blocks: Annotated[list[BlockEntry], note("Blocks in the box; the rest is air.")] = []
     containers: Annotated[
         list[ContainerEntry], note("Containers, their initial contents, and their names.")

@@ -1,10 +1,10 @@
 """Python functions that judge probes, given in code or named in a file."""
 
-import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from beliefnest.errors import InputError
+from beliefnest.importing import imported_object
 from beliefnest.scenarios.trial import Trial
 
 __all__ = ["NamedFunction", "function_of"]
@@ -32,17 +32,9 @@ class NamedFunction:
         Raises:
             InputError: The module or function does not exist.
         """
-        try:
-            found: Callable[[Trial], bool | str] | None = getattr(
-                importlib.import_module(self.module), self.function, None
-            )
-        except ImportError as error:
-            raise InputError(
-                f"the module {self.module!r} of a judging function cannot be imported: {error}; "
-                "put its folder into PYTHONPATH"
-            ) from error
-        if found is None or not callable(found):
-            raise InputError(f"the module {self.module!r} has no function {self.function!r}")
+        found = imported_object(f"{self.module}:{self.function}", "judging function")
+        if not callable(found):
+            raise InputError(f"{self.function!r} in {self.module!r} is no function")
         return found
 
 

@@ -16,9 +16,9 @@ _HOLE = {
     "type": "string",
     "pattern": r"^\$\{[^{}]*\}$",
 }
-_AS_WRITTEN = ("ParameterEntry",)
+_AS_WRITTEN = ("ParameterEntry", "InstanceEntry")
 """Definitions in which `${...}` is not replaced."""
-_DECLARING = ("parameters", "constraints", "conditions")
+_DECLARING = ("parameters", "constraints", "instances", "conditions")
 """Keys whose values contain no `${...}` to replace."""
 
 

@@ -27,7 +27,9 @@ _PROGRAMS = ("program", "programs")
 """Keys of programs, in which `${...}` may belong to JavaScript."""
 _MOST_VALUES = 1_000_000
 _KEYS = ("parameters", "constraints")
-"""Keys of the declarations."""
+"""Keys of the declarations, which a condition may override."""
+_DECLARING = (*_KEYS, "instances")
+"""Keys that are gone when parameters are filled in."""
 
 
 def choices(declared: ParameterEntry) -> Sequence[Any] | None:
@@ -131,6 +133,7 @@ def with_parameters(
         ScenarioError: A parameter is not declared, a constraint is broken, or `${...}` cannot be
             parsed.
     """
+    _check_instances(document, condition)
     declared = declared_in(document, condition)
     unknown = [name for name in given if name not in declared]
     if unknown:
@@ -147,8 +150,22 @@ def with_parameters(
     return replace(document, root=root)
 
 
+def _check_instances(document: Document, condition: int | None) -> None:
+    """Refuse rules of instances under a condition."""
+    conditions = document.root.value.get("conditions")
+    if conditions is None or not isinstance(conditions.value, dict):
+        return
+    written = conditions.value.get(condition)
+    if written is not None and isinstance(written.value, dict) and "instances" in written.value:
+        raise document.fault(
+            ("conditions", str(condition), "instances"),
+            "stands under a condition; put it at the top of the file: an instance is the same "
+            "under all conditions",
+        )
+
+
 def _without_declarations(root: YamlNode) -> YamlNode:
-    kept = {key: node for key, node in root.value.items() if key not in _KEYS}
+    kept = {key: node for key, node in root.value.items() if key not in _DECLARING}
     conditions = kept.get("conditions")
     if conditions is not None and isinstance(conditions.value, dict):
         others = {

@@ -1,4 +1,4 @@
-"""Scenario files of captured places, written so that people can read and change them."""
+"""Scenario files of places and tasks, written so that people can read and change them."""
 
 from collections.abc import Iterator, Mapping
 from io import StringIO
@@ -16,10 +16,12 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, Position
 
-__all__ = ["cuboids", "scenario_text"]
+__all__ = ["content_text", "cuboids", "scenario_text"]
 
 _VISITOR = "visitor"
 _WIDTH = 100
+_UNBROKEN = 10_000
+"""Width at which entries stay on their lines."""
 _FULL = 20.0
 
 
@@ -50,6 +52,28 @@ def scenario_text(name: str, description: str, place: Snapshot) -> str:
     text = _yaml({key: value for key, value in content.items() if value})
     _check(text, place)
     return text
+
+
+def content_text(content: Mapping[str, Any], heading: str) -> str:
+    """Return the text of a scenario file with a content.
+
+    Each entry of a list or mapping at the top stands on a line of its own.
+
+    Args:
+        content: Content of the file, as dicts, lists and scalars.
+        heading: First line, a comment.
+    """
+    laid_out = {key: _by_line(value) for key, value in content.items()}
+    return f"# {heading}\n{_yaml(laid_out, _UNBROKEN)}"
+
+
+def _by_line(value: Any) -> Any:
+    """Return a value whose entries stand on lines of their own; positions stay on one line."""
+    if isinstance(value, Mapping) and value:
+        return CommentedMap((key, _flow(part)) for key, part in value.items())
+    if isinstance(value, list | tuple) and any(isinstance(each, Mapping) for each in value):
+        return CommentedSeq(_flow(part) for part in value)
+    return _flow(value)
 
 
 def cuboids(grid: BlockGrid, skipped: npt.NDArray[np.bool_]) -> Iterator[tuple[int, Box]]:
@@ -156,9 +180,9 @@ def _flow(value: Any) -> Any:
     return made
 
 
-def _yaml(content: Mapping[str, Any]) -> str:
+def _yaml(content: Mapping[str, Any], width: int = _WIDTH) -> str:
     yaml = YAML()
-    yaml.width = _WIDTH
+    yaml.width = width
     yaml.indent(mapping=2, sequence=4, offset=2)
     out = StringIO()
     yaml.dump(dict(content), out)

@@ -5,12 +5,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from beliefnest.episodes.policies import resolve_policy, text_of_policy
+from beliefnest.episodes.policies import is_program, resolve_policy, text_of_policy
 from beliefnest.episodes.task import Task
 from beliefnest.errors import BeliefNestError, MissingExtraError, ModelError
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
-from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.cells import (
     Invalid,
     Key,
@@ -86,10 +85,10 @@ class EpisodeCell:
     def plain(self) -> dict[str, Any]:
         """Return the cell as plain values for the study's plan."""
         key = self.key
-        # A task from a file has no instances: all seeds give the same task.
-        from_file = self.task.seed is None
-        seeds = ("repeat", "instance") if from_file else ("repeat",)
-        instance = None if from_file else key.instance
+        # Without instances, all seeds give the same task.
+        has_instances = self.task.seed is not None
+        seeds = ("repeat",) if has_instances else ("repeat", "instance")
+        instance = key.instance if has_instances else None
         return {
             "name": key.name,
             "key": key.content_json(),
@@ -159,7 +158,7 @@ class _Place:
             return Task.load(self.name, seed, **self.variation.values)
         varied = self.variation
         scene = varied.scene if varied.changes_scene else None
-        return Task.of(Scenario.varied(self.document, self.condition, varied.parameters, scene))
+        return Task.instance_of(self.document, seed, self.condition, varied.parameters, scene)
 
     def invalid(self, why: str) -> Invalid:
         """Return an entry that says why this place makes no episode."""
@@ -172,12 +171,13 @@ def _cells(
     instances = {seed: digest(task.plain()) for seed, task in tasks.items()}
     for player in design.players:
         policies = _policies(tasks[design.seeds[0]], player)
+        has_program = any(is_program(name) and text_of_policy(name) for name in policies.values())
         strange = sorted(policies.keys() - set(tasks[design.seeds[0]].agents))
         if strange:
             why = f"{place.name} has no agent {strange[0]!r} for the policies {player.text}"
             yield place.invalid(why)
             continue
-        if place.document is not None and place.variation.changes_scene and any(texts[player.text]):
+        if place.document is not None and place.variation.changes_scene and has_program:
             why = f"programs of files are not moved or renamed with the scene: {player.text}"
             yield place.invalid(why)
             continue

@@ -1,7 +1,7 @@
 """Policies, which decide what agents do."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,6 +9,7 @@ from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.policies.simple import Person, Program, Random, Scripted
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.files import read_regular_text
+from beliefnest.importing import imported_object, is_object_name, text_of_object
 
 if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.resolve import Connection
@@ -20,6 +21,7 @@ __all__ = [
     "Random",
     "Scripted",
     "draws_by_seed",
+    "is_program",
     "policy_beside",
     "resolve_policy",
     "text_of_policy",
@@ -36,12 +38,16 @@ POLICIES = (
     "scripted:FILE",
     "person",
     "person:wait",
+    "MODULE:CLASS",
+    "FILE.py:CLASS",
 )
 """Forms of the names that `resolve_policy` accepts."""
 
 _HIGHEST = 4
 _READ = ("program", "scripted")
 """Policies that are read from files."""
+_KINDS = frozenset(form.partition(":")[0] for form in POLICIES) - {"MODULE", "FILE.py"}
+"""Words before the colon that are no names of modules."""
 
 
 def resolve_policy(
@@ -53,7 +59,8 @@ def resolve_policy(
 
     Args:
         name: Name in one of the forms of `POLICIES`. In a file of `scripted`, lines of `---`
-            separate the programs. A model is `offline` or `PROVIDER:NAME`.
+            separate the programs. A model is `offline` or `PROVIDER:NAME`. A class of one's own,
+            or a function that makes a policy, is called without arguments.
         environment: Variables with keys and base URLs of models; None: those of the process.
         connection: Connection to models; None: retries and limits only.
 
@@ -63,10 +70,6 @@ def resolve_policy(
     """
     kind, _, rest = name.partition(":")
     match kind:
-        case "random" if not rest:
-            return Random()
-        case "person" if rest in ("", "wait"):
-            return Person(is_awaited=rest == "wait")
         case "program" | "scripted" if rest:
             text = _text(rest)
             return Program(text) if kind == "program" else Scripted(_programs(text))
@@ -76,11 +79,25 @@ def resolve_policy(
             )
         case "search" | "infer" if rest:
             return _planning(kind, order_of(rest, name))
-        case "omniscient" if rest == "search":
-            from beliefnest.episodes.policies.search import Omniscient
-
-            return Omniscient()
+    if name in _WITHOUT_OPTIONS:
+        return _WITHOUT_OPTIONS[name]()
+    if _is_of_user(name):
+        return _of_user(name)
     raise UnknownNameError(f"there is no policy {name!r}; give one of {', '.join(POLICIES)}")
+
+
+def _omniscient() -> Policy:
+    from beliefnest.episodes.policies.search import Omniscient
+
+    return Omniscient()
+
+
+_WITHOUT_OPTIONS: Mapping[str, Callable[[], Policy]] = {
+    "random": Random,
+    "person": Person,
+    "person:wait": lambda: Person(is_awaited=True),
+    "omniscient:search": _omniscient,
+}
 
 
 def _planning(kind: str, order: int) -> Policy:
@@ -91,6 +108,30 @@ def _planning(kind: str, order: int) -> Policy:
     from beliefnest.episodes.policies.search import Search
 
     return Search(order)
+
+
+def _is_of_user(name: str) -> bool:
+    return name.partition(":")[0] not in _KINDS and is_object_name(name)
+
+
+def _of_user(name: str) -> Policy:
+    """Return a policy of a class, or of a function, of the user's own."""
+    made = imported_object(name, "policy")
+    if not callable(made):
+        raise InputError(f"{name!r} is no class and no function; name one that makes a policy")
+    try:
+        policy = made()
+    except TypeError as error:
+        raise InputError(
+            f"{name!r} cannot be called without arguments: {error}; give them defaults"
+        ) from error
+    if not callable(getattr(policy, "act", None)):
+        raise InputError(
+            f"{name!r} makes no policy: {type(policy).__name__} has no method act(view), which "
+            "returns a program"
+        )
+    found: Policy = policy
+    return found
 
 
 def draws_by_seed(name: str) -> bool:
@@ -113,14 +154,24 @@ def text_of_policy(name: str) -> str:
     Raises:
         InputError: The file cannot be read.
     """
+    if _is_of_user(name):
+        return text_of_object(name)
+    return _text(name.partition(":")[2]) if is_program(name) else ""
+
+
+def is_program(name: str) -> bool:
+    """Return True if a policy plays programs of a file."""
     kind, _, file = name.partition(":")
-    return _text(file) if kind in _READ and file else ""
+    return kind in _READ and bool(file)
 
 
 def policy_beside(name: str, folder: Path) -> str:
     """Return the name of a policy; if it has a file, look for a relative path in `folder`."""
-    kind, colon, file = name.partition(":")
-    return f"{kind}:{folder / file}" if kind in _READ and colon else name
+    if _is_of_user(name):
+        file, _, made = name.rpartition(":")
+        return f"{folder / file}:{made}" if file.endswith(".py") else name
+    kind, _, file = name.partition(":")
+    return f"{kind}:{folder / file}" if is_program(name) else name
 
 
 def _model(

@@ -1,0 +1,105 @@
+"""Import of Python objects that command lines and files name as `module:NAME` or `FILE.py:NAME`."""
+
+import importlib
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+from beliefnest.errors import InputError
+
+__all__ = ["imported_object", "is_object_name", "text_of_object"]
+
+_SUFFIX = ".py"
+
+
+def is_object_name(text: str) -> bool:
+    """Return True if a text has the form `module:NAME` or `FILE.py:NAME`."""
+    place, _, name = text.rpartition(":")
+    is_module = all(part.isidentifier() for part in place.split("."))
+    return name.isidentifier() and (is_module or place.endswith(_SUFFIX))
+
+
+def imported_object(text: str, what: str) -> object:
+    """Return the object of a name.
+
+    Args:
+        text: Name in one of the two forms of `is_object_name`. A module is looked for on Python's
+            path; a file is relative to the working directory.
+        what: Kind of the object for messages, such as "policy".
+
+    Raises:
+        InputError: The module cannot be imported, or has no such object.
+    """
+    place, _, name = text.rpartition(":")
+    module = _module(place, what)
+    try:
+        return getattr(module, name)
+    except AttributeError:
+        raise InputError(
+            f"{place} has no {what} {name!r}; check the name after the colon"
+        ) from None
+
+
+def text_of_object(text: str) -> str:
+    """Return the text of the file in which a named object is defined; empty if it has no text.
+
+    Raises:
+        InputError: The file cannot be read.
+    """
+    place = text.rpartition(":")[0]
+    if place.endswith(_SUFFIX):
+        file = Path(place)
+    else:
+        origin = _spec_of(place)
+        if origin is None or not origin.endswith(_SUFFIX):
+            return ""
+        file = Path(origin)
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise InputError(f"{file} cannot be read: {error}") from None
+
+
+def _spec_of(module: str) -> str | None:
+    try:
+        spec = importlib.util.find_spec(module)
+    except (ImportError, ValueError):
+        return None
+    return None if spec is None else spec.origin
+
+
+def _module(place: str, what: str) -> ModuleType:
+    try:
+        return _of_file(Path(place)) if place.endswith(_SUFFIX) else importlib.import_module(place)
+    except FileNotFoundError:
+        raise InputError(f"there is no file {place}; check the path of the {what}") from None
+    except ModuleNotFoundError as error:
+        if error.name == place.partition(".")[0] or error.name == place:
+            raise InputError(
+                f"there is no module {place!r} for a {what}; put its folder into PYTHONPATH, or "
+                f"name its file, as FILE.py:NAME"
+            ) from error
+        raise InputError(f"{place} of a {what} cannot be imported: {error}") from error
+    except Exception as error:  # Code of users may raise anything.
+        told = f"{type(error).__name__}: {error}"
+        raise InputError(f"{place} of a {what} cannot be imported: {told}") from error
+
+
+def _of_file(file: Path) -> ModuleType:
+    """Return the module of a file, imported once per process as `import` does."""
+    name = f"beliefnest_user_{file.resolve()}"
+    if name in sys.modules:
+        return sys.modules[name]
+    spec = importlib.util.spec_from_file_location(name, file)
+    assert spec is not None  # the file's name ends in .py
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    # Dataclasses and pickle look classes up by the name of their module.
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
+    return module
