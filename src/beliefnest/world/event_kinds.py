@@ -71,12 +71,14 @@ class Traits:
         stores: 1 if it moves items into a container, -1 out of it, 0 if it shows the actor what a
             container holds; None if it does not happen at a container.
         gains: 1 if the actor gets its items, -1 if the actor gives them away, else 0.
+        is_deed: False for walks and changes of blocks, which only accompany deeds.
     """
 
     needs: tuple[str, ...] = ()
     sense: Sense = Sense.ACTOR
     stores: int | None = None
     gains: int = 0
+    is_deed: bool = True
 
 
 class EventKind(StrEnum):
@@ -93,7 +95,7 @@ class EventKind(StrEnum):
 
     CHAT = "chat", Traits(("text",), Sense.HEARING)
     THINK = "think", Traits(("text",), Sense.NONE)
-    MOVE_TO = "move_to", Traits(("destination",))
+    MOVE_TO = "move_to", Traits(("destination",), is_deed=False)
     MINE_BLOCK = "mine_block", Traits(("position",))
     PLACE_BLOCK = "place_block", Traits(("position",))
     CRAFT_ITEM = "craft_item", Traits(("items",), gains=1)
@@ -111,7 +113,7 @@ class EventKind(StrEnum):
     GIVE_ITEM_TO_OTHER = "give_item_to_other", Traits(("other", "items"), gains=-1)
     RECEIVE_ITEM_FROM_OTHER = "receive_item_from_other", Traits(("other", "items"), gains=1)
     EMOTE = "emote", Traits(("name",))
-    BLOCK_UPDATE = "block_update", Traits(("position",), Sense.PLACE)
+    BLOCK_UPDATE = "block_update", Traits(("position",), Sense.PLACE, is_deed=False)
 
     @property
     def is_act(self) -> bool:
@@ -122,6 +124,11 @@ class EventKind(StrEnum):
     def is_speech(self) -> bool:
         """True for speech and thought."""
         return self.traits.sense in (Sense.HEARING, Sense.NONE)
+
+    @property
+    def is_public_deed(self) -> bool:
+        """True for deeds that others can perceive."""
+        return self.traits.is_deed and self.traits.sense is not Sense.NONE
 
 
 AT_CONTAINERS = frozenset(kind for kind in EventKind if kind.traits.stores is not None)

@@ -385,7 +385,7 @@ class _Planning:
     def _may_change(self, node: _Node, name: str) -> bool:
         course = node.others[name]
         since = node.mind.happened[course.read :]
-        news = any(event.actor != name and _is_notable(event.kind) for _, event in since)
+        news = any(event.actor != name and event.kind.is_public_deed for _, event in since)
         done = course.performer.is_done and bool(since)
         return course.changes > 0 and (news or done or course.performer.failed)
 
@@ -422,10 +422,6 @@ class _Planning:
         trial, mine = mind.bare(), Performer([call])
         trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)
         return not mine.failed
-
-
-def _is_notable(kind: object) -> bool:
-    return kind not in ("move_to", "think", "block_update")
 
 
 def _apart(feet: Sequence[float], place: Sequence[int]) -> float:

@@ -18,7 +18,7 @@ from beliefnest.episodes.policies.course_planner import Bounds, Planner
 from beliefnest.nest.acting.imagination import Imagination, Performer
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import EventKind, Items, Position
+from beliefnest.world.values import Items, Position
 
 __all__ = ["likelihoods_of_traces"]
 
@@ -26,7 +26,6 @@ _MISTAKEN = 0.1
 """Probability of a difference between a found block or content and the true course."""
 
 _PERCEIVED = (Source.SEEN, Source.WITNESSED)
-_CHANGES_NOTHING = (EventKind.MOVE_TO, EventKind.OPEN_CONTAINER)
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,7 @@ class _Found:
         self._watched = {
             event.detail.get("position")
             for event in state.events
-            if event.kind not in _CHANGES_NOTHING
+            if event.kind.traits.stores != 0  # To look into a container changes nothing.
         }
 
     def changed(self, moment: _Moment) -> set[Position]:

@@ -22,8 +22,6 @@ from beliefnest.world.values import EventKind, Position
 
 __all__ = ["Question", "Reading"]
 
-_NO_DEEDS = (EventKind.MOVE_TO, EventKind.BLOCK_UPDATE)
-
 
 @dataclass(frozen=True, eq=False)
 class Question:
@@ -220,7 +218,7 @@ class Reading:
         assert self._overlay is not None
         opened, act, deed = None, None, False
         for event in events:
-            if event.actor != self.question.agent or event.kind in _NO_DEEDS:
+            if event.actor != self.question.agent or not event.kind.traits.is_deed:
                 continue
             if event.kind is EventKind.GET_ITEM_FROM_CHEST:
                 goals = [

@@ -19,24 +19,11 @@ from beliefnest.viewer.page.run import About, RunData
 from beliefnest.viewer.page.tracks import Onlooker
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, path_text
-from beliefnest.world.values import EventKind, Position
+from beliefnest.world.values import Position
 
 __all__ = ["ahead", "explanation_of", "look_of", "name_of", "sight_of"]
 
 _THING = re.compile(r"(agent|block|container|inventory)-(\d{1,9})", re.ASCII)
-
-_DEEDS = frozenset(
-    {
-        EventKind.GET_ITEM_FROM_CHEST,
-        EventKind.DEPOSIT_ITEM_INTO_CHEST,
-        EventKind.OPEN_CONTAINER,
-        EventKind.CHAT,
-        EventKind.USE_LEVER,
-        EventKind.USE_DOOR,
-        EventKind.PLACE_BLOCK,
-        EventKind.MINE_BLOCK,
-    }
-)
 
 _EXPLANATIONS = 36
 """Largest number of explanations in a page without a server; each takes some 0.1 s."""
@@ -245,11 +232,11 @@ def _explanations(
 
 
 def _deeds(reader: Reader, info: TimelineInfo) -> list[int]:
-    """Return the ticks of events that can change beliefs (`_DEEDS`), and the last tick."""
+    """Return the ticks of deeds that others can perceive, and the last tick."""
     ticks = {
         entry.tick
         for entry in reader.entries(info.key, 0, info.entries)
-        if isinstance(entry, Frame) and any(event.kind in _DEEDS for event in entry.events)
+        if isinstance(entry, Frame) and any(event.kind.is_public_deed for event in entry.events)
     }
     return sorted(ticks | {info.head}, reverse=True)
 

@@ -15,7 +15,7 @@ from beliefnest.viewer.page.tracks import Onlooker, TrackRecorder
 from beliefnest.world.event_words import happens
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, path_text, paths_below
-from beliefnest.world.values import EventKind, Position
+from beliefnest.world.values import Position
 
 __all__ = ["About", "RunData"]
 
@@ -199,17 +199,16 @@ class RunData:
         for entry in self.reader.entries(line.info.key, line.entries, line.info.entries):
             for event in entry.events if isinstance(entry, Frame) else ():
                 place = event.detail.get("position")
+                wrote = bool(event.actor) and "text" in event.detail
                 told: dict[str, Any] = {
                     "t": entry.tick,
-                    "kind": event.kind.value,
                     "actor": event.actor,
                     "text": happens(event, labels),
                     "spoken": event.kind.is_speech,
+                    "listed": event.kind.traits.is_deed or wrote,
                 }
                 if place is not None:
                     told["at"] = list(place)
-                if event.kind is EventKind.BLOCK_UPDATE and event.actor and "text" in event.detail:
-                    told["written"] = True
                 line.events.append(told)
         line.entries = line.info.entries
         recorder = line.recorders[0]

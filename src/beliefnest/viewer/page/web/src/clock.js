@@ -3,7 +3,6 @@
 import { badge, button, element, refill, seconds, svg } from './elements.js'
 import { claimNoteOf, notesOf, verdictWords } from './notes.js'
 
-const QUIET = new Set(['move_to', 'block_update'])
 const NEAR = 40
 const LANES = 12
 const TAIL = 12
@@ -158,13 +157,13 @@ function claimLine (said, kind, verdict) {
 }
 
 /**
- * Return events and notes of a timeline in order. Walking is left out, and so are block updates except texts on signs.
+ * Return the listed events of a timeline and its notes, in order.
  * @returns {object[]}
  */
 function listed (run, timeline) {
   const mark = `${timeline.events.length} ${run.programs.length} ${run.prompts.length}`
   if (timeline.listed?.mark !== mark) {
-    const events = timeline.events.map((event, number) => ({ ...event, number, ...(event.claims ? { note: claimNoteOf(timeline, number) } : {}) })).filter(event => event.written || !QUIET.has(event.kind))
+    const events = timeline.events.map((event, number) => ({ ...event, number, ...(event.claims ? { note: claimNoteOf(timeline, number) } : {}) })).filter(event => event.listed)
     timeline.listed = { mark, rows: [...events, ...notesOf(run, timeline)].sort((a, b) => a.t - b.t) }
   }
   return timeline.listed.rows
