@@ -1,4 +1,4 @@
-"""How tests are shared out and what surrounds them; profiles of the property tests."""
+"""Distribution of the tests, their surroundings, and profiles of the property tests."""
 
 import os
 import signal

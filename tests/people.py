@@ -61,7 +61,7 @@ class Person:
 
     @property
     def is_done(self) -> bool:
-        """Whether they have done all they were to; what failed is raised."""
+        """Return True if they have done all their tasks; raise the error of a failed one."""
         while not self._told.empty():
             told = self._told.get()
             assert "failed" not in told and "left" not in told, told

@@ -1,4 +1,4 @@
-"""How much is tried: little in every run of the tests, much at night (`make nightly`)."""
+"""Number of examples: few in every run of the tests, many at night (`make nightly`)."""
 
 import os
 
@@ -8,5 +8,5 @@ NIGHTLY = os.environ.get("BELIEFNEST_NIGHTLY") == "1"
 
 
 def at_night(many: int, otherwise: int) -> int:
-    """How often to try something."""
+    """Return the number of examples to try."""
     return many if NIGHTLY else otherwise

@@ -26,12 +26,12 @@ class Served(Protocol):
     """A server that tests may play on."""
 
     def address(self, **options: str | int) -> str:
-        """The world's name, with options of the address."""
+        """Return the world's name, with options of the address."""
 
 
 @contextmanager
 def serving(**options: Any) -> Iterator[Served]:
-    """A server of our own with these options, or the one that runs already."""
+    """Yield a server of our own with these options, or the one that runs already."""
     given = os.environ.get(_GIVEN)
     if given is not None:
         yield _GivenServer(given)
@@ -41,7 +41,7 @@ def serving(**options: Any) -> Iterator[Served]:
 
 
 def given_version() -> list[str]:
-    """The version of the server that runs already, if there is one."""
+    """Return the version of the server that runs already, if there is one."""
     return parse_qs(urlsplit(os.environ.get(_GIVEN, "")).query).get("version", [])
 
 
@@ -86,7 +86,7 @@ class GameServer:
         self._process.communicate()
 
     def address(self, **options: str | int) -> str:
-        """The world's name, with options of the address."""
+        """Return the world's name, with options of the address."""
         return _with_options(f"minecraft://127.0.0.1:{self.port}", options)
 
     def type(self, line: str) -> None:

@@ -35,7 +35,7 @@ def lent() -> Iterator[Lent]:
 
 @pytest.fixture(scope="module")
 def kept_worlds(lent: Lent) -> Iterator[None]:
-    """What a file's tests begin in a world that is lent; what they resume, in one of its own."""
+    """Lend a world to the nests that a file's tests begin; resumed ones get their own."""
 
     def lent_world(name: str, seed: int, limits: ProcessLimits | None = None) -> World:
         if name != "embedded" or limits is not None:

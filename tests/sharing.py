@@ -1,4 +1,4 @@
-"""How the tests are shared out among processes."""
+"""Distribution of the tests among processes."""
 
 from xdist.scheduler import LoadFileScheduling
 
@@ -26,7 +26,7 @@ _LONGEST = (
     "tests/nest/",
     "tests/semantics/",
 )
-"""What takes long, by the beginnings of names: what waits for real time, then what computes."""
+"""Long tests, by the beginnings of names: first those that wait, then those that compute."""
 
 _APART = ("tests/worlds/minecraft/test_node_suite.py", "tests/semantics/test_against_reference.py")
 """Files whose tests have nothing in common, so that each may run anywhere."""
@@ -40,6 +40,6 @@ class ByFile(LoadFileScheduling):
 
 
 def rank(nodeid: str) -> int:
-    """Where a test stands in the order in which tests are begun, from 0."""
+    """Return a test's rank in the order in which tests are begun, from 0."""
     ranks = (place for place, start in enumerate(_LONGEST) if nodeid.startswith(start))
     return next(ranks, len(_LONGEST))

@@ -21,7 +21,7 @@ WALK = "await goToPosition(bot, new Vec3(0, -51, -8))"
 
 
 def in_child(act: Callable[[], object]) -> str:
-    """What an act raised in a forked child, as text; `done` if it raised nothing."""
+    """Return the error of an act in a forked child, as text; `done` if there was none."""
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
@@ -41,7 +41,7 @@ def in_child(act: Callable[[], object]) -> str:
 
 @pytest.fixture(params=["scripted", "embedded", "memory"])
 def nest(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[bn.Nest]:
-    """A nest with a belief in control mode; with a run file, except `memory`."""
+    """Open a nest with a belief in control mode; with a run file, except `memory`."""
     scenario = bn.Scenario.load("sally-anne", 3)
     in_memory = request.param == "memory"
     world, store = ("scripted", None) if in_memory else (request.param, tmp_path / "run.bn")

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parent.parent
-FOLDERS = ("src", "benchmarks", "tools", "examples")
+FOLDERS = ("src", "tests", "benchmarks", "packages", "tools", "examples")
 SKIPPED = {"node_modules", "_bundle", "_page"}
 
 QUESTION_WORD = re.compile(r"(What|Who|Whom|Whose|Where|Whether|How|That|Which|Why|When)\b")

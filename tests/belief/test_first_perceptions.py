@@ -14,7 +14,7 @@ Scene = dict[str, Any]
 
 
 def believed(scene: Scene) -> list[object]:
-    """What nodes hold at first, and after somebody has walked."""
+    """Return the beliefs of nodes at first, and after an agent has walked."""
     world = bn.ScriptedWorld(
         ((0, 0, 0), (8, 3, 8)),
         blocks={(4, y, z): "stone" for y in (1, 2, 3) for z in range(scene.get("wall", 6))},

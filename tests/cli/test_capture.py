@@ -105,7 +105,7 @@ def _whole(*values: int) -> tuple[int, bytes]:
 
 
 def structure() -> bytes:
-    """A structure file: 2 x 4 x 1 blocks, a chest and what no version has on a floor of stone."""
+    """Return a structure file: 2 x 4 x 1 blocks, a chest and an unknown block on stone."""
     bread = _compound(Slot=(1, b"\0"), id=_texts("minecraft:bread"), Count=(1, b"\2"))
     ray = _compound(Slot=(1, b"\1"), id=_texts("minecraft:ray_gun"), Count=(1, b"\1"))
     names = ("stone", "chest", "unobtainium")

@@ -100,6 +100,6 @@ def test_a_study_lets_a_model_read_in_every_cell() -> None:
 
 
 def told_in(folder: str) -> list[dict[str, bool]]:
-    """What was expected of the belief in the cells of a study."""
+    """Return the expectations about the belief in the cells of a study."""
     cells = sorted(Path(folder, "cells").glob("*.json"))
     return [each for cell in cells for each in json.loads(cell.read_text())["expectations"]]

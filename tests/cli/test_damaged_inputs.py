@@ -44,7 +44,7 @@ BYTES: dict[str, bytes] = {
     "sqlite": b"SQLite format 3\0" + bytes(200),
     "gzip": b"\x1f\x8b" + bytes(50),
 }
-"""What a file may hold in place of what is expected."""
+"""Values that a file may hold in place of the expected one."""
 
 
 def _folder(path: Path) -> None:
@@ -77,7 +77,7 @@ DAMAGES: dict[str, Callable[[Path], object]] = {
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A folder with one of each kind of file that a command reads."""
+    """Make a folder with one of each kind of file that a command reads."""
     folder = tmp_path_factory.mktemp("made")
     before = Path.cwd()
     os.chdir(folder)

@@ -39,7 +39,7 @@ DAMAGED = at_night(2000, 40)
 
 @pytest.fixture(scope="module")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """A run that failed half-way, and the same when it had gone on; their originals are gone."""
+    """Make a run that failed half-way, and the same continued; remove their originals."""
     with pytest.MonkeyPatch.context() as patch:
         folder = tmp_path_factory.mktemp("kept")
         patch.chdir(folder)

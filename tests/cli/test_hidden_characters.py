@@ -1,4 +1,4 @@
-"""What agents and models write shows as it is, and does nothing, wherever it is shown."""
+"""Hidden characters in texts of agents and models are escaped wherever the texts are shown."""
 
 import base64
 import csv

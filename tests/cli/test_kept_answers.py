@@ -19,7 +19,7 @@ STUDY = "scenarios: [small.yaml]\nmodels: ['compatible:m']\nworld: scripted\n"
 
 @pytest.fixture
 def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a study of a model that cannot be asked any more."""
+    """Make a folder with a study of a model that can no longer be asked."""
     monkeypatch.chdir(tmp_path)
     with serving() as served, pytest.MonkeyPatch.context() as there:
         served.will(FakeOpenAI.says(GOOD))
@@ -40,7 +40,7 @@ def rows(out: str) -> list[dict[str, Any]]:
 
 @pytest.fixture
 def only_answers(kept: Path) -> Path:
-    """The kept answers alone, where a run or a study is to begin."""
+    """Copy the kept answers alone to the folder where a run or a study begins."""
     begun = kept.with_name("begun")
     shutil.copytree(kept / "answers", begun / "answers")
     shutil.rmtree(kept)

@@ -27,7 +27,7 @@ SIZES = (None, "one column", "two columns")
 def drawn(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, lent: Lent
 ) -> Iterator[tuple[list[ConditionPicture], list[Scene]]]:
-    """The conditions of a scenario, and all beliefs that it names."""
+    """Yield the conditions of a scenario, and all beliefs that it names."""
     conditions, scenes = [], []
     with lent(0) as worlds:
         for number, scenario in enumerate(Scenario.load_all(request.param)):

@@ -22,7 +22,7 @@ WALKS = [f"await goToPosition(bot, new Vec3({x}, -51, 5), 0)" for x in (0, 4)]
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """A run with plans, an edit and quiet ticks."""
+    """Record a run with plans, an edit and quiet ticks."""
     store = tmp_path_factory.mktemp("recorded") / "run.bn"
     with bn.Nest.open(bn.Scenario.load("sally-anne", 3), store=store, seed=4) as nest:
         nest.play()
@@ -48,7 +48,7 @@ def test_replaying_finds_no_difference(run, capsys):
 
 
 def test_replaying_lets_programs_read_what_they_read_then(tmp_path, capsys):
-    """What Anne knows decides where she goes; with the whole world she would go elsewhere."""
+    """Anne's knowledge decides where she goes; with the whole world she would go elsewhere."""
     store = tmp_path / "run.bn"
     look = """
       const chests = bot.findBlocks({ matching: block => block.name === 'chest', count: 9 })
@@ -111,7 +111,7 @@ DRAW = "bot.chat('' + Math.random()); await bot.waitForTicks(2); bot.chat('' + D
 
 
 def scripted_run(store, told="mine"):
-    """A run in the scripted world: programs, a branch, an edit, and what a user told."""
+    """Record a run in the scripted world: programs, a branch, an edit, and telling."""
     with bn.Nest.open(bn.Scenario.load("sally-anne", 3), "scripted", store, seed=4) as nest:
         nest.play()
         world = nest.scripted_world

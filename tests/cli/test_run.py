@@ -198,8 +198,7 @@ def test_a_run_may_not_spend_more_than_it_is_allowed(
 
 
 def comparable(out: str) -> dict[str, bytes]:
-    """Everything a run has recorded of what happened, without what is of one run by its nature:
-    where it lies, and how long it took."""
+    """Return the recorded facts of a run, without its folder and its durations."""
     found = {}
     for file in sorted(Path(out).rglob("probe-*/*")):
         found[str(file.relative_to(out))] = file.read_bytes()

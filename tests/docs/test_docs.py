@@ -1,4 +1,4 @@
-"""What the papers show does work, and the pictures of the papers are the program's own."""
+"""README and docs: their code works, and their pictures are the program's own."""
 
 import re
 from pathlib import Path

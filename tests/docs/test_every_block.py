@@ -57,7 +57,7 @@ RUN_BY = {
 SHELLS = {"bash", "console", "sh"}
 READ = {"json": json.loads, "toml": tomllib.loads, "yaml": yaml.safe_load}
 SHOWN = {"text"}
-"""What something prints: compared by the tests that run it."""
+"""Languages of output, which the tests that produce it compare."""
 
 
 def blocks() -> Iterator[tuple[Path, str, str]]:

@@ -1,4 +1,4 @@
-"""What runs tell of their episodes, as tables."""
+"""Tables of the episodes of runs."""
 
 import json
 from pathlib import Path

@@ -12,7 +12,7 @@ import pytest
 
 @dataclass
 class Handled:
-    """What the server was asked."""
+    """Request that the server got."""
 
     path: str
     headers: dict[str, str]
@@ -33,7 +33,7 @@ def says(text, **end) -> Behaviour:
 
 
 def says_as(provider, text) -> Behaviour:
-    """An answer in the stream of another provider's protocol."""
+    """Return an answer in the stream of another provider's protocol."""
     events = {"anthropic": _anthropic_events, "google": _google_events}[provider](text)
 
     def behave(handler: "Handler") -> None:
@@ -133,7 +133,7 @@ def says_nothing(handler: "Handler") -> None:
 
 
 def answers_with_a_page(handler: "Handler") -> None:
-    """What a proxy might say."""
+    """Answer with a page, as a proxy may."""
     page = b"<html>Welcome</html>"
     handler.send_response(200)
     handler.send_header("Content-Type", "text/html")
@@ -281,5 +281,5 @@ def clock() -> FakeClock:
 
 @pytest.fixture
 def impatient_clock() -> FakeClock:
-    """A second passes at every look."""
+    """Return the time; a second passes at every call."""
     return FakeClock(per_look=1.0)

@@ -1,4 +1,4 @@
-"""What a run puts around a model: limits, cache, recordings, scripts."""
+"""Limits, cache, recordings and scripts that a run puts around a model."""
 
 import dataclasses
 import json

@@ -26,7 +26,7 @@ def answer(*claims):
 
 
 def told_of(fake, clock, store=None, **around):
-    """What max believes after nora has spoken twice, and the nest, open."""
+    """Return max's belief after nora has spoken twice, and the open nest."""
     connection = Connection(clock=clock, **around)
     environment = {"OPENAI_BASE_URL": fake.url, "OPENAI_API_KEY": "sk-secret"}
     hook = claims_from_model(open_model(MODEL, environment, connection))

@@ -1,4 +1,4 @@
-"""What a server may send instead of an answer: each ends that answer alone, with one error."""
+"""Malformed answers of a server: each ends that answer alone, with one error."""
 
 import json
 
@@ -63,7 +63,7 @@ def asked(fake, *, name="openai:gpt-4o-mini", **limits):
 
 
 def is_usable(answer):
-    """An answer that can be stored, counted and sent back."""
+    """Check that an answer can be stored, counted and sent back."""
     usage = answer.usage
     answer.text.encode()
     assert answer.text.strip()

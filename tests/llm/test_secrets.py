@@ -25,13 +25,13 @@ ASK = (Message("user", "Get a diamond."),)
 
 
 def url_of(fake: FakeOpenAI) -> str:
-    """The address with user and password in it."""
+    """Return the address with user and password in it."""
     place = urlsplit(fake.url).netloc
     return f"http://{USER}:{quote(PASSWORD, safe='')}@{place}/v1"
 
 
 def forms() -> list[str]:
-    """What a server may repeat."""
+    """Return a text that a server may repeat."""
     found = [
         f"Basic {BASIC}",
         base64.b64encode(f"Basic {BASIC}".encode()).decode(),
@@ -54,7 +54,7 @@ def forms() -> list[str]:
 
 
 def leaks(text: str) -> list[str]:
-    """The secrets that stand in a text, in any form."""
+    """Return the secrets that a text contains, in any form."""
     pieces = [PASSWORD, quote(PASSWORD), quote(PASSWORD, safe=""), KEY, KEY.encode().hex()]
     pieces += [quote(PASSWORD, safe="").lower()]
     for secret in (KEY, PASSWORD):

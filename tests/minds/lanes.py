@@ -6,7 +6,7 @@ STONE = "stone"
 
 
 def lane(length, depth=1, walls=(), marks=None, agents=None, **further):
-    """A floor with walls two high; `marks` are blocks of the floor."""
+    """Return a floor with walls two high; `marks` are blocks of the floor."""
     blocks = {(x, 0, z): STONE for x in range(length) for z in range(depth)}
     for x, z in walls:
         blocks[x, 1, z] = blocks[x, 2, z] = STONE

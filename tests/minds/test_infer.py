@@ -95,7 +95,7 @@ BLOCKS = {"L": "emerald_block", "M": "diamond_block", "none": "gravel"}
 
 
 def trucks(true="emerald_block", mirrored=False, names=("L", "M", "none"), turned=False):
-    """A small world of trucks: one is in sight, the other place lies behind a wall."""
+    """Return a small world of trucks: one is in sight, the other place lies behind a wall."""
 
     def cell(x, z):
         x = 5 - x if mirrored else x

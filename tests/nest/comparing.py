@@ -1,4 +1,4 @@
-"""What a state holds, as plain values that compare and print."""
+"""Contents of states as plain values that compare and print."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ def everything(state: State) -> dict[str, Any]:
 
 
 def values(state: State) -> dict[str, Any]:
-    """What a state says of the world, whatever it rests on."""
+    """Return the content of a state without the grounds of its beliefs."""
     return {
         "blocks": {p: state.blocks[p] for p in state.blocks},
         "signs": dict(state.signs),

@@ -19,7 +19,7 @@ CHEST = (5, 0, 9)
 
 
 def wall(zs: Iterable[int], x: int = 5, block: str = "stone") -> dict[Position, str]:
-    """A wall as high as the box, along z."""
+    """Return a wall as high as the box, along z."""
     return {(x, y, z): block for y in range(3) for z in zs}
 
 
@@ -38,7 +38,7 @@ def nest_of(
     initial_beliefs: Iterable[bn.InitialBelief] = (),
     **perception: object,
 ) -> tuple[bn.ScriptedWorld, bn.Nest]:
-    """A world in `BOX` and its nest; `perception` are options of `bn.Perception`."""
+    """Return a world in `BOX` and its nest; `perception` are options of `bn.Perception`."""
     world = bn.ScriptedWorld(BOX, blocks, agents, inventories=inventories, containers=chests or {})
     nest = bn.Nest(
         world,

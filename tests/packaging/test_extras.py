@@ -1,4 +1,4 @@
-"""What needs an extra says so, with the command that installs it."""
+"""Features that need an extra say so, with the command that installs it."""
 
 import importlib
 import sys

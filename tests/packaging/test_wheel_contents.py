@@ -1,4 +1,4 @@
-"""What a wheel carries besides Python: what models read, scenarios, templates."""
+"""Files of a wheel besides Python: texts for models, scenarios, templates."""
 
 from pathlib import Path
 

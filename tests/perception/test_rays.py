@@ -1,4 +1,4 @@
-"""Whether a kernel is ready to be called, or has to be compiled first."""
+"""Compilation state of a kernel: ready to be called, or still to be compiled."""
 
 import importlib.util
 import os

@@ -1,4 +1,4 @@
-"""What hides and what does not: one rule of sight each."""
+"""Rules of sight, one each: blocks that hide others and blocks that do not."""
 
 import math
 import subprocess
@@ -16,7 +16,7 @@ ORIGIN = (0, 0, 0)
 
 
 def grid(shape, blocks=None):
-    """A grid of air with blocks, given by position and text."""
+    """Return a grid of air with blocks, given by position and text."""
     states = np.zeros(shape, dtype=np.int32)
     for position, text in (blocks or {}).items():
         states[position] = -1 if text == "unknown" else REGISTRY.state_id(text)

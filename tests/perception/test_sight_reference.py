@@ -235,7 +235,7 @@ def test_a_changed_geometry_equals_one_built_anew(world, changes):
 
 
 def _state_by_shape():
-    """Some opaque state for every shape, by the set of its boxes."""
+    """Return an opaque state for every shape, by the set of its boxes."""
     return {
         frozenset(REGISTRY.boxes(state)): state
         for state in range(REGISTRY.states)
@@ -253,7 +253,7 @@ MAPS = {
 
 
 def _mapped_state(state, matrix):
-    """A state whose shape is the mapped shape; None if Minecraft has none."""
+    """Return a state whose shape is the mapped shape; None if Minecraft has none."""
     if state == UNKNOWN or REGISTRY.default_transparent[state]:
         return state
     boxes = set()

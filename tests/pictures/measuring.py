@@ -1,4 +1,4 @@
-"""What is wrong with a drawing: measured, not looked at."""
+"""Faults of a drawing, measured instead of looked at."""
 
 import itertools
 
@@ -8,7 +8,7 @@ _TOUCH = 0.3
 
 
 def faults(drawing: Drawing) -> list[str]:
-    """What leaves the page, what lies on something else, what is empty."""
+    """Return the marks that leave the page or lie on others, and empty ones."""
     solid = [(_name(mark), mark.bounds) for mark in drawing.having("text", "icon")]
     found = [
         f"{name} leaves the page"

@@ -22,7 +22,7 @@ CHEST, BOX = (4, 1, 6), (7, 1, 6)
 
 @pytest.fixture
 def nest() -> Iterator[bn.Nest]:
-    """A wall stands between the first two; the first moves an apple, and walks unseen."""
+    """Yield a nest: a wall hides the first agent, who moves an apple and walks, from the second."""
     blocks = {(x, 0, z): "stone" for x in range(12) for z in range(12)}
     blocks |= {(x, y, 4): "bricks" for x in range(12) for y in (1, 2, 3)}
     blocks |= {(1, 1, 1): "lever[face=floor,powered=true]", (2, 1, 9): "oak_door[open=true]"}

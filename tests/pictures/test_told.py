@@ -1,4 +1,4 @@
-"""What is only told is marked as told; false doors and signs are marked and told of in words."""
+"""Hearsay is marked as such; false doors and signs are marked and described in words."""
 
 import random
 

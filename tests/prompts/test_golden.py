@@ -16,7 +16,7 @@ CHEST = "chest[facing=south,type=single,waterlogged=false]"
 
 
 def sallys_belief(path=("sally",)):
-    """The belief that the README beside the golden texts describes."""
+    """Return the belief that the README beside the golden texts describes."""
     box = Box((-11, -52, -11), (11, -49, 11))
     early = Basis(12, Source.SEEN)
     return ExampleBranch(

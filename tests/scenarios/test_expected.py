@@ -1,4 +1,4 @@
-"""What can be expected of a probe, each judged by what was asked for, done, said or answered."""
+"""Expectations about a probe, each judged by its program, deeds, words or answers."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -10,7 +10,7 @@ LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
 
 
 def possessions(nest: bn.Nest, path: str, branch: str) -> dict[str, int]:
-    """What Sally has at the end of a branch."""
+    """Return Sally's possessions at the end of a branch."""
     simulator = nest[path]
     before = simulator.branch
     simulator.switch(branch)

@@ -106,7 +106,7 @@ def test_the_task_tells_the_places_and_not_where_the_seller_is() -> None:
 
 
 def exchanged(value: Any) -> Any:
-    """A scenario's content with the names of the two locations exchanged in all that is said."""
+    """Exchange the names of the two locations in all that a scenario says."""
     if isinstance(value, dict):
         return {key: exchanged(child) for key, child in value.items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""What a scenario file says reaches the setting; what is wrong in it is named with its line."""
+"""Scenario files: their content reaches the setting, and errors name the line."""
 
 import json
 from pathlib import Path

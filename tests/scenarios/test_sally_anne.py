@@ -79,7 +79,7 @@ def test_what_was_predicted_changed_nothing_anywhere_else() -> None:
 
 
 def mirrored(value: Any) -> Any:
-    """A scenario's content with east and west exchanged."""
+    """Exchange east and west in a scenario's content."""
     if isinstance(value, dict):
         return {key: mirrored(child) for key, child in value.items()}
     if isinstance(value, list) and len(value) == 3 and all(isinstance(v, int) for v in value):
@@ -121,7 +121,7 @@ def test_answers_follow_when_sally_stands_a_block_to_either_side_of_the_edge_of_
 
 
 def fingerprint(store: Path) -> str:
-    """A hash of everything that was recorded: every frame of every timeline, byte for byte."""
+    """Return a hash of everything recorded: every frame of every timeline, byte for byte."""
     digest = hashlib.sha256()
     with SqliteJournal.read(store) as journal:
         for info in journal.timelines():

@@ -42,7 +42,7 @@ def play_until(step: int) -> Act:
 
 
 def acts_of(scenario: bn.Scenario) -> list[Act]:
-    """The script, step by step; then leaps in the simulators that probes act in, on branches."""
+    """Return the acts: steps of the script, then leaps in the simulators of probes."""
     acts = [play_until(step) for step in range(1, len(scenario.setting.script) + 1)]
     for number, probe in enumerate(scenario.probes):
         path, agent = probe.acts_in, probe.agent

@@ -131,7 +131,7 @@ class Reference:
         self._perceive_below(tree, happening=False)
 
     def tree(self, path: Path) -> Tree:
-        """The node of a normalised path, from the nearest simulator in control mode."""
+        """Return the node of a normalised path, from the nearest simulator in control mode."""
         controlled = self._controlled(path)
         tree = self._trees[controlled][self._selected[controlled]]
         for name in path[len(controlled) :]:
@@ -139,7 +139,7 @@ class Reference:
         return tree
 
     def head(self, path: Path) -> int:
-        """The latest tick of the timeline that the node is on."""
+        """Return the latest tick of the timeline that the node is on."""
         return self.tree(self._controlled(path)).head
 
     def _controlled(self, path: Path) -> Path:
@@ -253,7 +253,7 @@ class Reference:
         return node
 
     def _special(self, path: Path) -> bn.InitialBelief:
-        """What initial beliefs say of a node: what names it best counts (4)."""
+        """Return the initial beliefs about a node; the closest path counts (4)."""
         special = bn.InitialBelief(path)
         for pattern in (*((*path[:n], "**") for n in range(len(path) + 1)), path):
             for belief in self._initial:
@@ -283,7 +283,7 @@ class Reference:
         return node
 
     def _acted(self, before: Node, frame: Frame) -> Node:
-        """A simulator in control mode after a frame of its own (6)."""
+        """Update a simulator in control mode by a frame of its own (6)."""
         basis = Basis(frame.tick, Source.SEEN)
         node = before.copy()
         node.tick = frame.tick
@@ -325,12 +325,12 @@ class Reference:
 
 
 def seen_at(part: Any, now: int) -> Any:
-    """A part of a state as it is at a tick: what is current is observed then (2)."""
+    """Return a part of a state at a tick: current parts are observed then (2)."""
     return replace(part, basis=replace(part.basis, observed_at=now)) if part.current else part
 
 
 def content_at(node: Node, place: Position, now: int) -> ContainerBelief:
-    """A content as it is at a tick: an act shows it in its tick alone, sight while it lasts."""
+    """Return a content at a tick: an act shows it in its tick alone, sight while it lasts."""
     content = node.containers[place]
     if node.is_world or place in node.into:
         return seen_at(content, now)

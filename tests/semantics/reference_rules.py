@@ -44,7 +44,7 @@ class Block:
 def known_block(
     told: "int | Sign", basis: Basis, current: bool, claims: tuple[Claim, ...] = ()
 ) -> Block:
-    """A block as facts tell it."""
+    """Return a block as facts tell it."""
     if isinstance(told, Sign):
         return Block(told.state, basis, current, told.text, claims)
     return Block(told, basis, current)
@@ -106,7 +106,7 @@ class Node:
         )
 
     def perceives(self, place: Position | None, item: str) -> bool:
-        """Whether it was perceived in this tick if an item is in a container (8.0)."""
+        """Return True if it was perceived in this tick that an item is in a container (8.0)."""
         content = self.containers.get(place)
         return (
             place in self.looked_into
@@ -144,7 +144,7 @@ class Rules:
         return name if self.registry.is_container(name) else None
 
     def perceive(self, around: Node, before: Node, me: str, *, happening: bool) -> Node:
-        """The belief of `me`, who lives in `around`, after the tick (4, 5, 8).
+        """Return the belief of `me`, an agent in `around`, after the tick (4, 5, 8).
 
         If nothing is `happening`, it perceives anew between two ticks.
         """
@@ -179,7 +179,7 @@ class Rules:
         return after
 
     def _attend(self, after: Node, me: str, view: "View | None") -> None:
-        """What the claims of this tick and later ones are weighed by (8)."""
+        """Update the facts by which claims of this tick and later ones are weighed (8)."""
         seen: set[Matter] = set()
         acts: set[Matter] = set()
         if view is not None:
@@ -211,7 +211,7 @@ class Rules:
             parts.update({key: aged(part, last) for key, part in parts.items() if part.current})
 
     def _perceived(self, event: Event, around: Node, me: str, view: "View | None") -> bool:
-        """Whether an event of `around` is perceived (3, 5.2, 5.5)."""
+        """Return True if an event of `around` is perceived (3, 5.2, 5.5)."""
         if "to" in event.detail:
             return me in (event.actor, event.detail["to"])
         if event.kind is EventKind.CHAT and (self.options.hearing == "global" or event.actor == me):
@@ -229,7 +229,7 @@ class Rules:
         return event.actor in view.agents
 
     def _see_blocks(self, after: Node, around: Node, view: "View") -> None:
-        """What is seen replaces what was believed; unknown blocks are not handed on (4, 5.4)."""
+        """Replace beliefs by percepts; unknown blocks are not handed on (4, 5.4)."""
         for position, block in around.blocks.items():
             if view.sees(position):
                 seen = Basis(around.tick, Source.SEEN) if around.is_world else block.basis
@@ -330,7 +330,7 @@ class Rules:
                 after.containers[place] = ContainerBelief({}, False, new.basis, current=False)
 
     def _is_gone(self, place: Position, around: Node, view: "View") -> bool:
-        """Whether the place is seen to hold no container, by a perception of this tick."""
+        """Return True if a perception of this tick shows that the place holds no container."""
         block = around.blocks.get(place)
         return (
             block is not None
@@ -341,7 +341,7 @@ class Rules:
 
 
 class View:
-    """What an agent who is present in a simulator sees of it (3, 5.3)."""
+    """Sight of an agent that is present in a simulator (3, 5.3)."""
 
     def __init__(self, rules: Rules, around: Node, me: str) -> None:
         self._box = rules.box
@@ -363,18 +363,18 @@ class View:
         }
 
     def sees(self, position: Position) -> bool:
-        """Whether sight reaches the position."""
+        """Return True if sight reaches the position."""
         return bool(self._visible[self._box.index(position)])
 
     def would_see(self, feet: Point) -> bool:
-        """Whether an agent that stood there would be seen."""
+        """Return True if an agent that stood there would be seen."""
         return bool(
             self._sight.geometry(self._grid, self._box.low).sees_agents(*self._looking, [feet])[0]
         )
 
 
 def aged(part: Any, last: int) -> Any:
-    """A part of a state that is current no longer, and was so until a tick."""
+    """Return a part of a state that was current until a tick."""
     return replace(part, basis=replace(part.basis, observed_at=last), current=False)
 
 

@@ -33,7 +33,7 @@ Matter = tuple[str, Any]
 
 @dataclass
 class Ear:
-    """What a node's holder keeps in mind to weigh claims.
+    """Memory by which the owner of a node weighs claims.
 
     Attributes:
         until: Tick to which `missed` is counted.
@@ -100,7 +100,7 @@ class Ear:
             self._is_there(place, item, count)
 
     def find_elsewhere(self, item: str, kept: set[Position]) -> None:
-        """It was perceived to be nowhere but in some containers."""
+        """Return True if it was perceived to be nowhere but in some containers."""
         for place, name in list(self.counts):
             if name == item and place not in kept:
                 del self.counts[place, name]
@@ -123,7 +123,7 @@ class Ear:
             self.found.pop(item, None)
 
     def known(self, claim: Claim) -> Matter | None:
-        """The known place of what a claim is about."""
+        """Return the known place of a claim's subject."""
         if claim.kind is ClaimKind.POSITION:
             return ("agent", claim.agent) if claim.agent in self.met else None
         if claim.kind is ClaimKind.BLOCK:

@@ -24,7 +24,7 @@ Whereabouts = tuple[str, Any]
 
 
 def see_moved(after: "Node", item: str) -> None:
-    """It is nowhere but where perceived acts bring it, which are not followed yet."""
+    """Remove it everywhere but where perceived acts bring it, which are not followed yet."""
     acts = [event for event in after.news if item in event.detail.get("items", {})]
     if acts:
         remove(after, item, Basis(after.tick, Source.WITNESSED, acts[-1].kind), set())
@@ -38,7 +38,7 @@ def see_alone(
     agents: Collection[str],
     item: str,
 ) -> None:
-    """It is nowhere but where it is perceived, if it is."""
+    """Remove it everywhere but where it is perceived, if it is."""
     places: dict[Whereabouts, Basis] = {}
     for place in sorted(after.looked_into):
         if item in after.containers[place].items:
@@ -60,14 +60,14 @@ def see_alone(
 
 
 def places_of(node: "Node", me: str, item: str) -> list[Whereabouts]:
-    """Where it is believed to be, other than with the holder."""
+    """Return its believed place, other than with the holder."""
     held = [("container", place) for place, c in node.containers.items() if item in c.items]
     agents = node.agents.items()
     return [*held, *(("agent", n) for n, a in agents if n != me and item in a.inventory)]
 
 
 def is_perceived_elsewhere(after: "Node", me: str, item: str, place: "Position") -> bool:
-    """Whether it is perceived in this tick, and not in a container that is spoken of."""
+    """Return True if it is perceived in this tick, and not in a container of a claim."""
     return item in after.agents[me].inventory or bool(after.found_now - {("container", place)})
 
 

@@ -48,7 +48,7 @@ class Story:
     """Unique item to who has it at first; `hand NAME`: in the hand."""
 
     def world(self) -> bn.ScriptedWorld:
-        """The world at the start; everybody owns an apple and two diamonds."""
+        """Return the world at the start; every agent owns an apple and two diamonds."""
         own = {name: {"apple": 1, "diamond": 2} for name in self.agents}
         hands = {}
         for item, holder in self.unique.items():
@@ -71,7 +71,7 @@ class Story:
         return world
 
     def perception(self) -> bn.Perception:
-        """What the agents can perceive."""
+        """Return the options of the agents' perception."""
         return bn.Perception(**self.options)
 
 

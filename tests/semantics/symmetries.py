@@ -30,13 +30,13 @@ class Symmetry:
     names: tuple[tuple[str, str], ...] = ()
 
     def story(self, story: Story) -> Story:
-        """The changed story."""
+        """Return the changed story."""
         changed = self.value(replace(story, acts=()))
         yaws = {self.value(name): self.turned(yaw) for name, yaw in story.yaws.items()}
         return replace(changed, acts=tuple(self.act(act) for act in story.acts), yaws=yaws)
 
     def act(self, act: Act) -> Act:
-        """The changed act; the last argument of `place_agent` is a yaw."""
+        """Return the changed act; the last argument of `place_agent` is a yaw."""
         name, *args = act
         if name == "tick":
             return (name, *(self.act(inner) for inner in args))
@@ -50,7 +50,7 @@ class Symmetry:
         return (name, *self.value(tuple(args)))
 
     def path(self, path: str) -> str:
-        """The changed path."""
+        """Return the changed path."""
         return "/".join(self.value(name) for name in path.split("/"))
 
     def value(self, value: Any) -> Any:
@@ -69,7 +69,7 @@ class Symmetry:
         return value
 
     def _point(self, point: tuple[Any, ...]) -> tuple[Any, ...]:
-        """A block keeps its lower corner: it is changed by its middle."""
+        """Return the changed point; a block's lower corner is changed by its middle."""
         x, y, z = point
         if all(isinstance(coordinate, int) for coordinate in point):
             u, w = self.across(x + 0.5, z + 0.5)
@@ -83,7 +83,7 @@ def _is_point(value: tuple[Any, ...]) -> bool:
 
 
 def with_directions(everything: dict[str, Any]) -> dict[str, Any]:
-    """A state's `everything` with angles as directions, which compare after a turn."""
+    """Return a state's `everything` with angles as directions, which compare after a turn."""
 
     def direction(agent: AgentBelief) -> Any:
         if agent.position is None:

@@ -1,4 +1,4 @@
-"""What is believed of agents: poses and possessions (semantics, section 4)."""
+"""Beliefs about agents: poses and possessions (semantics, section 4)."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What is believed to be in containers (semantics, section 4)."""
+"""Beliefs about the contents of containers (semantics, section 4)."""
 
 import pytest
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of
@@ -87,7 +87,7 @@ def test_opening_inside_a_belief_learns_all_that_belief_holds():
 
 
 def test_what_is_learned_from_a_stale_content_is_stale_itself():
-    """a last looked in at tick 1; that b looks in at 2 is no perception of the content by a."""
+    """A last looked in at tick 1; that b looks in at 2 is no perception of the content by a."""
     world, nest = room({"emerald": 1})
     world.open("a", NEAR)
     world.open("b", NEAR)

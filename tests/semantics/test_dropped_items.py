@@ -1,4 +1,4 @@
-"""Who knows of dropped items (semantics, section 3), in Minecraft."""
+"""Knowledge of dropped items (semantics, section 3), in Minecraft."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Which events are perceived, and when perception is evaluated (semantics, section 3)."""
+"""Perceived events, and the ticks at which perception is evaluated (semantics, section 3)."""
 
 import pytest
 from tests.nest.comparing import values
@@ -60,7 +60,7 @@ def test_a_gift_is_two_actions_each_seen_with_its_actor():
 
 @pytest.mark.parametrize(("first", "then"), [(EAST, MEETING), (MEETING, EAST)])
 def test_perception_is_of_the_state_after_everything_in_the_tick(first, then):
-    """b moves and acts in one tick: it is seen to act iff it is seen afterwards."""
+    """B moves and acts in one tick: it is seen to act iff it is seen afterwards."""
     agents = {"a": WEST, "b": first}
     world, nest = nest_of(agents, CORNER, chests={CHEST: {"diamond": 1}})
     with world.tick():

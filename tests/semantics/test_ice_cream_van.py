@@ -14,7 +14,7 @@ SHED = {(x, y, 15): "stone" for x in range(10) for y in range(4)}
 
 
 def played(hearing):
-    """The story of the paper, steps 1 to 5."""
+    """Play the story of the paper, steps 1 to 5."""
     world = bn.ScriptedWorld(
         ((0, 0, 0), (20, 9, 20)),
         WALL | SHED,

@@ -1,4 +1,4 @@
-"""When a belief was last current (semantics, section 2): nothing unseen moves it."""
+"""Ticks at which beliefs were last current (semantics, section 2): nothing unseen moves them."""
 
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ def hall(store: Path | None = None, **options: Any) -> tuple[bn.ScriptedWorld, b
 
 
 def observed(nest: bn.Nest, path: str = "/ann") -> tuple[int, int, int]:
-    """When Bob, the block and the content of the chest were last current in a node."""
+    """Return the ticks at which Bob, the block and the chest's content were last current."""
     state = nest[path].state
     bob, block = state.agents["bob"].basis, state.blocks.basis(BLOCK)
     assert bob is not None

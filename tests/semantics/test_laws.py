@@ -38,7 +38,7 @@ def states(stage: Stage) -> dict[str, dict[str, Any]]:
 
 
 def node_of(state: State, tick: int) -> Node:
-    """A state as the reference holds it, with what happened in it at a tick as its news."""
+    """Return a state as the reference holds it, with the events of a tick as its news."""
     ear = Ear(tick, dict.fromkeys(state.agents, 0))
     node = Node(tick, {}, dict(state.containers), dict(state.agents), ear)
     for position in state.blocks:
@@ -114,7 +114,7 @@ def is_prior(basis) -> bool:
 
 
 def is_part(some: tuple[Any, ...], of: tuple[Any, ...]) -> bool:
-    """Whether `some` is `of` with entries left out."""
+    """Return True if `some` is `of` with entries left out."""
     rest = iter(of)
     return all(entry in rest for entry in some)
 
@@ -145,7 +145,7 @@ def test_common_knowledge_all_present_and_seeing_everything_agree(hearing):
 
 
 def public(state: State) -> dict[str, Any]:
-    """What is common: not the basis, which tells who acted, nor possessions, nor thoughts."""
+    """Return the common part: without grounds, which tell who acted, possessions and thoughts."""
     return {
         "blocks": {p: (state.blocks[p], state.blocks.current(p)) for p in state.blocks},
         "contents": {p: (c.items, c.complete, c.current) for p, c in state.containers.items()},
@@ -301,7 +301,7 @@ def test_order_freedom_of_agents_that_perceive_nothing_of_each_other(anns, bobs,
 
 
 def timeless(state: State) -> dict[str, Any]:
-    """What a state says of the world, without ticks."""
+    """Return the content of a state without ticks."""
     return {
         "blocks": {p: state.blocks[p] for p in state.blocks},
         "containers": {p: (c.items, c.complete) for p, c in state.containers.items()},
@@ -338,7 +338,7 @@ def test_a_speaker_s_own_belief_is_what_it_would_be_without_its_words(story):
 
 
 def _is_told(story: Story, name: str) -> bool:
-    """Whether somebody else says or whispers a claim that an agent might hear."""
+    """Return True if another agent says or whispers a claim that an agent might hear."""
     told = [act for act in story.acts if act[0] in ("say", "whisper") and len(act) >= 4]
     inner = [each for act in story.acts if act[0] == "tick" for each in act[1:]]
     told += [act for act in inner if act[0] in ("say", "whisper") and len(act) >= 4]

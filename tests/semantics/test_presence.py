@@ -1,4 +1,4 @@
-"""Who is credited with seeing, and what (semantics, sections 5.1 to 5.4)."""
+"""Presence: agents that are credited with seeing, and its limits (semantics, 5.1 to 5.4)."""
 
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of, wall
 
@@ -153,7 +153,7 @@ SEEN_ONCE = (8, 0, 5)
 
 
 def stepped_back():
-    """The observer sees a block and Anne, steps back, and only then meets Sally."""
+    """Let the observer see a block and Anne, step back, and only then meet Sally."""
     agents = {"observer": (4.5, 0, 5.5), "sally": (10.5, 0, 10.5), "anne": (8.5, 0, 6.5)}
     world, nest = nest_of(agents, {SEEN_ONCE: "oak_planks"}, max_visible_distance=6)
     world.place_agent("observer", (0.5, 0, 5.5))

@@ -1,4 +1,4 @@
-"""What is known from the start (semantics, section 4): static blocks and initial beliefs."""
+"""Knowledge at the start (semantics, section 4): static blocks and initial beliefs."""
 
 import pytest
 from tests.nest.places import CLOSED, EAST, WEST, nest_of
@@ -110,7 +110,7 @@ def test_an_initial_belief_that_is_seen_in_the_belief_is_handed_on_as_stale():
 
 
 def test_what_only_the_deeper_belief_knows_is_kept_where_the_shallower_one_sees_nothing():
-    """b sees the place in a's belief, where it is unknown: that is no perception of it."""
+    """B sees the place in a's belief, where it is unknown: that is no perception of it."""
     place = (9, 0, 8)
     _, nest = nest_of(
         {"a": (0.5, 0, 8.5), "b": (5.5, 0, 8.5)},

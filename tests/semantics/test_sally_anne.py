@@ -10,7 +10,7 @@ HIDDEN_FROM_ANNE, SEEN_BY_ALL, HIDDEN_FROM_OBSERVER = 9.5, 6.5, -8.5
 
 
 def mirrored(point):
-    """The point on the other side of the middle of the box, in x."""
+    """Return the point on the other side of the middle of the box, in x."""
     x, y, z = point
     return (1 - x, y, z)
 
@@ -27,7 +27,7 @@ def walls():
 
 
 def played(sallys_place, side=1):
-    """The story acted out, with Sally's second place; in the mirror with side -1."""
+    """Act the story out, with Sally's second place; in the mirror with side -1."""
     at = same if side == 1 else mirrored
 
     def cell(position):

@@ -1,4 +1,4 @@
-"""What is written on signs is believed as their blocks are."""
+"""Texts of signs are believed as their blocks are."""
 
 import json
 

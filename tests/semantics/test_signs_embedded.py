@@ -32,7 +32,7 @@ READ = "console.log(await readSign(bot, new Vec3(4, 1, 3)))"
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run in which a sign is written on, and what somebody remembers of it is forked."""
+    """Play a run in which a sign is written on, and a memory of it is forked."""
     store = tmp_path_factory.mktemp("run") / "run.bn"
     with bn.Nest.open(bn.Scenario.from_mapping(ROOM), store=store) as nest:
         nest.play()

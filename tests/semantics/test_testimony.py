@@ -43,7 +43,7 @@ class Hall:
                 self.world.place_agent(name, place)
 
     def contents(self, path: str) -> dict[Position, ContainerBelief]:
-        """What a node believes of containers; the reference believes the same."""
+        """Return a node's beliefs about containers; check that the reference has the same."""
         found = dict(self.nest[path].state.containers)
         assert found == self.reference.everything(split(path))["containers"]
         return found
@@ -111,7 +111,7 @@ BOTH = pytest.mark.parametrize("testimony", ["accept", "informed"])
 
 
 def beaten(hall: Hall, path: str = "/max") -> bool:
-    """Whether the last claim was heard at a path, and beaten by what is seen."""
+    """Return True if the last claim was heard at a path, and beaten by a percept."""
     told = hall.nest.claims()[-1]
     return told.is_heard(path) and not told.taken_up(path) and told.condition(path) in ("0", "1a")
 

@@ -20,7 +20,7 @@ def corner():
 
 
 def acts(world):
-    """The story, one act after the other."""
+    """Play the story, one act after the other."""
     yield world.deposit("anne", CHEST, {"diamond": 1})
     yield world.place_agent("sally", EAST)
     yield world.step(2)

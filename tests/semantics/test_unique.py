@@ -38,7 +38,7 @@ def hall(
 
 
 def where(nest: bn.Nest, path: str) -> list[Position | str]:
-    """Where a node believes the diamond to be."""
+    """Return the place at which a node believes the diamond to be."""
     state = nest[path].state
     held = [place for place, c in state.containers.items() if "diamond" in c.items]
     with_whom = [

@@ -59,7 +59,7 @@ THERE = {
     "readSign": {DOOR: "oak_sign"},
     "givePlacedItemBack": {AT: "crafting_table"},
 }
-"""What stands there when the example of a skill is run."""
+"""Blocks in the world in which the example of a skill runs."""
 
 
 MEANWHILE = {
@@ -67,7 +67,7 @@ MEANWHILE = {
     "waitForChat": {"anne": "await say(bot, 'Here I am.')"},
     "waitUntil": {"anne": "await goToPosition(bot, new Vec3(0, -51, -4), 0)"},
 }
-"""What another agent does meanwhile."""
+"""Programs of another agent meanwhile."""
 REFUSED = {"waitForMobRemoved": "is still there after 10 seconds"}
 """There are no mobs, and players stay."""
 

@@ -1,4 +1,4 @@
-"""What is the same once more is no further evidence: neither for intervals nor for tests."""
+"""Repeated cells are no further evidence: neither for intervals nor for tests."""
 
 from pathlib import Path
 

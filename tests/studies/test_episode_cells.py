@@ -64,7 +64,7 @@ def files_of(folder: Path) -> list[bytes]:
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The study, played by one process on the command line."""
+    """Play the study by one process on the command line."""
     folder = tmp_path_factory.mktemp("whole")
     write_into(folder)
     before = Path.cwd()

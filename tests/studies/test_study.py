@@ -43,7 +43,7 @@ def tables_of(folder):
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """A study that one process has run, by the command line; its folder and its file."""
+    """Run a study in one process, by the command line; return its folder and its file."""
     folder = tmp_path_factory.mktemp("whole")
     file = study_in(folder, STUDY)
     assert run_command_line(["study", str(file), "--out", str(folder / "out"), "--jobs", "1"]) == 0

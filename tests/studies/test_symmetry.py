@@ -26,7 +26,7 @@ def states(count):
 
 
 def space(symmetry, boxes):
-    """Which 32nds of a block's columns are filled, each box put where its corners go."""
+    """Return the filled 32nds of a block's columns, each box put where its corners go."""
     placing = Placing(symmetry, UNIT)
     filled = np.zeros((32, 64, 32), bool)
     for x0, y0, z0, x1, y1, z1 in boxes:

@@ -105,7 +105,7 @@ def test_a_condition_declares_no_parameter(tmp_path):
 
 
 def problems(content):
-    """What an editor finds wrong in a scenario file."""
+    """Return the errors that an editor finds in a scenario file."""
     file = Path(__file__).parents[2] / "docs" / "scenario.schema.json"
     schema = json.loads(file.read_text(encoding="utf-8"))
     # JSON's keys are texts.

@@ -53,7 +53,7 @@ def make_history():
 
 @pytest.fixture
 def run_file(tmp_path):
-    """A closed run file with 300 ticks on one branch."""
+    """Write a run file with 300 ticks on one branch, and close it."""
     path = tmp_path / "run.bn"
     with SqliteJournal.create_file(path) as journal:
         journal.create(MAIN, None, 0)

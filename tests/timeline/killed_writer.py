@@ -49,7 +49,7 @@ def calls(journal, seed):
 
 
 def entry(tick, chance):
-    """A frame or an edit."""
+    """Return a frame or an edit."""
     if chance.random() < 0.1:
         return Edit(tick, ("sally",), {(tick, 0, 0): chance.randrange(100)})
     return Frame(tick, {"sally": AgentState((chance.random(), 1.0, chance.random()))})

@@ -1,4 +1,4 @@
-"""What tests put into run files."""
+"""Records that tests put into run files."""
 
 from dataclasses import replace
 

@@ -30,7 +30,7 @@ def columns(path, table):
 
 
 def endless_view(path, table):
-    """The table's columns, and a row for every number there is."""
+    """Return the table's columns, and a row for every number there is."""
     names = ", ".join(f"i AS {name}" for name in columns(path, table))
     return (
         f"ALTER TABLE {table} RENAME TO kept;CREATE VIEW {table} AS {ENDLESS} SELECT {names} FROM n"

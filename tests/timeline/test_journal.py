@@ -1,4 +1,4 @@
-"""What every journal does, whatever keeps it."""
+"""Behaviour of all journals, in memory and in files."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What a writing process leaves to others: while it writes, and when it is killed."""
+"""Run files of a writing process: while it writes, and when it is killed."""
 
 import random
 import runpy
@@ -41,7 +41,7 @@ def expected(seed, calls):
 
 @contextmanager
 def writing(path, seed):
-    """A process that writes, killed in the end."""
+    """Yield a process that writes; kill it in the end."""
     with subprocess.Popen(
         [sys.executable, str(WRITER), str(path), str(seed)],
         stdin=subprocess.PIPE,

@@ -1,4 +1,4 @@
-"""What a run file is besides a journal: whose, how sound, with what in it."""
+"""Run files beyond the protocol of journals: owner, integrity, records."""
 
 import os
 import shutil

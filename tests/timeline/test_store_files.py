@@ -1,4 +1,4 @@
-"""Which files are runs, and how damage in one is found."""
+"""Recognition of run files, and of damage in them."""
 
 import math
 import os
@@ -100,7 +100,7 @@ def test_a_run_is_marked_as_one(run_file):
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory):
-    """A full run file, and all that is in it."""
+    """Write a full run file; return it and all its contents."""
     path = tmp_path_factory.mktemp("sound") / "run.bn"
     with SqliteJournal.create_file(path) as journal:
         journal.create(MAIN, None, 0)

@@ -48,7 +48,7 @@ def world(request: pytest.FixtureRequest) -> Iterator[World]:
 
 
 class Played:
-    """What came of programs: their results, what was told, and what is there then."""
+    """Results of programs: return values, events, and the state of the world afterwards."""
 
     def __init__(self, world: World, programs: dict[str, str], further: int = 0) -> None:
         frames: list[Frame] = []

@@ -13,7 +13,7 @@ GUIDE = Path(__file__).parents[3] / "docs" / "frames.md"
 
 @pytest.fixture
 def told(capsys, tmp_path, monkeypatch):
-    """What the guide prints, in a folder with its study."""
+    """Return the output of the guide's code, run in a folder with its study."""
     monkeypatch.chdir(tmp_path)
     (code,) = re.findall(r"```python\n(.*?)```", GUIDE.read_text("utf-8"), re.DOTALL)
     exec(compile(code, "guide", "exec"), {"__name__": "guide"})

@@ -197,7 +197,7 @@ Run = Callable[[str, Path], list[str]]
 
 @pytest.fixture(scope="module")
 def run() -> Iterator[Run]:
-    """What a program says; all run in one process, in turn, as the cells of a notebook do."""
+    """Yield a function that runs programs in one process, as cells of a notebook run."""
     # Inspect has an event loop, threads and a log of its own: a process of its own as well.
     with subprocess.Popen(
         [sys.executable, "-c", LISTENER],

@@ -42,7 +42,7 @@ def worlds():
 
 
 def check(simulator, path, nest):
-    """What the body holds, what one made anew would hold, and what the state says."""
+    """Compare the body, and a body made anew, with the state."""
     body, state = nest._engine.body(path).snapshot(), simulator.state
     known = {place: state.blocks[place] or "air" for place in state.blocks}
     registry = nest._recording.history.context.registry

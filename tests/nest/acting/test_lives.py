@@ -49,7 +49,7 @@ def worlds():
 
 @pytest.fixture
 def opened(worlds):
-    """Opens nests in the room."""
+    """Return a function that opens nests in the room."""
 
     def opening(store=None):
         return bn.Nest.open(bn.Scenario.from_mapping(ROOM), store=store, seed=5, worlds=worlds)
@@ -139,7 +139,7 @@ def killed_in(monkeypatch, op, times=1) -> Iterator[list[int]]:
 
 @pytest.fixture(scope="module")
 def undisturbed(worlds):
-    """What there is after a history in which nobody killed anything."""
+    """Return the result of a history in which no process was killed."""
     with bn.Nest.open(bn.Scenario.from_mapping(ROOM), seed=5, worlds=worlds) as nest:
         prepare(nest)
         results = go_on(nest)

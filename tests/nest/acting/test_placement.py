@@ -49,7 +49,7 @@ WALK = "await goToPosition(bot, new Vec3({0}, 1, {1}), 1)"
 
 
 def space(blocks, unknown=()):
-    """A box of air over known stone, with blocks; some are unknown."""
+    """Return a box of air over known stone, with blocks; some are unknown."""
     box = Box((0, 0, 0), (8, 4, 8))
     grid = np.zeros(box.shape, dtype=np.int32)
     grid[:, 0, :] = REGISTRY.state_id("stone")
@@ -68,7 +68,7 @@ def door(facing="north", z=4):
 
 
 def only(there, place, *, on_ground=True):
-    """Where one agent that is believed at a place begins; None: there."""
+    """Return the start of one agent that is believed at a place; None: that place."""
     moves = placed(there, {"ann": AgentState(place, on_ground=on_ground)}, {"ann": 3})
     assert all(start == place for start, _ in moves.values())
     return moves["ann"][1] if moves else None
@@ -170,7 +170,7 @@ def worlds():
 
 
 def room(**believed):
-    """The two rooms, and what ann believes at first."""
+    """Return the two rooms, and ann's first belief."""
     return bn.Scenario.from_mapping({**ROOM, "initial_beliefs": [{"path": "/ann", **believed}]})
 
 
@@ -472,7 +472,7 @@ CLAIMS = st.one_of(
 
 
 def spoken(claim):
-    """The claim as programs make it."""
+    """Return the claim as programs make it."""
     place = None if claim.place is None else f"new Vec3({', '.join(map(str, claim.place))})"
     call = {
         "located": f"located('{claim.item}', {place})",

@@ -45,7 +45,7 @@ def read(
     bob: tuple[float, float, float],
     senses: str,
 ) -> tuple[list[Any], int]:
-    """What Ann's program reads in a room in which this lies behind the wall."""
+    """Return the percepts of Ann's program in a room with this behind the wall."""
     scenario = bn.Scenario.from_mapping(
         {
             **ROOM,

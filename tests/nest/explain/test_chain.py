@@ -1,4 +1,4 @@
-"""Why a node holds what it holds, level by level, in facts and in words."""
+"""Reasons for the beliefs of a node, level by level, in facts and in words."""
 
 import pytest
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, OPEN, WEST, nest_of
@@ -25,7 +25,7 @@ def lines(explanation):
 
 
 def sally_anne(sallys_place):
-    """The paper's story up to Anne's taking the diamond, at tick 5."""
+    """Play the paper's story up to Anne's taking the diamond, at tick 5."""
     world = bn.ScriptedWorld(
         ((-11, -52, -11), (11, -49, 11)),
         walls(),

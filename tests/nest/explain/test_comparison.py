@@ -1,4 +1,4 @@
-"""Where simulators differ, and what a belief holds that is not so."""
+"""Differences between simulators, and false beliefs."""
 
 import pytest
 from tests.nest.places import CHEST, CLOSED, CORNER, EAST, GAP, MEETING, WEST, nest_of

@@ -119,7 +119,7 @@ def edited(world: bn.ScriptedWorld, nest: bn.Nest) -> None:
 
 
 def edited_back(world: bn.ScriptedWorld, nest: bn.Nest) -> None:
-    """The edit is undone by another in the same tick."""
+    """Edit, and undo the edit in the same tick."""
     edited(world, nest)
     nest["/ann"].edit(containers={A: {"diamond": 1}})
 

@@ -1,4 +1,4 @@
-"""What a nest tells of the claims that were made in it, and how it explains hearsay."""
+"""Claims made in a nest, and the explanation of hearsay."""
 
 from pathlib import Path
 

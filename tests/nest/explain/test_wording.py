@@ -1,4 +1,4 @@
-"""What explanations say in words, and that they say what states say."""
+"""Explanations in words, and their agreement with states."""
 
 from hypothesis import given
 from tests.semantics.stories import CONTAINERS, NAMES, Stage, Stories, Story

@@ -29,12 +29,12 @@ class _Model:
     name = "echo"
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """What was asked last."""
+        """Return the last request."""
         return Answer(messages[-1].text)
 
 
 def nest_in(store: str | None) -> bn.Nest:
-    """The nest that is acted in."""
+    """Open the nest that is acted in."""
     world = bn.ScriptedWorld(BOX, agents=AGENTS, containers={CHEST: {"bread": 64}})
     return bn.Nest(world, static_blocks=["stone"], store=store)
 

@@ -29,11 +29,11 @@ class Branch:
     description: str = ""
 
     def until(self, tick: int) -> int:
-        """How many of its acts had ended at a tick."""
+        """Return the number of its acts that had ended at a tick."""
         return sum(ended <= tick for ended, _ in self.acts)
 
     def lies_in(self, other: "Branch") -> bool:
-        """Whether it is another one, or rests on it."""
+        """Return True if it is another one, or rests on it."""
         return self is other or (self.base is not None and self.base[0].lies_in(other))
 
 
@@ -50,11 +50,11 @@ class LinearModel:
         self.selected = {"/": self.branches[0]}
 
     def find(self, path: str, name: str) -> Branch | None:
-        """The branch of a name."""
+        """Return the branch of a name."""
         return next((b for b in self.branches if (b.path, b.name) == (path, name)), None)
 
     def controller(self, path: str) -> Branch:
-        """The branch that a simulator's state comes from."""
+        """Return the branch that a simulator's state comes from."""
         while path not in self.selected:
             path = path.rpartition("/")[0] or "/"
         return self.selected[path]
@@ -82,7 +82,7 @@ class LinearModel:
 
     @contextmanager
     def nest(self, branch: Branch, acts: int | None = None) -> Iterator[bn.Nest]:
-        """A nest in which what led to a place on a branch was done, one thing after the other."""
+        """Make a nest and repeat in it, one by one, the acts that led to a place on a branch."""
         with self._opened() as nest:
             self._lead(nest, branch, len(branch.acts) if acts is None else acts)
             yield nest
@@ -97,7 +97,7 @@ class LinearModel:
             act(nest)
 
     def may_switch(self, path: str, name: str, at: int | None) -> bool:
-        """Whether a simulator can be switched, to a past tick or now."""
+        """Return True if a simulator can be switched, to a past tick or now."""
         if name == FOLLOW:
             return path != "/" and at is None
         if self.find(path, name) is not None:
@@ -120,7 +120,7 @@ class LinearModel:
         self.selected[path] = branch
 
     def may_delete(self, branch: Branch, recursive: bool) -> bool:
-        """Whether nobody is on what would go, and nothing is left that rests on it."""
+        """Return True if the branch can be deleted: no simulator is on it, none rests on it."""
         gone = [b for b in self.branches if b.lies_in(branch)]
         return (recursive or len(gone) == 1) and not any(b in gone for b in self.selected.values())
 

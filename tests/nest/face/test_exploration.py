@@ -78,7 +78,7 @@ def seen(simulator, result):
 
 
 def acting(simulator, result):
-    """A score that lets the simulator go on."""
+    """Return a score, and let the simulator go on."""
     simulator.run("ann", "bot.chat('and now?')")
     return simulator.tick
 

@@ -12,7 +12,7 @@ GOALS = {"K": {"block": "gold_block"}, "L": {"block": "emerald_block"}}
 
 
 def floor(*, containers=None, blocks=None, perception=None, wall=True):
-    """A floor of 7 by 4 with a wall behind which Anne does not see."""
+    """Return a floor of 7 by 4 with a wall behind which Anne does not see."""
     stones = {(x, 0, z): "stone" for x in range(7) for z in range(4)}
     stones |= {(0, 0, 3): "gold_block", (6, 0, 3): "emerald_block"}
     if wall:

@@ -238,7 +238,7 @@ def test_what_the_observer_cannot_perceive_changes_nothing():
 
 
 def walking(**further):
-    """A model of Bob in the second room, who wants one of its corners."""
+    """Return a model of Bob in the second room, who wants one of its corners."""
     return bn.MindModel(
         "bob",
         goals={"near": {"at": (7, 1, 0)}, "far": {"at": (11, 1, 0)}},

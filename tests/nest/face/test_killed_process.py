@@ -1,4 +1,4 @@
-"""What a killed process leaves: what every call did that returned, and no half of one."""
+"""A killed process leaves the effects of every call that returned, and no half of one."""
 
 import random
 import signal

@@ -1,4 +1,4 @@
-"""What a model was asked and answered, and what ran, is kept in the run as it happens."""
+"""Requests to models, their answers and the programs are kept in the run as it happens."""
 
 import pytest
 from tests.nest.places import BOX, GAP, MEETING, WEST
@@ -36,7 +36,7 @@ def open_in(store):
 
 
 def ask(simulator, *answers, before=lambda: None, **detail):
-    """A conversation of as many requests as there are answers."""
+    """Hold a conversation of as many requests as there are answers."""
     model = simulator.noting(Told(answers, before), **detail)
     assert model.name == "told"
     for number in range(len(answers)):

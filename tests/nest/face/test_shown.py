@@ -1,4 +1,4 @@
-"""What a terminal and a notebook show of nests, simulators, states, reasons and differences."""
+"""Nests, simulators, states, reasons and differences as a terminal and a notebook show them."""
 
 from collections.abc import Iterator
 

@@ -31,7 +31,7 @@ WHENS = st.one_of(
     st.tuples(st.just("ask"), PATH),
     st.tuples(st.just("look back"), PATH, st.integers(0, 20)),
 )
-"""What is done with one of the two nests between two acts."""
+"""Operations on one of the two nests between two acts."""
 
 
 class Twins:
@@ -86,7 +86,7 @@ class Twins:
 
 
 def shown(state):
-    """What a state shows, but for what blocks rest on, which is no matter of checkpoints."""
+    """Return the content of a state without the grounds of its blocks, which vary."""
     blocks = state.blocks
     return {
         **values(state),
@@ -122,7 +122,7 @@ def test_checkpoints_change_no_answer(data):
 
 
 def walked(store, ticks):
-    """A run in which ann and bob walk about and talk; /ann/bob was asked for."""
+    """Play a run in which ann and bob walk and talk, and /ann/bob is asked for."""
     world = bn.ScriptedWorld(BOX, agents={"ann": (1.5, 0.0, 1.5), "bob": (5.5, 0.0, 5.5)})
     with PACE:
         nest = bn.Nest(world, static_blocks=["air"], store=store)
@@ -206,7 +206,7 @@ def shown_here(nest):
 
 @contextmanager
 def counted_entries():
-    """Counts entries that are read one after the other."""
+    """Count entries that are read one after the other."""
     count = SimpleNamespace(read=0)
     read = SqliteJournal.entries
 

@@ -15,7 +15,7 @@ PLAN, IDEA = TimelineKey(("observer",), "plan"), TimelineKey(("observer", "sally
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """A run with branches of the real world, of a belief, and of one below it from the past."""
+    """Make a run with branches of the real world, of a belief, and of one below it in the past."""
     store = tmp_path_factory.mktemp("run") / "run.bn"
     world = bn.ScriptedWorld(BOX, CORNER, AGENTS, {"anne": {"diamond": 1}}, {CHEST: {"egg": 1}})
     with bn.Nest(world, static_blocks=["stone"], store=store) as nest:

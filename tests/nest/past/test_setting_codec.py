@@ -1,4 +1,4 @@
-"""What a nest started from, kept as bytes."""
+"""Settings of nests as bytes."""
 
 import msgspec
 import numpy as np

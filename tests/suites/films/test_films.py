@@ -105,7 +105,7 @@ def test_another_form_is_refused(tmp_path):
 
 
 def two_places(**further):
-    """A film whose observer does not know which of two goals stands where."""
+    """Return a film whose observer does not know which of two goals stands where."""
     return {
         "worlds": [
             {

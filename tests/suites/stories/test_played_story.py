@@ -1,4 +1,4 @@
-"""What agents believe after a story, read from the nest; by hand, and at random."""
+"""Beliefs of agents after a story, read from the nest; by hand, and at random."""
 
 from itertools import pairwise, product
 

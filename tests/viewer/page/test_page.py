@@ -58,7 +58,7 @@ def marks(browser: Browser, thing: str) -> list[str]:
 
 
 def row(browser: Browser, name: str) -> str:
-    """The thing of a row in the list of what is held, by its name."""
+    """Return the thing of a row in the list of beliefs, by its name."""
     return browser.until(
         lambda: browser.script(
             "return [...document.querySelectorAll('.holds .thing')]"

@@ -32,7 +32,7 @@ FETCH = "await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})"
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An episode of two rounds, with a branch at the second."""
+    """Play an episode of two rounds, with a branch at the second."""
     file = tmp_path_factory.mktemp("episode") / "run.bn"
     policies = {"ann": Scripted([FETCH, FETCH]), "bob": Scripted(["await think(bot, '<b>')"])}
     with bn.Episode(bn.Task.from_mapping(TASK), policies, store=file) as episode:

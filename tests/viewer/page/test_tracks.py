@@ -16,7 +16,7 @@ CHESTS = [(3, 1, 3), (9, 1, 3)]
 
 @pytest.fixture(scope="module")
 def story() -> bn.Nest:
-    """A wall with a door that opens and shuts, two chests, three agents that walk at random."""
+    """Return a nest: a door that opens and shuts, two chests, three agents that walk at random."""
     blocks = {(x, 0, z): "stone" for x in range(13) for z in range(9)}
     blocks |= {(6, y, z): "stone" for y in (1, 2) for z in range(9)}
     world = bn.ScriptedWorld(

@@ -1,4 +1,4 @@
-"""Who is answered by the page's server, and who is not."""
+"""Requests that the page's server answers, and requests that it refuses."""
 
 import asyncio
 from typing import Any

@@ -34,7 +34,7 @@ def message(content: object) -> str:
 
 
 def said(tmp_path: Path, acts: str, silence: float = 60) -> str:
-    """What a request says that a process answers as told."""
+    """Return the error of a request that a process answers as told."""
     script = tmp_path / "acts.py"
     script.write_text(START + acts)
     channel = Channel.start([sys.executable, str(script)], ProcessLimits(silence=silence))

@@ -1,4 +1,4 @@
-"""Where exhibits stand, what agents are called there, and that only what changed is told."""
+"""Places of exhibits, names of agents there; only changes are sent."""
 
 import re
 from dataclasses import replace

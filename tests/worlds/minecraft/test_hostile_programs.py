@@ -49,7 +49,7 @@ def nest() -> Iterator[bn.Nest]:
 
 
 def _unharmed(nest: bn.Nest, code: str) -> bn.ProgramResult:
-    """The result of a program beside which another runs, and after which another does."""
+    """Return the result of a program beside which another runs, and after which another does."""
     before = nest["/"].tick
     results = nest["/"].run_all({"sally": code, "anne": "await waitTicks(bot, 3)"}, 60)
     assert results["anne"].error is None

@@ -1,4 +1,4 @@
-"""Which Node runs the Minecraft side."""
+"""Choice of the Node that runs the Minecraft side."""
 
 import sys
 from pathlib import Path

@@ -67,7 +67,7 @@ def worlds() -> Iterator[Worlds]:
 
 @cache
 def policy() -> dict[str, Any]:
-    """What the sandbox lets programs reach: members by kind, and the events they can listen to."""
+    """Return the members that the sandbox lets programs reach, by kind, and the events."""
     script = (
         "const { kindNames } = require('./src/sandbox/policy/kinds');"
         "const { events } = require('./src/sandbox/policy/events');"
@@ -81,7 +81,7 @@ def policy() -> dict[str, Any]:
 
 
 def reader(then: str) -> str:
-    """A program that reads all it can, does something, and reads again."""
+    """Return a program that reads all it can, does something, and reads again."""
     gets = sorted({name for kind in policy()["kinds"].values() for name in kind["gets"]})
     events = [name for name in policy()["events"] if name != "physicTick"]
     names = f"const gets = {json.dumps(gets)}, events = {json.dumps(events)}"
@@ -96,7 +96,7 @@ def played(
     items: dict[str, int] | None = None,
     **more: Any,
 ) -> tuple[bn.ProgramResult, Point | None]:
-    """What becomes of Ann's program while Bob acts, and where she ends."""
+    """Return the result of Ann's program while Bob acts, and her place at the end."""
     chest = [{"at": [8, 1, 5], "items": items or {}}]
     scenario = bn.Scenario.from_mapping({**ROOM, "containers": chest, **more})
     with bn.Nest.open(scenario, world=world, worlds=worlds) as nest:
@@ -352,7 +352,7 @@ PROGRAMS = {
 
 
 def bare(text: str) -> str:
-    """A console line without what only one of the worlds writes around values."""
+    """Return a console line without what only one of the worlds writes around values."""
     return re.sub(r"[\[\]() ]", "", text)
 
 

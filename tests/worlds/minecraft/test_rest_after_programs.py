@@ -45,7 +45,7 @@ def opened(worlds, **more):
 
 
 def seen_by_ann(worlds, anns, bob, senses):
-    """What Ann believes of herself after each of her programs, beside one of Bob's."""
+    """Return Ann's beliefs about herself after each of her programs, beside one of Bob's."""
     with opened(worlds) as nest:
         found = []
         for ann in anns:

@@ -127,7 +127,7 @@ SIGN = [7, 1, 4]
 
 
 def doored(state: str, kind: str = "oak_door") -> dict[str, Any]:
-    """The room with a wall right across it, and a door in the wall."""
+    """Return the room with a wall right across it, and a door in the wall."""
     leaf = f"facing=north,{state}"
     blocks = [
         *ROOM["blocks"],
@@ -138,7 +138,7 @@ def doored(state: str, kind: str = "oak_door") -> dict[str, Any]:
 
 
 def passing(room: Mapping[str, Any], doors: str) -> tuple[list[bool], str | None, float]:
-    """What became of the door, and of who went to the other side of the wall and back."""
+    """Return the state of the door, and of the agent that went through the wall and back."""
     go = f"await goToPosition(bot, new Vec3(4, 1, 8), 0{doors})\n"
     back = go.replace("8)", "3)")
     with bn.Nest.open(bn.Scenario.from_mapping(room), world="scripted") as nest:

@@ -123,7 +123,7 @@ def test_the_experiments_come_out_as_in_the_embedded_world(
 
 
 def worked(scenario: Scenario, world: str) -> list[Any]:
-    """What came of each program: its deeds, all contents, what everybody has."""
+    """Return the results of each program: its deeds, all contents, all possessions."""
     told = []
     with Nest.open(scenario, world) as nest:
         for agent, program in WORK:

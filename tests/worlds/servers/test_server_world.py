@@ -1,4 +1,4 @@
-"""What a server lacks is said before anything is played, with what to do about it."""
+"""Errors about a server's missing features come before anything is played, with advice."""
 
 import re
 import socket
@@ -43,7 +43,7 @@ def server() -> Iterator[GameServer]:
 
 @contextmanager
 def on_console(server: GameServer, lines: tuple[str, str] | None) -> Iterator[None]:
-    """The server after one line is typed; the other one takes that back."""
+    """Yield the server after one line is typed; type the other line afterwards."""
     if lines is None:
         yield
         return
