@@ -4,7 +4,8 @@ import json
 from collections.abc import Sequence
 
 from beliefnest.suites.stories.floor_plan import FloorPlan, feet
-from beliefnest.suites.stories.story import Act, Come, Go, Look, Move, Tell, UseDoor, Write
+from beliefnest.suites.stories.grammar import UseDoor, Write
+from beliefnest.suites.stories.story import Act, Come, Go, Look, Move, Tell
 from beliefnest.world.claims import Claim
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.world import ScriptedWorld

@@ -8,119 +8,132 @@ and has no other meaning.
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
+
+import msgspec
 
 from beliefnest.errors import InputError
 
 __all__ = [
-    "DoorUsed",
+    "Agent",
     "Entered",
     "Exited",
     "Line",
     "Located",
     "Moved",
     "Opened",
-    "Remark",
     "Sentence",
     "Stayed",
     "Told",
-    "Wrote",
+    "UseDoor",
+    "Wait",
+    "Whispered",
+    "Write",
     "parse_line",
     "parse_lines",
 ]
 
+Agent = Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9_]{1,16}$")]
+_Agents = Annotated[tuple[Agent, ...], msgspec.Meta(min_length=1)]
+_Name = Annotated[str, msgspec.Meta(min_length=1, max_length=100)]
 
-@dataclass(frozen=True, slots=True)
-class Entered:
+
+class _Sentence(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="event"):
+    """Sentence of a story; in JSON the key `event` names its kind."""
+
+
+class Entered(_Sentence, frozen=True, tag="enter"):
     """Agents enter a room together."""
 
-    agents: tuple[str, ...]
-    room: str
+    agents: _Agents
+    room: _Name
 
 
-@dataclass(frozen=True, slots=True)
-class Exited:
+class Exited(_Sentence, frozen=True, tag="leave"):
     """Agents leave a room together."""
 
-    agents: tuple[str, ...]
-    room: str
+    agents: _Agents
+    room: _Name
 
 
-@dataclass(frozen=True, slots=True)
-class Stayed:
+class Stayed(_Sentence, frozen=True):
     """Agents stay in a room and do nothing."""
 
-    agents: tuple[str, ...]
-    room: str
+    agents: _Agents
+    room: _Name
 
 
-@dataclass(frozen=True, slots=True)
-class Located:
+class Located(_Sentence, frozen=True, tag="is"):
     """A thing is in a container, or a container is in a room, depending on the names."""
 
-    thing: str
-    place: str
+    thing: _Name
+    place: _Name
 
 
-@dataclass(frozen=True, slots=True)
-class Moved:
+class Moved(_Sentence, frozen=True, tag="move"):
     """An agent takes a thing out of its container and puts it into another."""
 
-    agent: str
-    thing: str
-    container: str
+    agent: Agent
+    thing: _Name
+    container: _Name
 
 
-@dataclass(frozen=True, slots=True)
-class DoorUsed:
+class UseDoor(_Sentence, frozen=True, tag="door"):
     """An agent in a room opens or shuts its door."""
 
-    agent: str
-    room: str
-    opens: bool
+    agent: Agent
+    room: _Name
+    opens: bool = msgspec.field(name="open")
 
 
-@dataclass(frozen=True, slots=True)
-class Wrote:
+class Write(_Sentence, frozen=True, tag="write"):
     """An agent in a room writes on its sign and replaces the text there."""
 
-    agent: str
-    room: str
+    agent: Agent
+    room: _Name
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Opened:
+class Opened(_Sentence, frozen=True, tag="open"):
     """An agent opens a container, looks into it and shuts it."""
 
-    agent: str
-    container: str
+    agent: Agent
+    container: _Name
 
 
-@dataclass(frozen=True, slots=True)
-class Told:
-    """An agent says that a thing is in a container, or that it is not there.
+class Told(_Sentence, frozen=True, tag="tell"):
+    """An agent says aloud that a thing is in a container, or that it is not there.
 
     Attributes:
         agent: Speaker.
-        hearer: Agent to whom the speaker whispers; None: the speaker says it aloud.
         thing: The thing.
         container: The container.
         is_there: True if the speaker says that the thing is there, False if that it is not.
     """
 
-    agent: str
-    hearer: str | None
-    thing: str
-    container: str
+    agent: Agent
+    thing: _Name
+    container: _Name
     is_there: bool = True
 
 
-@dataclass(frozen=True, slots=True)
-class Remark:
-    """A remark that changes neither the world nor any belief about it."""
+class Whispered(_Sentence, frozen=True, tag="whisper"):
+    """An agent whispers to `hearer` what `Told` says aloud."""
+
+    agent: Agent
+    hearer: Agent
+    thing: _Name
+    container: _Name
+    is_there: bool = True
 
 
-Sentence = Entered | Exited | Stayed | Located | Moved | DoorUsed | Wrote | Opened | Told | Remark
+class Wait(_Sentence, frozen=True, tag="wait"):
+    """Nothing is done: a remark that changes neither the world nor any belief about it."""
+
+
+Sentence = (
+    Entered | Exited | Stayed | Located | Moved | UseDoor | Write | Opened | Told | Whispered | Wait
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,13 +182,16 @@ def _agents(match: re.Match[str]) -> tuple[str, ...]:
 
 
 def _told(match: re.Match[str]) -> Told:
-    hearer = match.groupdict().get("hearer")
-    there = match["link"] == "is"
-    return Told(match["agent"], hearer, match["thing"], match["container"], there)
+    return Told(match["agent"], match["thing"], match["container"], match["link"] == "is")
 
 
-def _remark(_: re.Match[str]) -> Remark:
-    return Remark()
+def _whispered(match: re.Match[str]) -> Whispered:
+    told = _told(match)
+    return Whispered(told.agent, match["hearer"], told.thing, told.container, told.is_there)
+
+
+def _remark(_: re.Match[str]) -> Wait:
+    return Wait()
 
 
 _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
@@ -203,12 +219,12 @@ _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
     ),
     (
         rf"(?P<agent>{_AGENT}) (?P<how>opened|shut|closed) the door of (?:the )?(?P<room>{_NAME})",
-        lambda match: DoorUsed(match["agent"], match["room"], match["how"] == "opened"),
+        lambda match: UseDoor(match["agent"], match["room"], match["how"] == "opened"),
     ),
     (
         rf'(?P<agent>{_AGENT}) wrote "(?P<text>[^"]*)" on the sign of '
         rf"(?:the )?(?P<room>{_NAME})",
-        lambda match: Wrote(match["agent"], match["room"], match["text"]),
+        lambda match: Write(match["agent"], match["room"], match["text"]),
     ),
     (
         rf"(?P<agent>{_AGENT}) (?:opened|looked into) (?:the )?(?P<container>{_NAME})",
@@ -216,7 +232,7 @@ _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
     ),
     (
         rf"(?P<agent>{_AGENT}) (?:privately told|whispered to) (?P<hearer>{_AGENT}) {_CLAIM}",
-        _told,
+        _whispered,
     ),
     (
         rf"(?P<agent>{_AGENT}) (?:publicly claimed|said|told {_AGENT}) {_CLAIM}",

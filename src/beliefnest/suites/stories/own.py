@@ -2,118 +2,36 @@
 
 from collections.abc import Collection
 from pathlib import Path
-from typing import Annotated
 
 import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.perception.options import ContainerMode, Testimony
-from beliefnest.suites.stories import grammar
 from beliefnest.suites.stories.data import Item, StoryItems
 from beliefnest.suites.stories.faults import form_fault
-from beliefnest.suites.stories.grammar import Line, Sentence, parse_line
+from beliefnest.suites.stories.grammar import (
+    Agent,
+    Entered,
+    Exited,
+    Line,
+    Located,
+    Moved,
+    Opened,
+    Told,
+    UseDoor,
+    Wait,
+    Whispered,
+    Write,
+    parse_line,
+)
 from beliefnest.suites.stories.played_story import Knowing, check_question
 from beliefnest.suites.stories.questions import Question, parse_question
-from beliefnest.suites.stories.story import Story, Write, story_of
+from beliefnest.suites.stories.story import Story, story_of
 
 __all__ = ["read_own"]
 
-_Name = Annotated[str, msgspec.Meta(min_length=1, max_length=100)]
-_Agent = Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9_]{1,16}$")]
-_Agents = Annotated[list[_Agent], msgspec.Meta(min_length=1)]
-
-
-class _Event(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="event"):
-    """Event of a story; the key `event` names its kind."""
-
-
-class _Enter(_Event, frozen=True, tag="enter"):
-    agents: _Agents
-    room: _Name
-
-    def sentence(self) -> Sentence:
-        return grammar.Entered(tuple(self.agents), self.room)
-
-
-class _Leave(_Event, frozen=True, tag="leave"):
-    agents: _Agents
-    room: _Name
-
-    def sentence(self) -> Sentence:
-        return grammar.Exited(tuple(self.agents), self.room)
-
-
-class _Is(_Event, frozen=True, tag="is"):
-    thing: _Name
-    place: _Name
-
-    def sentence(self) -> Sentence:
-        return grammar.Located(self.thing, self.place)
-
-
-class _Move(_Event, frozen=True, tag="move"):
-    agent: _Agent
-    thing: _Name
-    container: _Name
-
-    def sentence(self) -> Sentence:
-        return grammar.Moved(self.agent, self.thing, self.container)
-
-
-class _Open(_Event, frozen=True, tag="open"):
-    agent: _Agent
-    container: _Name
-
-    def sentence(self) -> Sentence:
-        return grammar.Opened(self.agent, self.container)
-
-
-class _Door(_Event, frozen=True, tag="door"):
-    agent: _Agent
-    room: _Name
-    open: bool
-
-    def sentence(self) -> Sentence:
-        return grammar.DoorUsed(self.agent, self.room, self.open)
-
-
-class _Write(_Event, frozen=True, tag="write"):
-    agent: _Agent
-    room: _Name
-    text: str
-
-    def sentence(self) -> Sentence:
-        return grammar.Wrote(self.agent, self.room, self.text)
-
-
-class _Tell(_Event, frozen=True, tag="tell"):
-    agent: _Agent
-    thing: _Name
-    container: _Name
-    is_there: bool = True
-
-    def sentence(self) -> Sentence:
-        return grammar.Told(self.agent, None, self.thing, self.container, self.is_there)
-
-
-class _Whisper(_Event, frozen=True, tag="whisper"):
-    agent: _Agent
-    hearer: _Agent
-    thing: _Name
-    container: _Name
-    is_there: bool = True
-
-    def sentence(self) -> Sentence:
-        return grammar.Told(self.agent, self.hearer, self.thing, self.container, self.is_there)
-
-
-class _Wait(_Event, frozen=True, tag="wait"):
-    def sentence(self) -> Sentence:
-        return grammar.Remark()
-
-
-_Happening = _Enter | _Leave | _Is | _Move | _Open | _Door | _Write | _Tell | _Whisper | _Wait
+_Event = Entered | Exited | Located | Moved | Opened | UseDoor | Write | Told | Whispered | Wait
 
 
 class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -121,7 +39,7 @@ class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     answer: str | None
     question: str | None = None
-    believers: list[_Agent] = []
+    believers: list[Agent] = []
     thing: str | None = None
     door: str | None = None
     sign: str | None = None
@@ -131,7 +49,7 @@ class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class _OwnStory(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Line of the file: one story."""
 
-    events: list[str | _Happening]
+    events: list[str | _Event]
     questions: list[_Asked]
     name: str = ""
     containers: ContainerMode = "transparent"
@@ -164,7 +82,7 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItem
         try:
             stories.append(_story(number, decode_json(line, _OwnStory)))
         except msgspec.DecodeError as error:
-            words = form_fault(error, _OwnStory, _Happening)
+            words = form_fault(error, _OwnStory, _Event)
             raise InputError(f"{path}, line {number}: {words}") from None
         except InputError as error:
             raise InputError(f"{path}, line {number}: {error}") from None
@@ -182,9 +100,9 @@ def _story(number: int, told: _OwnStory) -> StoryItems:
     return StoryItems(story, tuple(items), knowing)
 
 
-def _line(number: int, event: str | _Happening) -> Line:
+def _line(number: int, event: str | _Event) -> Line:
     if not isinstance(event, str):
-        return Line(number, msgspec.json.encode(event).decode(), event.sentence(), "event")
+        return Line(number, msgspec.json.encode(event).decode(), event, "event")
     return parse_line(number, event, "event")
 
 

@@ -9,17 +9,18 @@ from dataclasses import dataclass, field
 
 from beliefnest.errors import InputError
 from beliefnest.suites.stories.grammar import (
-    DoorUsed,
     Entered,
     Exited,
     Line,
     Located,
     Moved,
     Opened,
-    Remark,
     Stayed,
     Told,
-    Wrote,
+    UseDoor,
+    Wait,
+    Whispered,
+    Write,
     parse_lines,
 )
 from beliefnest.world.signs import sign_fault
@@ -34,9 +35,6 @@ __all__ = [
     "Place",
     "Story",
     "Tell",
-    "UseDoor",
-    "Wait",
-    "Write",
     "read_story",
     "story_of",
 ]
@@ -88,34 +86,11 @@ class Move:
 
 
 @dataclass(frozen=True, slots=True)
-class Wait:
-    """Nothing is done."""
-
-
-@dataclass(frozen=True, slots=True)
 class Look:
     """An agent opens a container and looks into it."""
 
     agent: str
     place: Place
-
-
-@dataclass(frozen=True, slots=True)
-class UseDoor:
-    """An agent in a room opens or shuts its door."""
-
-    agent: str
-    room: str
-    opens: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Write:
-    """An agent in a room writes on its sign."""
-
-    agent: str
-    room: str
-    text: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +190,7 @@ def story_of(lines: Sequence[Line]) -> Story:
 def _rooms(lines: Sequence[Line]) -> tuple[str, ...]:
     """Return the names of rooms: places that agents enter, and places of containers."""
     sentences = [line.sentence for line in lines]
-    named = Entered | Exited | Stayed | DoorUsed | Wrote
+    named = Entered | Exited | Stayed | UseDoor | Write
     visited = [s.room for s in sentences if isinstance(s, named)]
     located = [s for s in sentences if isinstance(s, Located)]
     holders = {s.place for s in located if s.place not in visited}
@@ -261,15 +236,16 @@ class _Reader:
             case Opened(agent, container):
                 room = self._room_of(line, agent)
                 return Look(agent, self._place(line, self._here(line, room, container), container))
-            case DoorUsed() | Wrote():
-                return self._use(line, line.sentence)
-            case Told():
+            case UseDoor() | Write() as used:
+                self._check_inside(line, (used.agent,), used.room)
+                return self._door(line, used) if isinstance(used, UseDoor) else _text(line, used)
+            case Told() | Whispered():
                 return self._tell(line, line.sentence)
             case Stayed(agents, room):
                 self._check_inside(line, agents, room)
             case Located(thing, place):
                 self._locate(number, thing, place)
-            case Remark():
+            case Wait():
                 pass
         return Wait()
 
@@ -284,21 +260,12 @@ class _Reader:
         self.whereabouts.update(dict.fromkeys(agents, room))
         return Go(agents, shuts) if room == WAITING_ROOM else Come(agents, room, shuts)
 
-    def _use(self, line: Line, used: DoorUsed | Wrote) -> UseDoor | Write:
-        if isinstance(used, DoorUsed):
-            return self._use_door(line, used)
-        self._check_inside(line, (used.agent,), used.room)
-        if fault := sign_fault(used.text):
-            raise line.fault(fault)
-        return Write(used.agent, used.room, used.text.rstrip("\n"))
-
-    def _use_door(self, line: Line, used: DoorUsed) -> UseDoor:
-        self._check_inside(line, (used.agent,), used.room)
+    def _door(self, line: Line, used: UseDoor) -> UseDoor:
         if self.is_open.setdefault(used.room, True) is used.opens:
             state = "open" if used.opens else "shut"
             raise line.fault(f"the door of the {used.room} is {state} already")
         self.is_open[used.room] = used.opens
-        return UseDoor(used.agent, used.room, used.opens)
+        return used
 
     def _check_inside(self, line: Line, agents: Sequence[str], room: str) -> None:
         for agent in agents:
@@ -318,17 +285,18 @@ class _Reader:
         self.now[thing] = target
         return Move(agent, thing, source, target)
 
-    def _tell(self, line: Line, told: Told) -> Tell:
-        for name in (told.agent, told.hearer):
+    def _tell(self, line: Line, told: Told | Whispered) -> Tell:
+        hearer = told.hearer if isinstance(told, Whispered) else None
+        for name in (told.agent, hearer):
             if name is not None and name not in self.whereabouts:
                 raise line.fault(f"{name} was in no room so far; let {name} enter one first")
-        if told.agent == told.hearer:
+        if told.agent == hearer:
             raise line.fault(f"{told.agent} cannot whisper to itself; name somebody else")
         if told.thing not in self.now:
             raise line.fault(f"nothing says where the {told.thing} was; say where it is first")
         room = self.stated.get(told.container) or self.now[told.thing].room
         place = self._place(line, room, told.container)
-        return Tell(told.agent, told.hearer, told.thing, place, told.is_there)
+        return Tell(told.agent, hearer, told.thing, place, told.is_there)
 
     def _room_of(self, line: Line, agent: str) -> str:
         """Return the room with containers that an agent is in."""
@@ -372,3 +340,10 @@ class _Reader:
             if isinstance(sentence, Entered) and sentence.room != WAITING_ROOM:
                 return sentence.room
         raise self.lines[number].fault("it is in no room that is entered; name its room")
+
+
+def _text(line: Line, written: Write) -> Write:
+    """Return what is written, after checking that a sign can hold it."""
+    if fault := sign_fault(written.text):
+        raise line.fault(fault)
+    return Write(written.agent, written.room, written.text.rstrip("\n"))
