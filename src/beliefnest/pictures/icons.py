@@ -5,7 +5,7 @@ import zlib
 from collections.abc import Mapping
 
 from beliefnest.pictures.lettering import ASCENT, text_width
-from beliefnest.pictures.marks import XY, Circle, Lines, Polygon, Rectangle, Text
+from beliefnest.pictures.marks import XY, Bounds, Circle, Lines, Polygon, Rectangle, Text
 from beliefnest.pictures.marks import Mark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, AgentLook, Mark, mix
 from beliefnest.pictures.scene import Device, Store
@@ -157,18 +157,7 @@ def container(at: XY, size: float, store: Store) -> list[Drawn]:
             Rectangle(x - half * 0.4, y + half * 0.2, half * 0.8, half * 0.6, INK, role="part")
         )
     else:
-        drawn.append(
-            Rectangle(
-                x - size * 0.08,
-                y - size * 0.1,
-                size * 0.16,
-                size * 0.2,
-                "#ded6c4",
-                dark,
-                size * 0.03,
-                role="part",
-            )
-        )
+        drawn.append(_part(at, size, (-0.08, -0.1, 0.16, 0.2), "#ded6c4", dark, 0.03))
     if store.items:
         name, *_ = sorted(store.items)
         drawn += item((x, y - half * 0.15), size * 0.8, name)
@@ -211,41 +200,19 @@ def device(at: XY, cell: float, shown: Device) -> list[Drawn]:
     if "lever" in shown.name:
         end = (middle[0] + cell * (0.34 if shown.on else -0.34), middle[1] - cell * 0.34)
         return [
-            Rectangle(
-                x + cell * 0.3,
-                y + cell * 0.5,
-                cell * 0.4,
-                cell * 0.3,
-                _STONE,
-                INK,
-                cell * 0.05,
-                role="part",
-            ),
+            _part(at, cell, (0.3, 0.5, 0.4, 0.3), _STONE, INK, 0.05),
             Lines(((middle, end),), _WOOD_DARK, cell * 0.13, "part"),
             Circle(*end, cell * 0.13, "#d03030" if shown.on else PAPER, INK, cell * 0.05),
         ]
     if "button" in shown.name or "plate" in shown.name:
         fill = INK if shown.on else _STONE
-        return [
-            Rectangle(
-                x + cell * 0.25,
-                y + cell * 0.3,
-                cell * 0.5,
-                cell * 0.4,
-                fill,
-                INK,
-                cell * 0.06,
-                cell * 0.1,
-                role="part",
-            )
-        ]
+        return [_part(at, cell, (0.25, 0.3, 0.5, 0.4), fill, INK, 0.06, radius=0.1)]
     if "door" in shown.name or "gate" in shown.name:
         return _door(at, cell, shown)
     if shown.name.endswith("sign"):
-        board = (x + cell * 0.1, y + cell * 0.3, cell * 0.8, cell * 0.4)
         line = ((x + cell * 0.22, y + cell * 0.5), (x + cell * 0.78, y + cell * 0.5))
         return [
-            Rectangle(*board, _WOOD, INK, cell * 0.05, role="part"),
+            _part(at, cell, (0.1, 0.3, 0.8, 0.4), _WOOD, INK, 0.05),
             Lines((line,), INK, cell * 0.06, "part"),
         ]
     return _table(at, cell, shown)
@@ -253,25 +220,12 @@ def device(at: XY, cell: float, shown: Device) -> list[Drawn]:
 
 def _door(at: XY, cell: float, shown: Device) -> list[Drawn]:
     """Draw a door: shut, it fills its frame; open, it stands aside with an arc of its turn."""
-    x, y = at
-    frame = Rectangle(
-        x,
-        y,
-        cell,
-        cell,
-        mix(_WOOD_LIGHT, PAPER, 0.55),
-        _WOOD_DARK,
-        cell * 0.04,
-        dash=cell * 0.12,
-        role="part",
-    )
+    pale = mix(_WOOD_LIGHT, PAPER, 0.55)
+    drawn: list[Drawn] = [_part(at, cell, (0, 0, 1, 1), pale, _WOOD_DARK, 0.04, dash=0.12)]
     leaves = shown.parts or ((0.0, 0.4, 0.15, 0.6), (0.85, 0.4, 1.0, 0.6))
-    drawn: list[Drawn] = [frame]
     for left, top, right, bottom in leaves:
-        wide, high = max(right - left, 0.12) * cell, max(bottom - top, 0.12) * cell
-        leaf = (x + left * cell, y + top * cell, wide, high)
-        fill = PAPER if shown.on else _WOOD
-        drawn.append(Rectangle(*leaf, fill, _WOOD_DARK, cell * 0.07, role="part"))
+        leaf = (left, top, max(right - left, 0.12), max(bottom - top, 0.12))
+        drawn.append(_part(at, cell, leaf, PAPER if shown.on else _WOOD, _WOOD_DARK, 0.07))
     return drawn
 
 
@@ -279,17 +233,35 @@ def _table(at: XY, cell: float, shown: Device) -> list[Drawn]:
     x, y = at
     kiln = "table" not in shown.name
     fill, dark = (_STONE, _STONE_DARK) if kiln else (_WOOD, _WOOD_DARK)
-    drawn: list[Drawn] = [Rectangle(x, y, cell, cell, fill, dark, cell * 0.06, role="part")]
+    drawn: list[Drawn] = [_part(at, cell, (0, 0, 1, 1), fill, dark, 0.06)]
     if kiln:
         mouth = "#e67e22" if shown.on else INK
-        drawn.append(
-            Rectangle(x + cell * 0.25, y + cell * 0.5, cell * 0.5, cell * 0.35, mouth, role="part")
-        )
+        drawn.append(_part(at, cell, (0.25, 0.5, 0.5, 0.35), mouth))
     else:
         grid = [((x + cell * s, y), (x + cell * s, y + cell)) for s in (1 / 3, 2 / 3)]
         grid += [((x, y + cell * s), (x + cell, y + cell * s)) for s in (1 / 3, 2 / 3)]
         drawn.append(Lines(tuple(grid), dark, cell * 0.06, "part"))
     return drawn
+
+
+def _part(
+    at: XY,
+    cell: float,
+    box: Bounds,
+    fill: str,
+    stroke: str | None = None,
+    thick: float = 0.0,
+    *,
+    radius: float = 0.0,
+    dash: float = 0.0,
+) -> Rectangle:
+    """Return a rectangle; `box` (left, top, width, height) and the rest are shares of a cell."""
+    left, top, wide, high = box
+    x, y = at[0] + cell * left, at[1] + cell * top
+    line = cell * thick
+    return Rectangle(
+        x, y, cell * wide, cell * high, fill, stroke, line, cell * radius, cell * dash, "part"
+    )
 
 
 def _item_colour(name: str) -> str:
