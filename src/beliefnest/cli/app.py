@@ -442,6 +442,79 @@ def study(
 
 
 @app.command()
+def stats(
+    study: Annotated[Path, typer.Argument(help="Folder of a study.")],
+    by: Annotated[
+        list[str] | None,
+        typer.Option(metavar="COLUMN", help="Group rows by this column; can be repeated."),
+    ] = None,
+    between: Annotated[
+        list[str] | None,
+        typer.Option(metavar="COLUMN", help="Compare its values in pairs; can be repeated."),
+    ] = None,
+    effect: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="COLUMN",
+            help="Fit a regression on this column (A:B: interaction); can be repeated.",
+        ),
+    ] = None,
+    kind: Annotated[
+        Literal["gee", "mixed"], typer.Option(help="Kind of regression; variations are groups.")
+    ] = "gee",
+    family: Annotated[
+        Literal["binomial", "gaussian"],
+        typer.Option(help="binomial: log odds; gaussian: differences of accuracies."),
+    ] = "binomial",
+    positions: Annotated[
+        bool, typer.Option("--positions", help="Count chosen options by their position.")
+    ] = False,
+    json: Json = False,
+) -> int:
+    """Print accuracies, paired differences and regressions of a study, clustered by variation."""
+    from beliefnest.cli.stats import StatsOptions, run_stats
+
+    by, between, effect = by or [], between or [], effect or []
+    options = StatsOptions(
+        study, tuple(by), tuple(between), tuple(effect), kind, family, positions, json
+    )
+    return run_stats(options)
+
+
+@app.command()
+def power(
+    study: Annotated[
+        Path, typer.Argument(help="YAML file of a study to plan, or folder of one to draw from.")
+    ],
+    size: Annotated[
+        list[int] | None,
+        typer.Option(help="Number of variations; can be repeated.", min=1),
+    ] = None,
+    accuracy: Annotated[float | None, typer.Option(help="Assumed accuracy; default: 0.8.")] = None,
+    difference: Annotated[
+        float | None, typer.Option(help="Assumed difference of accuracy; default: 0.1.")
+    ] = None,
+    correlation: Annotated[
+        float | None,
+        typer.Option(help="Assumed correlation of rows of one variation; default: 0.3."),
+    ] = None,
+    between: Annotated[
+        str | None, typer.Option(metavar="COLUMN", help="Column whose values are compared.")
+    ] = None,
+    simulations: Annotated[int, typer.Option(help="Simulated studies of each size.", min=1)] = 400,
+    seed: Annotated[int, typer.Option(help="Seed of the simulations.", min=0)] = 0,
+    json: Json = False,
+) -> int:
+    """Simulate how wide intervals are, and which differences are found, with more variations."""
+    from beliefnest.cli.stats import PowerOptions, run_power
+
+    assumed = {"accuracy": accuracy, "difference": difference, "correlation": correlation}
+    return run_power(
+        PowerOptions(study, tuple(size or ()), assumed, between, simulations, seed, json)
+    )
+
+
+@app.command()
 def play(
     task: Annotated[
         str | None, typer.Argument(help="Built-in task or scenario, or a file of either.")

@@ -13,7 +13,9 @@ from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.allocation import LIST, balanced, latin_lists
 from beliefnest.studies.chance import scenario_draws
+from beliefnest.studies.checking import StudyKeyError
 from beliefnest.studies.design import Design, Template
 from beliefnest.studies.random_variations import drawn_variations
 from beliefnest.studies.variation import Variation, listed_variations
@@ -147,10 +149,17 @@ def alike(key: Key, seeds: Collection[str]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """Variation of a scenario under one condition, to be played once with one model."""
+    """Variation of a scenario under one condition, to be played once with one model.
+
+    Attributes:
+        key: Identity of the cell.
+        scenario: The scenario.
+        list_number: Number of the cell's list, from 1; None: the design has no lists.
+    """
 
     key: CellKey
     scenario: Scenario
+    list_number: int | None = None
 
     def plain(self) -> dict[str, Any]:
         """Return the cell as plain values for the study's plan."""
@@ -163,6 +172,7 @@ class Cell:
             "seed": key.seed,
             "variation": variation_id(key.scenario, dict(key.variation)),
             "alike": None if draws else alike(key, ("repeat",)),
+            **({} if self.list_number is None else {LIST: self.list_number}),
             "probes": [
                 {
                     "label": probe.label,
@@ -229,9 +239,18 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
     for name in design.scenarios:
         document = documents[name]
         conditions = _conditions(design, document)
+        if design.design != "crossed" and len(conditions) < 2:
+            raise StudyKeyError(
+                "design",
+                f"{name} has one condition, and design {design.design!r} allocates several; give "
+                "the scenario conditions, or leave `design` out",
+            )
         invalid += _unknown_conditions(design, name, document)
-        for variation in _variations(design, document):
-            for condition in conditions:
+        found: list[dict[int, list[Cell]]] = []
+        variations = _variations(design, document)
+        for variation in variations:
+            found.append({})
+            for number, condition in enumerate(conditions):
                 try:
                     scenario = _scenario(design, document, condition, variation)
                     asked = _by_template(design, document, scenario, variation)
@@ -239,11 +258,58 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
                     invalid.append(Invalid(name, condition, variation.values, str(error)))
                     continue
                 check_called(called, scenario.name, name)
-                cells += _cells(design, document, asked, variation)
+                found[-1][number] = list(_cells(design, document, asked, variation))
+        cells += _allocated(design, variations, found, len(conditions))
     order = {model: number for number, model in enumerate(design.models)}
     # Order cells in rounds, so that the cells played first form a smaller study of this design.
-    cells.sort(key=lambda cell: (cell.key.repeat, order[cell.key.model]))
+    cells.sort(key=lambda cell: (cell.key.repeat, cell.list_number or 0, order[cell.key.model]))
     return Plan(tuple(cells), tuple(invalid))
+
+
+def _allocated(
+    design: Design,
+    variations: Sequence[Variation],
+    found: Sequence[Mapping[int, Sequence[Cell]]],
+    conditions: int,
+) -> Iterator[Cell]:
+    """Yield the cells of a scenario that belong to the design, with their lists.
+
+    Args:
+        design: Design of the study.
+        variations: Variations of the scenario.
+        found: Valid cells of each variation by the number of the condition, from 0.
+        conditions: Number of conditions.
+    """
+    if design.design == "crossed":
+        yield from (cell for each in found for cells in each.values() for cell in cells)
+    elif design.design == "balanced":
+        values = [{k: json.dumps(v) for k, v in each.values.items()} for each in variations]
+        names = [cell.key.scenario for each in found for cells in each.values() for cell in cells]
+        seed = f"{design.seed} {''.join(names[:1])}"
+        chosen = balanced(values, [list(each) for each in found], conditions, seed)
+        for each, condition in zip(found, chosen, strict=True):
+            yield from () if condition is None else each[condition]
+    else:
+        steps = _steps(design, variations)
+        for each, step in zip(found, steps, strict=True):
+            lists = latin_lists(step, conditions)
+            for condition, cells in each.items():
+                yield from (replace(cell, list_number=lists[condition]) for cell in cells)
+
+
+def _steps(design: Design, variations: Sequence[Variation]) -> list[int]:
+    """Return the rotation of each variation in a Latin square."""
+    lists = design.variations
+    if isinstance(lists, int):
+        return list(range(len(variations)))
+    places = {
+        name: {json.dumps(value): number for number, value in enumerate(values)}
+        for name, values in lists.items()
+    }
+    return [
+        sum(places[name][json.dumps(value)] for name, value in each.values.items())
+        for each in variations
+    ]
 
 
 def check_called(called: dict[str, str], name: str, source: str) -> None:

@@ -11,7 +11,7 @@ from beliefnest.errors import InputError
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.clusters import exchange_p, mean_interval, rate_interval
 
-__all__ = ["Pairs", "Row", "count_rows", "paired_rows"]
+__all__ = ["Pairs", "Row", "count_rows", "judged_rows", "paired_rows"]
 
 Row = Mapping[str, Any]
 _Z95 = 1.959963984540054
@@ -58,6 +58,15 @@ def _origins(rows: Iterable[Row]) -> Iterator[_Origin]:
         cell = row.get("cell", number)
         yield row.get("copy_of") or cell, places[cell]
         places[cell] += 1
+
+
+def judged_rows(rows: Sequence[Row]) -> list[Row]:
+    """Return the rows with a verdict, each without its copies."""
+    firsts: dict[_Origin, Row] = {}
+    for row, origin in zip(rows, _origins(rows), strict=True):
+        if row.get("ok") is not None:
+            firsts.setdefault(origin, row)
+    return list(firsts.values())
 
 
 def _counted(all_rows: Sequence[tuple[Row, _Origin]], means: Mapping[str, bool]) -> dict[str, Any]:

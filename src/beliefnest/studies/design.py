@@ -16,6 +16,7 @@ from beliefnest.prompts.templates import (
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expressions import evaluate
 from beliefnest.scenarios.parameters import declared_in
+from beliefnest.studies.allocation import Allocation
 from beliefnest.studies.checking import (
     StudyKeyError,
     check_count,
@@ -53,6 +54,7 @@ class Design:
         temperature: Sampling temperature; None: the provider's default.
         limits: Limits of tokens and cost of the whole study.
         claims_from: Name of the model that extracts claims from utterances; None: no extraction.
+        design: Allocation of conditions to variations.
     """
 
     scenarios: tuple[str, ...]
@@ -68,6 +70,7 @@ class Design:
     temperature: float | None = 0.0
     limits: RunLimits = field(default_factory=RunLimits)
     claims_from: str | None = None
+    design: Allocation = "crossed"
 
     def __post_init__(self) -> None:
         for name, values in (("scenarios", self.scenarios), ("models", self.models)):
@@ -130,6 +133,7 @@ class Design:
             if isinstance(self.variations, int)
             else {name: list(values) for name, values in self.variations.items()},
             "conditions": None if self.conditions is None else list(self.conditions),
+            **({} if self.design == "crossed" else {"design": self.design}),
             **self.setting,
         }
 

@@ -11,6 +11,10 @@ from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.plainframe import Typed, plain_frame, write_csv, write_parquet
+from beliefnest.studies.positions import choices_of, count_positions
+from beliefnest.studies.power import Source, power_rows
+from beliefnest.studies.power_sources import SIZES, recorded_sources
+from beliefnest.studies.regression import Effect, Family, Kind, Regression, fit_rows
 from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table, variation_columns
@@ -124,7 +128,7 @@ class StudyResult:
             InputError: A column does not exist.
             MissingExtraError: pandas is not installed.
         """
-        names = self._columns(self.groups if by is None else by)
+        names = self.checked(self.groups if by is None else by)
         counted = self.counted(names)
         columns = counted[0] if counted else names
         return plain_frame({name: Typed([row[name] for row in counted]) for name in columns})
@@ -181,15 +185,23 @@ class StudyResult:
             InputError: The column does not exist, or no two rows differ in it alone.
             MissingExtraError: pandas is not installed.
         """
-        self._columns(between)
-        names = self._columns(self.apart(between) if by is None else by)
+        found = self.compared(between, by)
+        names = list(self.apart(between)) if by is None else self.checked(by)
+        columns = [*names, *_COMPARED, "low", "high", "p"]
+        return plain_frame({name: Typed([row[name] for row in found]) for name in columns})
+
+    def compared(self, between: str, by: Sequence[str] | str | None = None) -> list[dict[str, Any]]:
+        """Return the rows of `differences` as plain values; raise as it does."""
+        self.checked(between)
+        names = self.checked(self.apart(between) if by is None else by)
         compared = self.paired(between, names)
         levels = list(dict.fromkeys(row[between] for row in self.rows))
         if len(levels) > 1 and not compared:
             raise InputError(
-                f"no two rows differ in {between!r} alone, which is {levels[0]!r}, {levels[1]!r}"
+                f"no two rows differ in {between!r} alone, which is {levels[0]!r}, {levels[1]!r}; "
+                "compare groups that share no variations by `fit`"
             )
-        found = [
+        return [
             {
                 **dict(zip(names, values, strict=True)),
                 **{name: getattr(pairs, name) for name in _COMPARED},
@@ -199,8 +211,126 @@ class StudyResult:
             }
             for values, pairs in compared
         ]
-        columns = [*names, *_COMPARED, "low", "high", "p"]
-        return plain_frame({name: Typed([row[name] for row in found]) for name in columns})
+
+    def fit(
+        self,
+        effects: Sequence[Effect] | str,
+        kind: Kind = "gee",
+        family: Family = "binomial",
+    ) -> Regression:
+        """Fit a regression of right answers, with variations as groups.
+
+        Args:
+            effects: Columns of `frame`, or tuples of columns that interact. All are categories;
+                the first level of each is the reference.
+            kind: `gee`: generalized estimating equations with robust standard errors. `mixed`: a
+                random intercept for each variation.
+            family: `binomial`: logit, estimates are log odds. `gaussian`: linear probability,
+                estimates are differences of accuracies.
+
+        Raises:
+            InputError: A column does not exist, or the rows do not determine the model.
+            MissingExtraError: statsmodels is not installed (`beliefnest[stats]`).
+        """
+        wanted: list[Effect] = [effects] if isinstance(effects, str) else list(effects)
+        if not wanted:
+            raise InputError("effects is empty; name at least one column")
+        for each in wanted:
+            self.checked(each if isinstance(each, str) else list(each))
+        return fit_rows(self.rows, wanted, kind, family)
+
+    def choices(self) -> list[dict[str, Any]]:
+        """Return the answers to questions with options, see `choices_of`; copies are left out."""
+        rows: dict[str, list[dict[str, Any]]] = {}
+        for row in self.rows:
+            rows.setdefault(row["cell"], []).append(row)
+        found = ((own, self.folder.cell(name)) for name, own in rows.items())
+        return [
+            choice
+            for own, cell in found
+            if cell is not None and cell["error"] is None and own[0]["copy_of"] is None
+            for choice in choices_of(own, cell)
+        ]
+
+    def positions(self, by: Sequence[str] | str | None = None) -> "pandas.DataFrame":
+        """Return how often each position was chosen for each position of the right option.
+
+        Args:
+            by: Columns of `frame` that define the groups; None: the model, and template and order
+                if they have several values.
+
+        Returns:
+            See `count_positions`.
+
+        Raises:
+            InputError: A column does not exist, or the study has no questions with options.
+            MissingExtraError: pandas is not installed.
+        """
+        counted = self.counted_positions(self.checked(self.position_groups if by is None else by))
+        return plain_frame({name: Typed([row[name] for row in counted]) for name in counted[0]})
+
+    @property
+    def position_groups(self) -> tuple[str, ...]:
+        """Return the default columns of `positions`."""
+        return (*self.table.groups[-1:], *self._several(self.table.further_groups))
+
+    def counted_positions(self, by: Sequence[str]) -> list[dict[str, Any]]:
+        """Return the rows of `positions` as plain values; raise InputError if there are none."""
+        counted = count_positions(self.choices(), by)
+        if not counted:
+            raise InputError(
+                f"{self.folder.path} has no answer to a question with options and one right option"
+            )
+        return counted
+
+    def power_sources(
+        self, between: str | None = None, by: Sequence[str] | None = None
+    ) -> list[tuple[str, Source]]:
+        """Return the groups and comparisons of recorded rows that `power` draws from.
+
+        Raises:
+            InputError: A column does not exist, or no row is judged.
+        """
+        names = self.checked(self.groups if by is None else by)
+        column = self.default_between if between is None else self.checked(between)[0]
+        compared = []
+        if column is not None:
+            apart = self.apart(column)
+            for values, pairs in self.paired(column, apart):
+                compared.append((list(zip(apart, values, strict=True)), column, pairs))
+        return list(recorded_sources(self.rows, names, compared))
+
+    @property
+    def default_between(self) -> str | None:
+        """Return the first column of the table's comparisons with several values; None: none."""
+        return next(iter(self._several(self.table.compared)), None)
+
+    def power(
+        self,
+        between: str | None = None,
+        by: Sequence[str] | None = None,
+        sizes: Sequence[int] = SIZES,
+        simulations: int = 400,
+        seed: int = 0,
+    ) -> "pandas.DataFrame":
+        """Simulate larger and smaller studies by drawing the recorded variations again.
+
+        Args:
+            between: Column to compare, as for `differences`; None: the first that varies.
+            by: Columns that define the groups of accuracies; None: `groups`.
+            sizes: Numbers of variations.
+            simulations: Number of simulated studies of each size.
+            seed: Seed; the same seed gives the same numbers.
+
+        Returns:
+            A row for each group or comparison (`of`) and size, see `Power`.
+
+        Raises:
+            InputError: A column does not exist, or a number is wrong.
+            MissingExtraError: pandas is not installed.
+        """
+        rows = power_rows(self.power_sources(between, by), sizes, simulations, seed)
+        return plain_frame({name: Typed([row[name] for row in rows]) for name in rows[0]})
 
     def seconds(self) -> "pandas.DataFrame":
         """Return the known wall times of cells, with the columns `cell` and `seconds`."""
@@ -228,7 +358,7 @@ class StudyResult:
         """
         from beliefnest.studies.accuracy_figure import plot_accuracy
 
-        names = self._columns(self.table.groups[-2:] if by is None else by)
+        names = self.checked(self.table.groups[-2:] if by is None else by)
         if not names:
             raise InputError("by is empty; name at least one column to draw along")
         return plot_accuracy(count_rows(self.rows, names), names, size)
@@ -242,7 +372,7 @@ class StudyResult:
         from beliefnest.studies.page import page_text
 
         path = Path(file)
-        text = page_text(self, self._columns(self.groups if by is None else by))
+        text = page_text(self, self.checked(self.groups if by is None else by))
         try:
             path.write_text(text, encoding="utf-8")
         except OSError as error:
@@ -263,5 +393,6 @@ class StudyResult:
         write_parquet(columns, parquet)
         return csv, parquet
 
-    def _columns(self, names: Sequence[str] | str) -> list[str]:
+    def checked(self, names: Sequence[str] | str) -> list[str]:
+        """Return one or several names of columns as a list; raise InputError if one is unknown."""
         return checked_columns(names, self.columns)

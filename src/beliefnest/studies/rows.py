@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from beliefnest.studies.allocation import LIST
 from beliefnest.studies.cells import variation_id
 from beliefnest.studies.table import (
     FAILED,
@@ -137,6 +138,10 @@ PROBES = Table(
     further_groups=("template", "order"),
     compared=("condition", "model", "template"),
     apart=("model", "template", "order"),
-    same={"probe": ("path", "order", "acts_in", "agent", "task")},
+    same={
+        "probe": ("path", "order", "acts_in", "agent", "task"),
+        # In each list, a variation has another condition.
+        "condition": (LIST,),
+    },
 )
 """Table of studies of scenarios."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from filelock import Timeout
 
@@ -27,12 +27,18 @@ from beliefnest.studies.episode_design import (
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
 from beliefnest.studies.jobs import OnStudyProgress, StudyProgress, run_cells
+from beliefnest.studies.plainframe import Typed, plain_frame
+from beliefnest.studies.power import Source, power_rows
+from beliefnest.studies.power_sources import SIZES, assumed_sources
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_keys import StudyKeys, design_of
 from beliefnest.studies.table import Table, variation_columns
 from beliefnest.studies.terms import Terms
+
+if TYPE_CHECKING:  # pandas is optional, and imported when a table is made.
+    import pandas
 
 __all__ = ["Study"]
 
@@ -71,6 +77,10 @@ class Study:
         orders: Orders of Theory of Mind of models and search: 0, 1, 2, `omniscient`.
         seeds: Numbers of instances of tasks; a single number n: n instances from `seed` on.
         help: Measure help, which plays further branches.
+        design: `crossed`: every variation is played under every condition. `balanced`: under one
+            condition; conditions are equally frequent, also for each value of the variations.
+            `latin-square`: crossed and divided into lists (column `list`), each of which contains
+            every variation once.
 
     Raises:
         InputError: An argument does not have the right form.
@@ -101,6 +111,7 @@ class Study:
         orders: Sequence[Order] = (),
         seeds: Sequence[int] | int = 1,
         help: bool = False,
+        design: str = "crossed",
     ) -> None:
         keys = StudyKeys(
             scenarios=scenarios,
@@ -121,6 +132,7 @@ class Study:
             orders=orders,
             seeds=seeds,
             help=help,
+            design=design,
         )
         self._hold(design_of(keys, _templates(templates), _constraints(constraints)))
 
@@ -171,7 +183,7 @@ class Study:
     @property
     def columns(self) -> tuple[str, ...]:
         """Return names of the table's columns, see `StudyResult.frame`; raise as `plan` does."""
-        varied = dict.fromkeys(name for cell in self.plan().cells for name in cell.key.variation)
+        varied = variation_columns({"cells": [cell.plain() for cell in self.plan().cells]})
         return tuple(self._table.kinds(varied))
 
     def run(
@@ -227,6 +239,64 @@ class Study:
         except Timeout:
             raise InputError(f"another process runs the study in {folder}") from None
         return StudyResult(place)
+
+    def power_sources(
+        self,
+        accuracy: float = 0.8,
+        difference: float = 0.1,
+        correlation: float = 0.3,
+        between: str | None = None,
+    ) -> list[tuple[str, Source]]:
+        """Return the groups of planned rows that `power` simulates; raise as `power` does."""
+        plan = self._plan_json(self.plan())
+        rows = list(self._table.planned(plan))
+        varied = {name for name in self.columns if len({row[name] for row in rows}) > 1}
+        if between is None:
+            between = next((name for name in self._table.compared if name in varied), None)
+        elif between not in varied or between not in self.columns:
+            raise InputError(f"{between!r} does not vary in this study; name a column that does")
+        columns = (*self._table.groups, *self._table.further_groups)
+        by = [name for name in columns if name in varied]
+        paired = between is not None and plan.get("design") != "balanced"
+        assumed = {"accuracy": accuracy, "difference": difference, "correlation": correlation}
+        return list(assumed_sources(rows, by, assumed, paired=paired))
+
+    def power(
+        self,
+        accuracy: float = 0.8,
+        difference: float = 0.1,
+        correlation: float = 0.3,
+        *,
+        between: str | None = None,
+        sizes: Sequence[int] = SIZES,
+        simulations: int = 400,
+        seed: int = 0,
+    ) -> "pandas.DataFrame":
+        """Simulate this study with different numbers of variations; nothing is played.
+
+        Each simulated study has as many rows in each variation and group as this plan. To draw
+        from recorded rows instead, see `StudyResult.power`.
+
+        Args:
+            accuracy: Assumed accuracy.
+            difference: Assumed difference of accuracy between two levels of `between`.
+            correlation: Assumed correlation of rows of one variation, see `Assumed`.
+            between: Column to compare; None: the first of condition, model and template that
+                varies, or the policy of episodes.
+            sizes: Numbers of variations.
+            simulations: Number of simulated studies of each size.
+            seed: Seed; the same seed gives the same numbers.
+
+        Returns:
+            A row for each number of rows in a variation (`of`) and each size, see `Power`.
+
+        Raises:
+            InputError: A number is wrong, or the column does not vary.
+            MissingExtraError: pandas is not installed.
+        """
+        sources = self.power_sources(accuracy, difference, correlation, between)
+        rows = power_rows(sources, sizes, simulations, seed)
+        return plain_frame({name: Typed([row[name] for row in rows]) for name in rows[0]})
 
     def take_over(self, folder: str | Path, others: Sequence[str | Path]) -> int:
         """Copy the cells of folders in which other machines ran shards of the study.

@@ -5,6 +5,7 @@ from typing import Any
 
 import msgspec
 
+from beliefnest.studies.allocation import DESIGNS, Allocation
 from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
 from beliefnest.studies.design import Constraint, Design, Template
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies, listed, seeds_of
@@ -34,6 +35,7 @@ class StudyKeys(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     orders: Sequence[Order] = ()
     seeds: Sequence[int] | int = 1
     help: bool = False
+    design: str = "crossed"
 
 
 def design_of(
@@ -69,7 +71,15 @@ def design_of(
         temperature=keys.temperature,
         limits=checked_limits(keys.max_tokens, keys.max_cost),
         claims_from=keys.claims_from,
+        design=_allocation(keys.design),
     )
+
+
+def _allocation(name: object) -> Allocation:
+    for known in DESIGNS:
+        if known == name:
+            return known
+    raise StudyKeyError("design", f"design is {name!r}; give one of {', '.join(DESIGNS)}")
 
 
 def _episodes(keys: StudyKeys, constraints: Sequence[Constraint]) -> EpisodeDesign:
@@ -78,6 +88,7 @@ def _episodes(keys: StudyKeys, constraints: Sequence[Constraint]) -> EpisodeDesi
         "templates": keys.templates,
         "constraints": constraints,
         "claims_from": keys.claims_from,
+        "design": "" if keys.design == "crossed" else keys.design,
     }
     for name, value in foreign.items():
         if value:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.studies.allocation import LIST
 from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.study_folder import StudyFolder
 
@@ -115,16 +116,33 @@ class Table:
         varied = variation_columns(plan)
 
         def rows_of(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-            variation = cell["key"]["variation"]
-            for result in self.results(cell, found):
-                source = Source(cell, found, result)
-                yield {
-                    **{column.name: column.read(source) for column in self.first},
-                    **{name: plain_value(variation.get(name)) for name in varied},
-                    **{column.name: column.read(source) for column in self.columns},
-                }
+            return self._rows_of(cell, found, varied)
 
         return rows_with_copies(folder, plan, rows_of)
+
+    def planned(self, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+        """Yield the rows that a plan will have, without results.
+
+        Of cells that differ only by a seed on which nothing depends, the first one has rows.
+        """
+        varied = variation_columns(plan)
+        seen: set[str] = set()
+        for cell in plan["cells"]:
+            if cell["alike"] is None or cell["alike"] not in seen:
+                seen.add(cell["alike"] or cell["name"])
+                yield from self._rows_of(cell, {"error": "not played"}, varied)
+
+    def _rows_of(
+        self, cell: Mapping[str, Any], found: Mapping[str, Any], varied: Iterable[str]
+    ) -> Iterator[dict[str, Any]]:
+        variation = _varied(cell)
+        for result in self.results(cell, found):
+            source = Source(cell, found, result)
+            yield {
+                **{column.name: column.read(source) for column in self.first},
+                **{name: plain_value(variation.get(name)) for name in varied},
+                **{column.name: column.read(source) for column in self.columns},
+            }
 
 
 def of_key(name: str) -> Callable[[Source], Any]:
@@ -140,9 +158,17 @@ def of_result(
 
 
 def variation_columns(plan: Mapping[str, Any]) -> list[str]:
-    """Return the names of the columns of variations, in the order of the plan."""
-    names = (name for cell in plan["cells"] for name in cell["key"]["variation"])
-    return list(dict.fromkeys(names))
+    """Return the names of the columns of variations, in the order of the plan.
+
+    The column `list` follows them if the design has lists.
+    """
+    return list(dict.fromkeys(name for cell in plan["cells"] for name in _varied(cell)))
+
+
+def _varied(cell: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of a cell's variation, and its list if the design has lists."""
+    lists = {LIST: cell[LIST]} if LIST in cell else {}
+    return {**cell["key"]["variation"], **lists}
 
 
 def plain_value(value: Any) -> Any:

@@ -1,0 +1,213 @@
+"""`beliefnest stats` and `beliefnest power`: statistics of a study, and of studies to come."""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich import box
+from rich.markup import escape
+from rich.table import Table
+
+from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.terminal_text import printable
+from beliefnest.errors import InputError
+from beliefnest.studies.power import power_rows
+from beliefnest.studies.power_sources import SIZES
+from beliefnest.studies.regression import Effect, Family, Kind, Regression
+from beliefnest.studies.result import StudyResult
+from beliefnest.studies.study import Study
+
+__all__ = ["PowerOptions", "StatsOptions", "run_power", "run_stats"]
+
+_Rows = Sequence[Mapping[str, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class StatsOptions:
+    """Options of `beliefnest stats`.
+
+    Attributes:
+        study: Folder of the study.
+        by: Columns by which rows are grouped; empty: the default columns.
+        between: Columns whose levels are compared in pairs.
+        effects: Columns of a regression; `A:B` for an interaction.
+        kind: Kind of the regression.
+        family: Family of the regression.
+        positions: Count chosen options by position.
+        as_json: Print JSON instead of tables.
+    """
+
+    study: Path
+    by: tuple[str, ...]
+    between: tuple[str, ...]
+    effects: tuple[str, ...]
+    kind: Kind
+    family: Family
+    positions: bool
+    as_json: bool
+
+
+def run_stats(options: StatsOptions) -> int:
+    """Print the accuracies of a study, and the wanted comparisons, regression and positions.
+
+    Returns:
+        Exit status 0.
+
+    Raises:
+        InputError: A column does not exist, or the rows do not allow a statistic.
+    """
+    result = StudyResult.read(options.study)
+    by = list(options.by) or None
+    found: dict[str, Any] = {"summary": result.counted(result.checked(by or result.groups))}
+    if options.between:
+        found["differences"] = {name: result.compared(name, by) for name in options.between}
+    fitted = _fitted(result, options)
+    if fitted is not None:
+        found["regression"] = {
+            "method": fitted.method,
+            "rows": fitted.rows,
+            "variations": fitted.groups,
+            "correlation" if fitted.kind == "gee" else "intercept_sd": fitted.correlation,
+            "references": dict(fitted.references),
+            "terms": fitted.plain(),
+        }
+    if options.positions:
+        found["positions"] = result.counted_positions(result.checked(by or result.position_groups))
+    if options.as_json:
+        sys.stdout.write(json.dumps(found, indent=2) + "\n")
+    else:
+        _print(found, list(options.by) or list(result.groups))
+    return 0
+
+
+def _fitted(result: StudyResult, options: StatsOptions) -> Regression | None:
+    effects: list[Effect] = [
+        tuple(each.split(":")) if ":" in each else each for each in options.effects
+    ]
+    return result.fit(effects, options.kind, options.family) if effects else None
+
+
+def _print(found: Mapping[str, Any], by: Sequence[str]) -> None:
+    shown = ("variations", "judged", "right", "accuracy", "low", "high", "interval")
+    _show("accuracy, with 95 % intervals", found["summary"], (*by, *shown))
+    for column, pairs in found.get("differences", {}).items():
+        _show(f"paired differences of accuracy: {column}", pairs)
+    if "regression" in found:
+        told = found["regression"]
+        counts = f"{told['rows']} rows, {told['variations']} variations"
+        references = ", ".join(f"{name} {level}" for name, level in told["references"].items())
+        _show(f"regression of right answers: {counts}; reference {references}", told["terms"])
+        console = stdout()
+        for name in ("correlation", "intercept_sd"):
+            if name in told:
+                console.print(f"{name.replace('_', ' ')}: {told[name]:.3g}", highlight=False)
+        console.print(told["method"], highlight=False, soft_wrap=True)
+    if "positions" in found:
+        _show("options chosen, by position of the right one", found["positions"])
+
+
+def _show(title: str, rows: _Rows, columns: Sequence[str] | None = None) -> None:
+    if not rows:
+        return
+    table = Table(box=box.SIMPLE_HEAVY, title=escape(title), title_justify="left")
+    names = list(columns or rows[0])
+    for name in names:
+        numbers = all(isinstance(row[name], int | float | None) for row in rows)
+        table.add_column(name.replace("_", " "), justify="right" if numbers else "left")
+    for row in rows:
+        table.add_row(*(_cell(name, row[name]) for name in names))
+    print_table(stdout(), table)
+
+
+_SHARES = (
+    *("accuracy", "low", "high", "difference", "width", "width_90", "coverage"),
+    *("difference_width", "power"),
+)
+
+
+def _cell(name: str, value: object) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, float):
+        return f"{value:.3f}" if name in _SHARES else f"{value:.3g}"
+    return escape(printable(str(value)))
+
+
+@dataclass(frozen=True, slots=True)
+class PowerOptions:
+    """Options of `beliefnest power`.
+
+    Attributes:
+        study: File of a study, or folder of one that was played.
+        sizes: Numbers of variations; empty: the default ones.
+        assumed: Assumptions by name; None: not given.
+        between: Column to compare; None: the first that varies.
+        simulations: Number of simulated studies of each size.
+        seed: Seed of the simulations.
+        as_json: Print JSON instead of a table.
+    """
+
+    study: Path
+    sizes: tuple[int, ...]
+    assumed: Mapping[str, float | None]
+    between: str | None
+    simulations: int
+    seed: int
+    as_json: bool
+
+
+def run_power(options: PowerOptions) -> int:
+    """Simulate studies of different sizes and print widths of intervals and power.
+
+    Returns:
+        Exit status 0.
+
+    Raises:
+        BeliefNestError: The study or a number is wrong.
+    """
+    given = {name: value for name, value in options.assumed.items() if value is not None}
+    with progress_on("power") as on_progress:
+        on_progress("reading the study", 0, 0)
+        sources = _sources(options, given)
+
+        def told(done: int, total: int) -> None:
+            on_progress("simulating", done, total)
+
+        rows = power_rows(sources, options.sizes or SIZES, options.simulations, options.seed, told)
+    if options.as_json:
+        sys.stdout.write(json.dumps(rows, indent=2) + "\n")
+        return 0
+    for title, measure in (("accuracies", "width"), ("paired differences", "difference_width")):
+        own = [row for row in rows if row[measure] is not None]
+        _show(f"{title}, {options.simulations} simulated studies each", own, _POWER[measure])
+    console = stdout()
+    for line in _NOTES:
+        console.print(line, highlight=False, soft_wrap=True)
+    return 0
+
+
+_POWER = {
+    "width": ("of", "variations", "width", "width_90", "coverage"),
+    "difference_width": ("of", "variations", "difference_width", "power"),
+}
+_NOTES = (
+    "width: mean width of the 95 % interval of the accuracy; width 90: nine of ten studies have no "
+    "wider one; coverage: share of intervals that contain the true accuracy",
+    "difference width: mean width of the 95 % interval of the paired difference; power: share of "
+    "studies with p < 0.05",
+)
+
+
+def _sources(options: PowerOptions, given: Mapping[str, float]) -> list[Any]:
+    if options.study.is_dir():
+        if given:
+            name = next(iter(given))
+            raise InputError(
+                f"--{name} is an assumption, and {options.study} has results to draw from; leave "
+                "it out, or give the study's file"
+            )
+        return StudyResult.read(options.study).power_sources(options.between)
+    return Study.load(options.study).power_sources(**given, between=options.between)
