@@ -29,6 +29,7 @@ visit() {
     "$1" -m venv --without-pip "$home/venv" &&
       python -m pip --python "$home/venv/bin/python" install --quiet --no-compile "$room"/wheel/*.whl &&
       cd "$home" &&
+      export NUMBA_CACHE_DIR="$home/kernels" &&
       venv/bin/beliefnest --version &&
       venv/bin/beliefnest run sally-anne --out run
   } 2>&1); then

@@ -245,7 +245,7 @@ def test_doctor_compiles_what_the_first_belief_would_wait_for(
 ) -> None:
     assert run_command_line(["doctor", "--warm"]) == 0
     printed = capsys.readouterr()
-    assert "ok    kernels: compiled" in printed.out
+    assert "ok    kernels: compiled, kept in /" in printed.out
     assert "compiling" in printed.err
 
 

@@ -40,8 +40,8 @@ from beliefnest.belief.arrays import (
     Span,
 )
 from beliefnest.belief.seeing import eye_of, grid_cell, sees_agent, sees_cell, whole
+from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.eyes import Eye, set_code
-from beliefnest.perception.rays import compiled, inlined, inner, merged
 from beliefnest.world.event_kinds import Sense
 
 __all__ = ["fold", "put", "put_all", "refresh_pending"]

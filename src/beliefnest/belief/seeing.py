@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import UNKNOWN, Nodes, Poses, Space
+from beliefnest.perception.compiling import allocating, compiled, inlined, inner
 from beliefnest.perception.eyes import Eye, eye_at, eye_sees_agent, eye_sees_block, eye_sees_point
-from beliefnest.perception.rays import Cell, Scene, allocating, compiled, inlined, inner
+from beliefnest.perception.rays import Cell, Scene
 from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = [

@@ -120,14 +120,17 @@ def _kernels() -> str:
     from beliefnest.belief import kernel
     from beliefnest.minds import relaxing
     from beliefnest.perception import eye_loops
-    from beliefnest.perception.rays import is_compiled
+    from beliefnest.perception.compiling import is_compiled, kernel_folder
 
     kernels = (kernel.fold, eye_loops.seen_blocks, relaxing.raise_values)
+    folder = kernel_folder(kernel.fold)
+    if folder is None:
+        return "compiled by each process anew; let NUMBA_CACHE_DIR name a folder that you can write"
     if all(is_compiled(each) for each in kernels):
-        return "compiled"
+        return f"compiled, kept in {folder}"
     return (
         "not compiled yet; the first belief or inference will wait for it, "
-        "or `beliefnest doctor --warm` now"
+        f"or `beliefnest doctor --warm` now; they will be kept in {folder}"
     )
 
 

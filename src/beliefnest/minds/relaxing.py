@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.perception.rays import compiled, inner
+from beliefnest.perception.compiling import compiled, inner
 
 __all__ = ["raise_values", "relax"]
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, LIMIT_SLACK, OWN
+from beliefnest.perception.compiling import inlined, inlined_allocating, inner, merged
 from beliefnest.perception.rays import (
     LEAST_LENGTH,
     Cell,
@@ -19,13 +20,9 @@ from beliefnest.perception.rays import (
     at,
     cell_at,
     hidden_by,
-    inlined,
-    inlined_allocating,
-    inner,
     is_inside,
     main_axis,
     may_lie_in_face,
-    merged,
     neighbour,
     turned,
     turned_back,

@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.beams import Eye, in_field, in_reach, new_beam, sees_block
+from beliefnest.perception.compiling import allocating, inlined
 from beliefnest.perception.eyes import eye_sees_agent, eye_sees_point
-from beliefnest.perception.rays import Cell, Scene, allocating, cell_at, inlined
+from beliefnest.perception.rays import Cell, Scene, cell_at
 from beliefnest.perception.shadows import CLEAR, HIDDEN, UNSURE, Shadows
 
 __all__ = ["seen_agents", "seen_blocks", "seen_points"]

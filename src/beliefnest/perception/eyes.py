@@ -7,17 +7,15 @@ import numpy as np
 
 from beliefnest.perception.beams import Beam, Eye, eye_at, in_field, in_reach, sees_block
 from beliefnest.perception.codes import INTRUDED, OWN, Reaches
+from beliefnest.perception.compiling import compiled, inlined, merged
 from beliefnest.perception.rays import (
     Cell,
     Codes,
     Scene,
     Vector,
     at,
-    compiled,
     hidden_by,
-    inlined,
     is_inside,
-    merged,
     neighbour,
 )
 from beliefnest.perception.shadows import Shadows

@@ -9,18 +9,14 @@ Corners of shapes are multiples of 1/32, and a shape reaches out of its cell by 
 cell, along one axis. All shapes of Minecraft are so; tests/world/test_registry.py checks it.
 """
 
-import contextlib
 import math
-from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar, cast
+from typing import NamedTuple, TypeVar
 
-import numba
 import numpy as np
 import numpy.typing as npt
-from numba.core.caching import FunctionCache
-from numba.core.runtime.nrt import rtsys
 
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
+from beliefnest.perception.compiling import compiled, inlined, inner
 
 __all__ = [
     "LEAST_LENGTH",
@@ -29,18 +25,12 @@ __all__ = [
     "Codes",
     "Scene",
     "Vector",
-    "allocating",
     "at",
     "cell_at",
-    "compiled",
     "hidden_by",
-    "inlined",
-    "inlined_allocating",
-    "inner",
     "is_inside",
     "main_axis",
     "may_lie_in_face",
-    "merged",
     "neighbour",
     "sloped",
     "span",
@@ -49,7 +39,6 @@ __all__ = [
 ]
 
 N = TypeVar("N", int, float)
-F = TypeVar("F", bound=Callable[..., Any])
 Cell = tuple[int, int, int]
 Vector = tuple[float, float, float]
 Codes = npt.NDArray[np.uint16]
@@ -85,91 +74,6 @@ _NUDGE = 1e-7
 _SPARE = 1e-11
 # No shape comes this near to the outer side of the margin.
 _RIM = 1e-3
-
-
-_KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-# Numba's reference counting is off: its atomic operations at each use of an array took two thirds
-# of a tick and a fifth of the compilation. The caller of a kernel keeps the arrays alive.
-_BORROWING: dict[str, Any] = {**_KERNEL, "_nrt": False}
-# Kernels that only kernels call need no wrapper for Python, which would double their compilation.
-_INNER: dict[str, Any] = {"no_cpython_wrapper": True}
-
-
-def compiled(function: F) -> F:
-    """Compile a kernel on first use and cache it on disk; the kernel must not allocate arrays.
-
-    The cache is beside the package, in the user's cache folder, or in NUMBA_CACHE_DIR. A
-    process that can write to none of them compiles for itself.
-    """
-    return _kept(function, _BORROWING)
-
-
-def allocating(function: F) -> F:
-    """Compile as `compiled` does, for a kernel that allocates arrays."""
-    return _kept(function, _KERNEL)
-
-
-def inner(function: F) -> F:
-    """Compile as `compiled` does, for a kernel that only kernels call."""
-    return _kept(function, _BORROWING | _INNER)
-
-
-def inlined(function: F) -> F:
-    """Let LLVM inline a kernel into each of its callers; the kernel must not allocate arrays."""
-    return _jit(function, _BORROWING | _INNER | {"forceinline": True})
-
-
-def merged(function: F) -> F:
-    """Merge a kernel into its only caller before compilation; it must not allocate arrays.
-
-    Numba inserts the code into the caller, which saves most of the compilation time of the
-    kernel. With several callers `inlined` compiles faster.
-    """
-    return _jit(function, _BORROWING | _INNER | {"inline": "always"})
-
-
-def inlined_allocating(function: F) -> F:
-    """Inline as `inlined` does, for a kernel that allocates arrays."""
-    return _jit(function, _KERNEL | _INNER | {"forceinline": True})
-
-
-class _KernelCache(FunctionCache):
-    """Cache of machine code that is loaded without numba's compiler.
-
-    Numba imports the compiler's 250 modules before it loads anything, 0.3 s of every process.
-    Machine code needs only the runtime that its wrapper uses. Code that is not in the cache is
-    compiled as always: the compiler imports its own modules.
-    """
-
-    def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the compiled kernel for the types of the arguments; None if it is not cached."""
-        rtsys.initialize(target_context)
-        with self._guard_against_spurious_io_errors():
-            load: Callable[..., Any] = self._load_overload
-            return load(sig, target_context)
-
-
-def _kept(function: F, options: dict[str, Any]) -> F:
-    kernel: Any = _jit(function, options)
-    cache: Callable[..., Any] = _KernelCache
-    # Without a writable cache folder, which numba tells by this error, nothing is kept.
-    with contextlib.suppress(RuntimeError):
-        kernel._cache = cache(function)
-    return cast(F, kernel)
-
-
-def _jit(function: F, options: dict[str, Any]) -> F:
-    return cast(F, numba.njit(**options)(function))
-
-
-def is_compiled(function: Callable[..., object]) -> bool:
-    """Return True if a kernel of `compiled` needs no compilation: done before, or cached."""
-    kernel: Any = function
-    if not hasattr(kernel, "py_func") or kernel.signatures:
-        return True
-    # Numba checks here that its cache is of this source; it has no public function for that.
-    kept = getattr(kernel._cache, "_cache_file", None)
-    return kept is not None and bool(kept._load_index())
 
 
 @inlined

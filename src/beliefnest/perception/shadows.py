@@ -14,20 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, Reaches
-from beliefnest.perception.rays import (
-    Cell,
-    Scene,
-    Vector,
-    allocating,
-    at,
-    compiled,
-    inlined,
-    inlined_allocating,
-    sloped,
-    span,
-    turned,
-    turned_back,
-)
+from beliefnest.perception.compiling import allocating, compiled, inlined, inlined_allocating
+from beliefnest.perception.rays import Cell, Scene, Vector, at, sloped, span, turned, turned_back
 
 __all__ = [
     "CLEAR",

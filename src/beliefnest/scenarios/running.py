@@ -5,7 +5,7 @@ import time
 from beliefnest.belief import kernel
 from beliefnest.llm.messages import Model, Usage
 from beliefnest.nest.face.nest import Nest, Progress
-from beliefnest.perception.rays import is_compiled
+from beliefnest.perception.compiling import is_compiled
 from beliefnest.scenarios.expected import Deed
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome
 from beliefnest.scenarios.probing import Asking, run_probe

@@ -1,0 +1,235 @@
+"""Compilation of kernels by numba, and the folder that keeps their machine code.
+
+A kernel is compiled when it is first called. Its machine code is then stored in the user's cache
+folder, under the digest of all that it was made from. So any environment of this user that has
+the same kernel finds it, wherever the package is installed, and versions do not overwrite each
+other. Numba itself distinguishes processors and types of arguments within such a file.
+"""
+
+import os
+import pickle
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from enum import EnumType
+from hashlib import blake2b
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any, TypeVar, cast
+
+import numba
+from numba.core import caching
+from numba.core.runtime.nrt import rtsys
+
+__all__ = [
+    "allocating",
+    "compiled",
+    "inlined",
+    "inlined_allocating",
+    "inner",
+    "is_compiled",
+    "kernel_folder",
+    "merged",
+]
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+# Numba's reference counting is off: its atomic operations at each use of an array took two thirds
+# of a tick and a fifth of the compilation. The caller of a kernel keeps the arrays alive.
+_BORROWING: dict[str, Any] = {**_KERNEL, "_nrt": False}
+# Kernels that only kernels call need no wrapper for Python, which would double their compilation.
+_INNER: dict[str, Any] = {"no_cpython_wrapper": True}
+
+_UNREADABLE = (OSError, EOFError, pickle.UnpicklingError)
+
+
+def compiled(function: F) -> F:
+    """Compile a kernel on first use and store its code; the kernel must not allocate arrays.
+
+    A process that can write to no folder (see `kernel_folder`) compiles for itself.
+    """
+    return _kept(function, _BORROWING)
+
+
+def allocating(function: F) -> F:
+    """Compile as `compiled` does, for a kernel that allocates arrays."""
+    return _kept(function, _KERNEL)
+
+
+def inner(function: F) -> F:
+    """Compile as `compiled` does, for a kernel that only kernels call."""
+    return _kept(function, _BORROWING | _INNER)
+
+
+def inlined(function: F) -> F:
+    """Let LLVM inline a kernel into each of its callers; the kernel must not allocate arrays."""
+    return _jit(function, _BORROWING | _INNER | {"forceinline": True})
+
+
+def merged(function: F) -> F:
+    """Merge a kernel into its only caller before compilation; it must not allocate arrays.
+
+    Numba inserts the code into the caller, which saves most of the compilation time of the
+    kernel. With several callers `inlined` compiles faster.
+    """
+    return _jit(function, _BORROWING | _INNER | {"inline": "always"})
+
+
+def inlined_allocating(function: F) -> F:
+    """Inline as `inlined` does, for a kernel that allocates arrays."""
+    return _jit(function, _KERNEL | _INNER | {"forceinline": True})
+
+
+def is_compiled(function: Callable[..., object]) -> bool:
+    """Return True if a kernel of `compiled` needs no compilation: done before, or stored."""
+    kernel: Any = function
+    if not hasattr(kernel, "py_func") or kernel.signatures:
+        return True
+    return isinstance(kernel._cache, _Cache) and kernel._cache.holds_any(kernel.targetctx)
+
+
+def kernel_folder(function: Callable[..., object]) -> Path | None:
+    """Return the folder that keeps the machine code of a kernel; None: no folder is writable.
+
+    It is the first writable one of: the folder that NUMBA_CACHE_DIR names, the user's cache
+    folder, and `__pycache__` beside the source.
+    """
+    kernel: Any = function
+    path = getattr(kernel, "_cache", caching.NullCache()).cache_path
+    return None if path is None else Path(path)
+
+
+def _kept(function: F, options: dict[str, Any]) -> F:
+    kernel = _jit(function, options)
+    with suppress(RuntimeError):  # There is no writable folder.
+        cast(Any, kernel)._cache = _Cache(kernel)
+    return kernel
+
+
+def _jit(function: F, options: dict[str, Any]) -> F:
+    return cast(F, numba.njit(**options)(function))
+
+
+def _folders(source: str) -> Iterator[Path]:
+    """Yield the folders in which the kernels of a source file may be kept, the best first."""
+    # Numba reads only machine code of its own version, and would overwrite that of others.
+    name = f"numba-{numba.__version__}"
+    if chosen := getattr(numba.config, "CACHE_DIR", ""):
+        yield Path(chosen) / "beliefnest" / name
+    # Imported here because it is not needed if a folder was chosen.
+    from platformdirs import user_cache_path
+
+    yield user_cache_path("beliefnest", appauthor=False) / name
+    yield Path(source).parent / "__pycache__"
+
+
+class _Locator(caching._CacheLocator):
+    """Place of the machine code of one kernel, as numba asks for it."""
+
+    def __init__(self, folder: Path, digest: str) -> None:
+        self._folder, self._digest = folder, digest
+
+    def get_cache_path(self) -> str:
+        """Return the folder."""
+        return os.fspath(self._folder)
+
+    def get_source_stamp(self) -> str:
+        """Return a text that changes with the kernel."""
+        return self._digest
+
+    def get_disambiguator(self) -> str:
+        """Return the part of file names that tells versions of a kernel from each other."""
+        return self._digest
+
+
+class _Search:
+    """Search for the place of one kernel, in numba's list of such searches.
+
+    Numba's own searches find code by the path and the content of its source file: another
+    environment does not find it, and a kernel stays as it was when one that it calls has changed.
+    """
+
+    def __init__(self, digest: str) -> None:
+        self._digest = digest
+
+    def from_function(self, _: FunctionType, source: str) -> _Locator | None:
+        """Return the place in the first writable folder; None if there is none."""
+        for folder in _folders(source):
+            place = _Locator(folder, self._digest)
+            with suppress(OSError):
+                place.ensure_cache_path()
+                return place
+        return None
+
+
+class _Implementation(caching.CompileResultCacheImpl):
+    """Storing of a compiled kernel at the place that `_Search` finds."""
+
+    def __init__(self, kernel: Any) -> None:
+        self._locator_classes: Any = (_Search(_digest(kernel)),)
+        super().__init__(kernel.py_func)
+
+
+class _Cache(caching.FunctionCache):
+    """Machine code of one kernel on the disk. Trouble with the disk costs time only.
+
+    Numba imports the compiler's 250 modules before it loads anything, 0.3 s of every process.
+    Machine code needs only the runtime that its wrapper uses. Code that is not stored is compiled
+    as always: the compiler imports its own modules.
+    """
+
+    _impl_class = _Implementation
+
+    def __init__(self, kernel: Any) -> None:
+        super().__init__(kernel)
+        self._py_func = kernel.py_func
+
+    def holds_any(self, target_context: Any) -> bool:
+        """Return True if machine code for this processor is stored."""
+        processor = target_context.codegen().magic_tuple()
+        with suppress(*_UNREADABLE):
+            return any(key[1] == processor for key in self._cache_file._load_index())
+        return False
+
+    def load_overload(self, sig: object, target_context: Any) -> object:
+        """Return the machine code for types of arguments; None: nothing readable is stored."""
+        rtsys.initialize(target_context)
+        try:
+            return self._load_overload(sig, target_context)
+        except _UNREADABLE:
+            with suppress(OSError):
+                self.flush()
+            return None
+
+    def save_overload(self, sig: object, data: object) -> None:
+        """Store machine code, unless the folder is full or no longer writable."""
+        with suppress(OSError):
+            super().save_overload(sig, data)
+
+
+def _digest(kernel: Any) -> str:
+    """Return a digest of a kernel, the kernels that it calls and the constants that they read."""
+    return blake2b("\n".join(_parts(kernel, set())).encode(), digest_size=8).hexdigest()
+
+
+def _parts(kernel: Any, seen: set[object]) -> Iterator[str]:
+    function = kernel.py_func
+    seen.add(function)
+    code = function.__code__
+    constants = [each for each in code.co_consts if each != function.__doc__]
+    yield repr((function.__name__, code.co_code, constants, code.co_names, code.co_varnames))
+    yield repr(sorted(kernel.targetoptions.items()))
+    for name in code.co_names:
+        value = function.__globals__.get(name)
+        match value:
+            case _ if hasattr(value, "py_func"):
+                if value.py_func not in seen:
+                    yield from _parts(value, seen)
+            case ModuleType():
+                yield value.__name__
+            case EnumType():
+                yield repr(list(value))
+            case type():
+                yield repr(getattr(value, "_fields", name))
+            case _:
+                yield repr(value)
