@@ -13,7 +13,6 @@ from weakref import WeakSet
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief import kernel
 from beliefnest.belief.arrays import Changes, Facts, Span
 from beliefnest.belief.columns import Columns, place_of
 from beliefnest.belief.context import BeliefContext, SavedWriting
@@ -394,6 +393,8 @@ class Forest:
         Returns:
             Number of the first entry that was not folded.
         """
+        from beliefnest.belief import kernel
+
         claims = self._weighs and self.columns.has_claims(start)
         if claims or self._reads or self.context.unique:
             return self._fold_by_level(start)
@@ -432,6 +433,8 @@ class Forest:
         holdings and claims in turn, before the next level begins. Nodes of one level do not read
         each other, so their order is free.
         """
+        from beliefnest.belief import kernel
+
         columns, tick, space = self.columns, self.columns.tick(entry), self.context.space
         first, at = columns.events_until(entry), entry - columns.first
         count = columns.events_until(entry + 1) - first
@@ -459,6 +462,8 @@ class Forest:
 
     def _perceive(self, below: npt.NDArray[np.bool_]) -> None:
         """Let the nodes that `below` marks perceive the present state, with nothing happening."""
+        from beliefnest.belief import kernel
+
         context = self.context
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = Facts(

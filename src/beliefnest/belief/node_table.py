@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief import kernel, seeing
 from beliefnest.belief.arrays import UNKNOWN, Nodes
 from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.grounds import Basis
@@ -73,7 +72,7 @@ class NodeTable:
         self.edited_cells: set[tuple[int, int]] = set()
         self.index: dict[BeliefPath, int] = {}
         self.count = 0
-        self._linked = 1
+        self._linked = self._marked = 1
         known = set(context.tracked)
         others = [cell for cell in extra if cell not in known]
         tracked = self._tracked = np.array([*context.tracked, *others], dtype=np.int32)
@@ -114,12 +113,18 @@ class NodeTable:
         self._coded: tuple[npt.NDArray[Any], Row] | None = None
 
     def nodes(self) -> Nodes:
-        """Return the arrays for the kernel."""
+        """Return the arrays for the kernel, with the pending bits of all linked nodes."""
         if self._nodes is None:
             rows = {name: row[: self.count] for name, row in self._rows.items()}
             self._nodes = Nodes(
                 child_at=self._child_at, child=self._child, tracked=self._tracked, **rows
             )
+        if self._marked < self._linked:
+            from beliefnest.belief import kernel
+
+            for node in range(self._marked, self._linked):
+                kernel.refresh_pending(self._nodes, node)
+            self._marked = self._linked
         return self._nodes
 
     def add(self, path: BeliefPath, parent: int) -> int:
@@ -191,7 +196,7 @@ class NodeTable:
         return next(path for path, number in self.index.items() if number == node)
 
     def link(self) -> None:
-        """Index the children of all nodes, and compute the pending bits of the nodes just added."""
+        """Index the children of all nodes; `nodes` then marks what is pending in the new ones."""
         parent = self._rows["parent"][: self.count]
         order = np.argsort(parent, kind="stable").astype(np.int32)
         self._child = order[np.searchsorted(parent[order], 0) :]
@@ -199,9 +204,6 @@ class NodeTable:
             np.int32
         )
         self._nodes = None
-        nodes = self.nodes()
-        for node in range(self._linked, self.count):
-            kernel.refresh_pending(nodes, node)
         self._linked = max(self.count, 1)
 
     def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
@@ -274,6 +276,8 @@ class NodeTable:
 
     def put(self, node: int, cell: int, state: int, basis: Basis) -> None:
         """Set a block of a node by hand, with its basis."""
+        from beliefnest.belief import kernel
+
         self.edited_cells.add((node, cell))
         kernel.put(self.context.space, self.nodes(), node, cell, state)
         self.set_basis(node, cell, basis if state >= 0 else None)
@@ -282,6 +286,8 @@ class NodeTable:
         self, which: npt.NDArray[np.int64], cell: int, states: Sequence[int], basis: Basis
     ) -> None:
         """Set a claimed block in several nodes: `states[k]` in node `which[k]`."""
+        from beliefnest.belief import kernel
+
         wanted = np.array(states, dtype=np.int64)
         kernel.put_all(self.context.space, self.nodes(), which, cell, wanted)
         for node in which.tolist():
@@ -410,6 +416,8 @@ class NodeTable:
 
     def sees_cells(self, node: int, cells: Iterable[int]) -> set[int]:
         """Return those of some cells that the present owner of a node sees in the parent node."""
+        from beliefnest.belief import seeing
+
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
         wanted = np.array([*cells], dtype=np.int64)
@@ -420,6 +428,8 @@ class NodeTable:
 
     def sees_point(self, node: int, point: Point) -> bool:
         """Return True if the present owner of a node sees a point (scenario coordinates)."""
+        from beliefnest.belief import seeing
+
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
         return seeing.sees_point(

@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief import seeing
 from beliefnest.belief.arrays import NOBODY, READ, UNKNOWN, Nodes
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
@@ -320,6 +319,8 @@ class Testimony:
             Two flags by node: the owner perceives the matter elsewhere; the owner perceives the
             claimed place.
         """
+        from beliefnest.belief import seeing
+
         nowhere = np.zeros(len(which), dtype=np.bool_)
         cell = cell_of(self._context.box, claim.cell)
         match claim.kind:

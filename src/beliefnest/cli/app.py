@@ -179,28 +179,36 @@ def run(
     json: Json = False,
 ) -> int:
     """Play a scenario, track the beliefs, ask the model, and judge the results."""
-    from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
-    from beliefnest.llm.budget import RunLimits
+    from contextlib import nullcontext
+
+    from beliefnest.cli.ahead import ahead
     from beliefnest.worlds.names import world_name
     from beliefnest.worlds.servers.address import overwriting
 
-    limits = RunLimits(max_tokens, max_cost)
     named = world_name(world, realtime=realtime, listen=_listening(listen))
-    return run_scenarios(
-        RunOptions(
-            scenario=scenario,
-            conditions=tuple(condition or ()),
-            world=overwriting(named) if overwrite else named,
-            models=tuple(models.split(",")) if models is not None else (model,),
-            repeat=repeat,
-            out=out,
-            seed=seed,
-            as_json=json,
-            asking=ModelOptions(cache, answers, limits, attempts, temperature),
-            claims_from=claims_from,
-            embody=tuple(embody or ()),
+    # A folder may have all results already; then no world is needed.
+    begun = out is not None and out.exists()
+    with nullcontext() if begun else ahead(named, seed) as launch:
+        from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
+        from beliefnest.llm.budget import RunLimits
+
+        limits = RunLimits(max_tokens, max_cost)
+        return run_scenarios(
+            RunOptions(
+                scenario=scenario,
+                conditions=tuple(condition or ()),
+                world=overwriting(named) if overwrite else named,
+                models=tuple(models.split(",")) if models is not None else (model,),
+                repeat=repeat,
+                out=out,
+                seed=seed,
+                as_json=json,
+                asking=ModelOptions(cache, answers, limits, attempts, temperature),
+                claims_from=claims_from,
+                embody=tuple(embody or ()),
+            ),
+            launch,
         )
-    )
 
 
 @app.command()

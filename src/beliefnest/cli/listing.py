@@ -2,9 +2,6 @@
 
 import json
 import sys
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Self
 
 from rich import box
 from rich.table import Table
@@ -13,8 +10,8 @@ from beliefnest.cli.console import print_table, stdout
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.llm.resolve import model_names
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
-from beliefnest.scenarios.document import plain
-from beliefnest.scenarios.sources import builtin_names, read_document
+from beliefnest.scenarios.outline import builtin_outline
+from beliefnest.scenarios.sources import builtin_names
 from beliefnest.suites import SUITES
 from beliefnest.worlds.names import WORLDS
 from beliefnest.worlds.servers.address import SCHEME
@@ -22,32 +19,9 @@ from beliefnest.worlds.servers.address import SCHEME
 __all__ = ["print_installed"]
 
 
-@dataclass(frozen=True, slots=True)
-class _Described:
-    """Description of a built-in scenario, read without building its scene.
-
-    Attributes:
-        name: Its name.
-        description: Its description.
-        conditions: Descriptions of its conditions, by number.
-    """
-
-    name: str
-    description: str
-    conditions: Mapping[int, str]
-
-    @classmethod
-    def of(cls, name: str) -> Self:
-        """Return the description in the file of a built-in scenario."""
-        content: Any = plain(read_document(name).root)
-        conditions = content.get("conditions", {})
-        about = {number: str(each.get("description", "")) for number, each in conditions.items()}
-        return cls(content["name"], content.get("description", ""), about)
-
-
 def print_installed(*, as_json: bool) -> None:
     """Print all names that commands accept, by kind."""
-    scenarios = [_Described.of(name) for name in builtin_names()]
+    scenarios = [builtin_outline(name) for name in builtin_names()]
     if as_json:
         content = {
             "scenarios": [

@@ -43,9 +43,10 @@ from beliefnest.pictures.overview import ConditionPicture, overview
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
-from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
+from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.names import check_world
 
 __all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
@@ -128,8 +129,12 @@ class RunOptions:
         return tuple(dict.fromkeys((*self.models, *more)))
 
 
-def run_scenarios(options: RunOptions) -> int:
+def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
     """Run, record and print all conditions of a scenario.
+
+    Args:
+        options: Options of the command.
+        launch: Node of the embedded world, started earlier with the same seed.
 
     Returns:
         Exit status: 0 if all expectations hold, else 1.
@@ -155,7 +160,7 @@ def run_scenarios(options: RunOptions) -> int:
     cells = plan_run_cells(scenarios, options.models, options.repeat, options.seed)
     status: Status = "failed"
     try:
-        with Worlds(options.seed) as worlds:
+        with Worlds(options.seed, launch=launch) as worlds:
             for cell in cells:
                 run.do(cell, worlds)
         if len(run.pictures) == len(cells) > 1:

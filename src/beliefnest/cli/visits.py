@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
-from beliefnest.worlds.minecraft.embedded import MINECRAFT
+from beliefnest.worlds.minecraft.launching import MINECRAFT
 from beliefnest.worlds.servers.address import is_server
 from beliefnest.worlds.servers.listening import is_hosted
 

@@ -2,10 +2,8 @@
 
 import time
 
-from beliefnest.belief import kernel
 from beliefnest.llm.messages import Model, Usage
 from beliefnest.nest.face.nest import Nest, Progress
-from beliefnest.perception.compiling import is_compiled
 from beliefnest.scenarios.expected import Deed
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome
 from beliefnest.scenarios.probing import Asking, run_probe
@@ -45,6 +43,9 @@ def run_scenario(
     nest.play(on_progress)
     ticks = nest.tick
     steps = len(scenario.setting.script)
+    from beliefnest.belief import kernel
+    from beliefnest.perception.compiling import is_compiled
+
     # Report progress only if a model reads claims: only then is there a wait.
     compiling = "" if is_compiled(kernel.fold) else " (this very first time code is compiled)"
     on_progress(f"working out beliefs{compiling}", steps, steps)

@@ -8,7 +8,7 @@ from beliefnest.errors import UnknownNameError
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.yaml_reading import read_yaml
 
-__all__ = ["builtin_names", "read_document"]
+__all__ = ["builtin_file", "builtin_names", "read_document"]
 
 _SUFFIXES = (".yaml", ".yml")
 
@@ -20,6 +20,11 @@ def builtin_names() -> list[str]:
     return sorted(name.removesuffix(".yaml") for name in names if name.endswith(".yaml"))
 
 
+def builtin_file(name: str) -> Path:
+    """Return the file of a built-in scenario."""
+    return Path(str(files("beliefnest.scenarios") / "builtin")) / f"{name}.yaml"
+
+
 def read_document(name_or_path: str) -> Document:
     """Return the document of a built-in scenario, or of one in a file.
 
@@ -29,8 +34,7 @@ def read_document(name_or_path: str) -> Document:
     """
     names = builtin_names()
     if name_or_path in names:
-        folder = Path(str(files("beliefnest.scenarios") / "builtin"))
-        document = read_yaml(folder / f"{name_or_path}.yaml")
+        document = read_yaml(builtin_file(name_or_path))
         return replace(document, source=f"{name_or_path}.yaml")
     path = Path(name_or_path)
     looks_like_path = path.suffix in _SUFFIXES or len(path.parts) > 1

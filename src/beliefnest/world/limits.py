@@ -5,7 +5,6 @@ in its input.
 """
 
 import math
-import operator
 import re
 from collections.abc import Mapping, Sequence
 
@@ -23,7 +22,6 @@ __all__ = [
     "WORN_SLOTS",
     "agent_name_fault",
     "box_fault",
-    "checked_seed",
     "container_slots",
     "items_fault",
     "point_fault",
@@ -50,21 +48,6 @@ _AGENT_NAME = re.compile(r"[A-Za-z0-9_]{1,16}", re.ASCII)
 _FURNACES = frozenset({"furnace", "blast_furnace", "smoker"})
 _FURNACE_SLOTS = 3
 _CHEST_SLOTS = 27
-
-
-def checked_seed(seed: object, name: str = "seed") -> int:
-    """Return a valid seed as a Python number; NumPy numbers are converted.
-
-    Raises:
-        InputError: The seed is not a whole number of 64 bits; the message calls it `name`.
-    """
-    try:
-        number = operator.index(seed)  # type: ignore[arg-type] # whatever a caller gives
-    except TypeError:
-        number = None
-    if number is None or not -(2**63) <= number < 2**63:
-        raise InputError(f"{name} is {str(seed)[:50]!r}; give a whole number of 64 bits")
-    return number
 
 
 def agent_name_fault(name: object) -> str | None:

@@ -5,6 +5,7 @@ from types import TracebackType
 from typing import Self
 
 from beliefnest.world.frames import Snapshot
+from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.names import check_world
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import Body, Sink, World
@@ -27,13 +28,16 @@ __all__ = [
 _WITHOUT_PHYSICS = frozenset({"scripted"})
 
 
-def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> World:
+def open_world(
+    name: str, seed: int, limits: ProcessLimits | None = None, launch: Launch | None = None
+) -> World:
     """Start a world.
 
     Args:
         name: Name of the world.
         seed: Seed of every random number.
         limits: Limits of its process.
+        launch: Node of the embedded world, started earlier with the same seed and limits.
 
     Raises:
         BodyError: The world could not be started.
@@ -50,7 +54,7 @@ def open_world(name: str, seed: int, limits: ProcessLimits | None = None) -> Wor
         case "embedded":
             from beliefnest.worlds.minecraft.embedded import EmbeddedWorld
 
-            return EmbeddedWorld.start(seed, limits)
+            return EmbeddedWorld.start(seed, limits, launch)
         case "scripted":
             return ScriptedNestWorld()
         case _:
@@ -189,11 +193,15 @@ class Worlds:
     Args:
         seed: Seed of the worlds' own random numbers.
         limits: Limits of the process of each world.
+        launch: Node of the embedded world, started earlier with the same seed and limits.
     """
 
-    def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
+    def __init__(
+        self, seed: int, limits: ProcessLimits | None = None, launch: Launch | None = None
+    ) -> None:
         self._seed = seed
         self._limits = limits
+        self._launch = launch
         self._worlds: dict[str, World] = {}
 
     def __enter__(self) -> Self:
@@ -217,7 +225,7 @@ class Worlds:
             UnknownNameError: There is no world of that name.
         """
         if name not in self._worlds:
-            self._worlds[name] = open_world(name, self._seed, self._limits)
+            self._worlds[name] = open_world(name, self._seed, self._limits, self._launch)
         return _SharedWorld(self._worlds[name])
 
 

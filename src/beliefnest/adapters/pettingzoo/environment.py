@@ -19,8 +19,8 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import Senses
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.world.limits import checked_seed
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
+from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.names import check_world
 

@@ -28,9 +28,9 @@ from beliefnest.owned import is_own
 from beliefnest.perception.options import Perception
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.run_records import Senses
-from beliefnest.world.limits import checked_seed
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
+from beliefnest.world.seeds import checked_seed
 from beliefnest.world.values import TICKS_PER_SECOND, Position
 from beliefnest.worlds.by_name import Worlds, is_real_time, joined_of, open_world, realtime_of
 from beliefnest.worlds.names import world_name

@@ -7,7 +7,8 @@ arrive before the answer of the request that caused them.
 import socket
 import struct
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, Self, TypeVar
 
 import msgspec
@@ -51,6 +52,7 @@ class Channel(Owned):
         self._wait = min(_WAIT_SECONDS, silence)
         connection.settimeout(self._wait)
         self._number = 0
+        self._op = ""
         self._tick: int | None = None
         self._closed = False
 
@@ -103,15 +105,42 @@ class Channel(Owned):
             BodyLostError: Node ended or had to be killed; the message contains its last output.
             BodyError: Node failed to fulfil the request.
         """
+        self.begin(op, **arguments)
+        return self.finish(on_frame, percepts)
+
+    def begin(self, op: str, **arguments: Any) -> None:
+        """Send a request; `finish` waits for its answer. No other request may come between.
+
+        Raises:
+            InputError: A text of the request contains half a character and cannot be sent.
+            BodyLostError: Node ended or had to be killed.
+        """
         self.check_own("the Minecraft side")
         if self._closed:
             raise BodyError(f"the world was closed and cannot do {op!r} any more; open another one")
         message = _encoded(op, {"id": self._number + 1, "op": op, **arguments})
         self._number += 1
+        self._op = op
         self._tick = None
-        try:
+        with self._watched(op):
             self._send(message)
+
+    def finish(
+        self, on_frame: FrameHandler | None = None, percepts: PerceptsHandler | None = None
+    ) -> Any:
+        """Return the result of the request that was begun; arguments and errors as in `request`."""
+        self.check_own("the Minecraft side")
+        with self._watched(self._op):
             answer, refused = self._answer(on_frame, percepts)
+        if refused is not None:
+            raise refused
+        return _result(self._op, answer)
+
+    @contextmanager
+    def _watched(self, op: str) -> Iterator[None]:
+        """Turn a failure of the connection into the error that says how Node ended."""
+        try:
+            yield
         except (OSError, EOFError) as error:
             raise self._lost(op) from error
         except _BrokenError as error:
@@ -120,9 +149,6 @@ class Channel(Owned):
             # Kill Node: its late answer would be taken for that of the next request.
             self._child.kill()
             raise
-        if refused is not None:
-            raise refused
-        return _result(op, answer)
 
     def post(self, op: str, **arguments: Any) -> None:
         """Send a message that has no answer; this is possible during a request.

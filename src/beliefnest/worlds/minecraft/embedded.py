@@ -1,26 +1,22 @@
 """Embedded Minecraft world: one Node process with the server and all bots."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any, Self
 
 import msgspec
 import numpy as np
 
-from beliefnest.errors import BodyError, BodyLostError, WorldError
+from beliefnest.errors import BodyError, WorldError
 from beliefnest.owned import Owned
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.values import Box, Event
 from beliefnest.worlds.minecraft import node_messages
-from beliefnest.worlds.minecraft.channel import PROTOCOL, Channel
-from beliefnest.worlds.minecraft.node_files import EMBEDDED, node_command
+from beliefnest.worlds.minecraft.channel import Channel
+from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
 
-__all__ = ["MINECRAFT", "EmbeddedBody", "EmbeddedWorld", "started"]
-
-MINECRAFT = "1.20.4"
-"""Minecraft version of the embedded world."""
+__all__ = ["EmbeddedBody", "EmbeddedWorld"]
 
 
 class _Telling:
@@ -185,12 +181,16 @@ class EmbeddedWorld(Owned):
     Args:
         seed: Seed of the world's own random numbers.
         limits: Limits of Node.
+        launch: Node that was started earlier with the same seed and limits; None: start one.
     """
 
-    def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
+    def __init__(
+        self, seed: int, limits: ProcessLimits | None = None, launch: Launch | None = None
+    ) -> None:
         super().__init__()
         self._seed = seed
         self._limits = limits or ProcessLimits()
+        self._launch = launch
         self._channel: Channel | None = None
         self._versions: Mapping[str, str] = {}
         self._names: set[str] = set()
@@ -198,13 +198,15 @@ class EmbeddedWorld(Owned):
         self._closed = False
 
     @classmethod
-    def start(cls, seed: int, limits: ProcessLimits | None = None) -> Self:
-        """Start Node with an empty world at once.
+    def start(
+        cls, seed: int, limits: ProcessLimits | None = None, launch: Launch | None = None
+    ) -> Self:
+        """Start Node with an empty world at once; the arguments are those of the class.
 
         Raises:
             BodyError: Node or the bundle is missing, or the start failed.
         """
-        world = cls(seed, limits)
+        world = cls(seed, limits, launch)
         world._live()
         return world
 
@@ -269,40 +271,11 @@ class EmbeddedWorld(Owned):
         if self._channel is None or self._channel.lost:
             if self._channel is not None:
                 self._channel.close()
-            self._channel, self._versions = started(self._seed, self._limits)
+            launch, self._launch = self._launch, None
+            launch = launch or Launch.begin(self._seed, self._limits)
+            self._channel, self._versions = launch.take()
             self._names = set()
         return self._channel
-
-
-def started(
-    seed: int,
-    limits: ProcessLimits,
-    program: str = EMBEDDED,
-    writable: Path | None = None,
-    **more: Any,
-) -> tuple[Channel, Mapping[str, str]]:
-    """Start Node with an empty world; return the channel to it, and the running versions.
-
-    Args:
-        seed: Seed of the world's own random numbers.
-        limits: Limits of Node.
-        program: Name of the bundled program.
-        writable: The only folder to which it may write.
-        more: Further arguments of the first request.
-
-    Raises:
-        BodyError: Node or the bundle is missing, or the start failed.
-    """
-    channel = Channel.start(node_command(limits, program, writable), limits)
-    try:
-        told = channel.request("hello", protocol=PROTOCOL, seed=seed, minecraft=MINECRAFT, **more)
-    except BodyLostError as error:
-        channel.close()
-        raise BodyError(f"Node cannot be started; run `beliefnest doctor`. {error}") from error
-    except BaseException:
-        channel.close()
-        raise
-    return channel, {program: str(version) for program, version in told.items()}
 
 
 def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:

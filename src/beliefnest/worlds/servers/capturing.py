@@ -15,7 +15,7 @@ from beliefnest.world.signs import is_sign, sign_fault
 from beliefnest.world.values import AgentState, Box, Items, Position
 from beliefnest.worlds.minecraft import node_messages
 from beliefnest.worlds.minecraft.channel import Channel
-from beliefnest.worlds.minecraft.embedded import started
+from beliefnest.worlds.minecraft.launching import started
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.servers.address import ServerAddress
 from beliefnest.worlds.servers.server_world import joined

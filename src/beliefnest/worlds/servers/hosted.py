@@ -7,7 +7,7 @@ from typing import Self
 
 from beliefnest.errors import BodyError
 from beliefnest.worlds.minecraft.channel import Channel
-from beliefnest.worlds.minecraft.embedded import MINECRAFT, started
+from beliefnest.worlds.minecraft.launching import MINECRAFT, started
 from beliefnest.worlds.minecraft.node_files import HOSTING
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.servers.listening import ListenAddress

@@ -6,7 +6,7 @@ from typing import Self
 
 from beliefnest.errors import BodyError, WorldError
 from beliefnest.worlds.minecraft.channel import Channel
-from beliefnest.worlds.minecraft.embedded import started
+from beliefnest.worlds.minecraft.launching import started
 from beliefnest.worlds.minecraft.node_files import REALTIME
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.servers.address import ServerAddress
