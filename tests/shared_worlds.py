@@ -5,7 +5,7 @@ breaks it use a world of their own.
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 
 import pytest
 
@@ -43,8 +43,15 @@ def kept_worlds(lent: Lent) -> Iterator[None]:
         with lent(seed) as worlds:
             return worlds.lend(name)
 
+    def shared(seed: int, launch: None) -> AbstractContextManager[Worlds]:
+        return lent(seed)
+
+    def nothing_ahead(world: str, seed: int) -> AbstractContextManager[None]:
+        return nullcontext()
+
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("beliefnest.cli.run.Worlds", lent)
+        patched.setattr("beliefnest.cli.ahead.ahead", nothing_ahead)
+        patched.setattr("beliefnest.cli.run.Worlds", shared)
         patched.setattr("beliefnest.studies.worker.Worlds", lent)
         patched.setattr("beliefnest.nest.face.nest.open_world", lent_world)
         yield
