@@ -18,6 +18,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.words import with_the
 
 __all__ = ["read_condition", "read_trails"]
 
@@ -165,7 +166,7 @@ def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
         )
         deed = f"{agent} ends {where}"
     elif outcome.opened:
-        deed = f"{agent} opens the {container_name(outcome.opened[0], scenario.setting)}"
+        deed = f"{agent} opens {with_the(container_name(outcome.opened[0], scenario.setting))}"
     else:
         deed = f"{agent} opens nothing"
     reported = f"{scenario.reported_by} reports" if scenario.reported_by else "expected"

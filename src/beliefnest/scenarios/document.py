@@ -68,7 +68,11 @@ class Document:
 
     def fault(self, path: KeyPath, message: str) -> ScenarioError:
         """Return an error that names file, line and key."""
-        return ScenarioError(f"{self.where(path)}: {_key_text(path)}{message}")
+        return ScenarioError(f"{self.key_at(path)}{message}")
+
+    def key_at(self, path: KeyPath) -> str:
+        """Return the start of a message about a key: file, line and key."""
+        return f"{self.where(path)}: {_key_text(path)}"
 
     def where(self, path: KeyPath) -> str:
         """Return file and line of a value, or of its innermost written parent."""

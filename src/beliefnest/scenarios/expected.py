@@ -9,12 +9,14 @@ import re
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
 import msgspec
 
+from beliefnest.errors import ScenarioError
 from beliefnest.nest.past.setting import Setting
+from beliefnest.scenarios.believed import Believed, BelievedEntry, Look
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.scenarios.expected_state import Expectation, ExpectationEntry
@@ -25,12 +27,13 @@ from beliefnest.world import forms
 from beliefnest.world.forms import note
 from beliefnest.world.limits import AGENT_SLOTS
 from beliefnest.world.values import EventKind, Items, Point, Position
-from beliefnest.world.words import items_words, point_words
+from beliefnest.world.words import items_words, listed, point_words, with_the
 
 __all__ = [
     "Answers",
     "AnswersEntry",
     "Arrives",
+    "Awaited",
     "Believes",
     "Deed",
     "ExpectEntry",
@@ -82,8 +85,12 @@ class AnswersEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     question: Annotated[str, note("The question.", "text")]
     right: Annotated[
-        str | list[str],
-        note("Right answers; a right answer in words contains one of them.", "[text]"),
+        str | list[str] | BelievedEntry,
+        note(
+            "Right answers; a right answer in words contains one of them. `believed`: the answer "
+            "that a simulator holds.",
+            "[text]",
+        ),
     ]
     options: Annotated[
         list[str],
@@ -108,11 +115,18 @@ class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Expectations about a probe: at least one of these; all of them must hold."""
 
     opens: Annotated[
-        forms.Position | None, note("The container that the agent opens first.", "block")
+        forms.Position | BelievedEntry | None,
+        note(
+            "The container that the agent opens first; `believed`: that in which a simulator "
+            "believes an item.",
+            "block",
+        ),
     ] = None
-    arrives: Annotated[forms.Point | None, note("Place of the agent at the end.", "point")] = None
+    arrives: Annotated[
+        forms.Point | BelievedEntry | None, note("Place of the agent at the end.", "point")
+    ] = None
     intends: Annotated[
-        forms.Point | None,
+        forms.Point | BelievedEntry | None,
         note(
             "Container or place that the program heads for, even if it never gets there.", "place"
         ),
@@ -159,6 +173,18 @@ class Expected(ABC):
     @abstractmethod
     def ground(self) -> str:
         """Return what the expectation is judged by, in words."""
+
+    def resolved(self, look: Look, setting: Setting) -> "Expected":
+        """Return the expectation with the values that the nest computes.
+
+        Args:
+            look: Function from a belief path to the state after the script.
+            setting: Setting with names of places.
+
+        Raises:
+            ScenarioError: A belief gives no such value; the message names file, line and key.
+        """
+        return self
 
     @property
     def explained(self) -> Position | None:
@@ -264,12 +290,80 @@ class Deed(Expected):
 
 
 @dataclass(frozen=True, slots=True)
+class Awaited(Deed):
+    """Expectation about the place where a simulator believes an item or agent; not yet computed.
+
+    Attributes:
+        key: Its key: `opens`, `arrives` or `intends`.
+        believed: The belief that gives the place.
+        within: Greatest distance from there, in blocks.
+        containers: Containers of the scenario.
+    """
+
+    ground = "a place that a simulator believes in"
+    key: str
+    believed: Believed
+    within: float
+    containers: frozenset[Position]
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        return (self.believed.path,)
+
+    @classmethod
+    def of(cls, key: str, entry: ExpectEntry, path: KeyPath, checks: Checks) -> "Awaited":
+        """Return the expectation of an entry whose place a simulator gives.
+
+        Raises:
+            ScenarioError: The entry is not consistent, or asks for something that has no place.
+        """
+        believed = Believed.read(getattr(entry, key), (*path, key), checks)
+        kinds = ("item",) if key == "opens" else ("item", "agent")
+        if believed.kind not in kinds:
+            raise checks.fault((*path, key), f"needs a place; give {' or '.join(kinds)}")
+        return cls(key, believed, entry.within, frozenset(checks.snapshot.containers))
+
+    @classmethod
+    def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Awaited"]:
+        for key in ("opens", "arrives", "intends"):
+            if isinstance(getattr(entry, key), BelievedEntry):
+                yield cls.of(key, entry, path, checks)
+
+    def written(self) -> dict[str, Any]:
+        return {self.key: self.believed.written()}
+
+    def resolved(self, look: Look, setting: Setting) -> "Expected":
+        place = self.believed.place(look, setting)
+        match self.key:
+            case "opens":
+                if _block(place) not in self.containers:
+                    raise ScenarioError(
+                        f"{self.believed.where}needs a container, but the item is believed "
+                        f"{named_place(place, setting)}"
+                    )
+                return Opens(_block(place), self.believed)
+            case "arrives":
+                return Arrives(place, self.within, self.believed)
+            case _:
+                return Intends(place, self.within, _block(place) in self.containers, self.believed)
+
+    def judge(self, trial: Trial) -> Judgement:
+        raise AssertionError("the expectation is resolved before a program runs")
+
+
+@dataclass(frozen=True, slots=True)
 class Opens(Deed):
-    """Expectation: the program opens this container before any other."""
+    """Expectation: the program opens this container before any other.
+
+    Attributes:
+        container: The container.
+        believed: The belief that gave it; None: the scenario gives it.
+    """
 
     verb = "opens"
     ground = "the container that the agent opens first"
     container: Position
+    believed: Believed | None = None
 
     @property
     def explained(self) -> Position | None:
@@ -277,12 +371,12 @@ class Opens(Deed):
 
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Opens"]:
-        if entry.opens is not None:
+        if entry.opens is not None and not isinstance(entry.opens, BelievedEntry):
             checks.container((*path, "opens"), entry.opens)
             yield cls(entry.opens)
 
     def written(self) -> dict[str, Any]:
-        return {"opens": list(self.container)}
+        return {"opens": list(self.container), **_source("opens", self.believed)}
 
     def judge(self, trial: Trial) -> Judgement:
         first = trial.opened[:1]
@@ -294,11 +388,11 @@ class Opens(Deed):
         return opened if alone else f"opens {opened}"
 
     def account(self, judged: Judgement, outcome: Happened, setting: Setting, agent: str) -> str:
-        opened = f"the {container_name(outcome.opened[0], setting)}" if outcome.opened else "none"
+        opened = with_the(container_name(outcome.opened[0], setting)) if outcome.opened else "none"
         return (
             f"Judged by the container that {agent} opens first, in the world and not in the "
-            f"model's words: it is {opened}, expected was the "
-            f"{container_name(self.container, setting)}; that is {judged.words}."
+            f"model's words: it is {opened}, expected was "
+            f"{with_the(container_name(self.container, setting))}; that is {judged.words}."
         )
 
 
@@ -309,20 +403,23 @@ class Arrives(Deed):
     Attributes:
         place: Middle of the feet, in blocks.
         within: Greatest distance from there, in blocks.
+        believed: The belief that gave the place; None: the scenario gives it.
     """
 
     verb = "arrives at"
     ground = "where the agent stands in the end"
     place: Point
     within: float = 2.0
+    believed: Believed | None = None
 
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Arrives"]:
-        if entry.arrives is not None:
+        if entry.arrives is not None and not isinstance(entry.arrives, BelievedEntry):
             yield cls(entry.arrives, entry.within)
 
     def written(self) -> dict[str, Any]:
-        return {"arrives": list(self.place), "within": self.within}
+        told = {"arrives": list(self.place), "within": self.within}
+        return told | _source("arrives", self.believed)
 
     def judge(self, trial: Trial) -> Judgement:
         arrived = trial.arrived
@@ -358,12 +455,14 @@ class Intends(Deed):
         place: A container or another place, in blocks.
         within: Greatest distance of a walk's goal from the place, in blocks.
         is_container: True if a container of the scenario is there.
+        believed: The belief that gave the place; None: the scenario gives it.
     """
 
     ground = "what the program makes for"
     place: Point
     within: float = 2.0
     is_container: bool = False
+    believed: Believed | None = None
 
     @property
     def explained(self) -> Position | None:
@@ -371,12 +470,13 @@ class Intends(Deed):
 
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Intends"]:
-        if entry.intends is not None:
+        if entry.intends is not None and not isinstance(entry.intends, BelievedEntry):
             is_container = entry.intends in checks.snapshot.containers
             yield cls(entry.intends, entry.within, is_container)
 
     def written(self) -> dict[str, Any]:
-        return {"intends": list(self.place), "within": self.within}
+        told = {"intends": list(self.place), "within": self.within}
+        return told | _source("intends", self.believed)
 
     def judge(self, trial: Trial) -> Judgement:
         intended = trial.intended
@@ -480,6 +580,8 @@ class Answers(Expected):
         options: Options to choose from, shuffled by the seed; empty: an answer in words.
         wrong: Texts that a right answer in words must not contain.
         reason: True if the model is also asked for a reason.
+        believed: The belief that gives the right answers; None: the scenario gives them. `right` is
+            empty until the nest has computed them.
     """
 
     many = True
@@ -489,19 +591,38 @@ class Answers(Expected):
     options: tuple[str, ...] = ()
     wrong: tuple[str, ...] = ()
     reason: bool = False
+    believed: Believed | None = None
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        return () if self.believed is None else (self.believed.path,)
 
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Answers"]:
         for number, each in enumerate(_listed(entry.answers)):
-            right = (each.right,) if isinstance(each.right, str) else tuple(each.right)
-            found = cls(each.question, right, tuple(each.options), tuple(each.wrong), each.reason)
+            place = (*path, "answers", number)
+            right: tuple[str, ...] = ()
+            believed = None
+            if isinstance(each.right, BelievedEntry):
+                believed = Believed.read(each.right, (*place, "right"), checks)
+            else:
+                right = (each.right,) if isinstance(each.right, str) else tuple(each.right)
+            found = cls(
+                each.question,
+                right,
+                tuple(each.options),
+                tuple(each.wrong),
+                each.reason,
+                believed,
+            )
             for key, message in found._faults():
-                raise checks.fault((*path, "answers", number, *key), message)
+                raise checks.fault((*place, *key), message)
             yield found
 
     def _faults(self) -> Iterator[tuple[KeyPath, str]]:
         right, options = self.right, self.options
-        if not self.question.strip() or not all(each.strip() for each in right) or not right:
+        given = self.believed is not None or (right and all(each.strip() for each in right))
+        if not self.question.strip() or not given:
             yield (), "give a question and at least one right answer"
         missing = [each for each in right if each not in options]
         if options and missing:
@@ -527,12 +648,31 @@ class Answers(Expected):
     def written(self) -> dict[str, Any]:
         asked = {
             "question": self.question,
-            "right": list(self.right),
+            "right": self._right,
             "options": list(self.options),
             "wrong": list(self.wrong),
             "reason": self.reason,
         }
+        if self.right:
+            asked |= _source("right", self.believed)
         return {"answers": [asked]}
+
+    @property
+    def _right(self) -> list[str] | dict[str, Any]:
+        if self.believed is not None and not self.right:
+            return self.believed.written()
+        return list(self.right)
+
+    def resolved(self, look: Look, setting: Setting) -> "Expected":
+        if self.believed is None or self.right:
+            return self
+        found = replace(self, right=self.believed.answers(look, setting, self.options))
+        both = [each for each in found.right if each in self.wrong]
+        if both:
+            raise ScenarioError(
+                f"{self.believed.where}the belief gives {both[0]!r}, which 'wrong' names as well"
+            )
+        return found
 
     def judge(self, answer: str | None) -> Judgement:
         """Judge the answer to the question; None: there was no answer."""
@@ -548,6 +688,12 @@ class Answers(Expected):
     def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
         answers = {each.question: each.answer for each in outcome.replies}
         return f"answers {answers.get(self.question) or 'nothing'}"
+
+    def account(self, judged: Judgement, outcome: Happened, setting: Setting, agent: str) -> str:
+        told = "" if judged.ok else f": {judged.why_not}"
+        source = "" if self.believed is None else f" ({self.believed.words}; computed by the nest)"
+        right = listed([repr(each) for each in self.right], "or")
+        return f"Judged by {self.ground}; right is {right}{source}; that is {judged.words}{told}."
 
 
 @dataclass(frozen=True, slots=True)
@@ -679,6 +825,7 @@ class Infers(Expected):
 
 KINDS: tuple[type[Expected], ...] = (
     Infers,
+    Awaited,
     Opens,
     Arrives,
     Intends,
@@ -755,6 +902,11 @@ def _listed(entry: T | list[T] | None) -> list[T]:
     if entry is None:
         return []
     return entry if isinstance(entry, list) else [entry]
+
+
+def _source(key: str, believed: Believed | None) -> dict[str, Any]:
+    """Return the belief that gave a value, under a key of its own; empty: the scenario gave it."""
+    return {} if believed is None else {f"{key}_from": believed.written()}
 
 
 def _has(answer: str, text: str) -> bool:

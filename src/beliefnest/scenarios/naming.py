@@ -1,15 +1,11 @@
 """Names of places of a scenario, for people."""
 
-import math
-
+from beliefnest.nest.past.place_names import names_near
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
 
 __all__ = ["container_name", "named_place", "point_text", "titled"]
-
-_NEAR = 3.0
-"""Distance in blocks up to which an agent counts as being at a named place."""
 
 
 def container_name(place: Position, setting: Setting) -> str:
@@ -19,12 +15,8 @@ def container_name(place: Position, setting: Setting) -> str:
 
 def named_place(point: Point, setting: Setting) -> str:
     """Return a point as text: `at` with a named place near it, or with its coordinates."""
-    near = {
-        name: math.dist(point, (x + 0.5, y, z + 0.5)) for name, (x, y, z) in setting.places.items()
-    }
-    if near and min(near.values()) <= _NEAR:
-        return f"at {min(near, key=lambda name: near[name])}"
-    return f"at {point_text(point)}"
+    names = names_near(point, {at: name for name, at in setting.places.items()})
+    return f"at {names[0] if names else point_text(point)}"
 
 
 def point_text(point: Point) -> str:

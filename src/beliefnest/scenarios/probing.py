@@ -1,6 +1,6 @@
 """Probing of a model: ask for a program, run and judge it, and ask questions."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.view import State
 from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_program
@@ -18,7 +18,7 @@ from beliefnest.scenarios.questioning import ask_question
 from beliefnest.scenarios.trial import Trial
 from beliefnest.skills import skills
 
-__all__ = ["Asking", "run_probe"]
+__all__ = ["Asking", "resolved", "run_probe"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +63,12 @@ def run_probe(
     Raises:
         ModelError: The model failed, or gave no working program (`Asking.keeps_unanswered`).
         BodyError: The Minecraft side died.
-        ScenarioError: The inference does not fit the recorded events.
+        ScenarioError: The inference does not fit the recorded events, or a belief gives no right
+            answer.
     """
     if probe.infer is not None:
         return _infer(nest, probe, probe.infer)
+    probe = resolved(nest, probe)
     believer, name = nest[probe.path], f"probe {number}"
     programs = _Programs((), None, ())
     if probe.asks_for_program:
@@ -102,6 +104,18 @@ def run_probe(
         replies=tuple(replies.values()),
         fault=programs.fault,
     )
+
+
+def resolved(nest: Nest, probe: Probe) -> Probe:
+    """Return a probe with the right answers that the nest computes.
+
+    Raises:
+        ScenarioError: A belief gives no right answer; the message names file, line and key.
+    """
+    expect = tuple(
+        each.resolved(lambda path: nest[path].state, nest.setting) for each in probe.expect
+    )
+    return replace(probe, expect=expect)
 
 
 def _infer(nest: Nest, probe: Probe, infer: Inferring) -> ProbeOutcome:

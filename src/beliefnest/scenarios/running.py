@@ -6,7 +6,7 @@ from beliefnest.llm.messages import Model, Usage
 from beliefnest.nest.face.nest import Nest, Progress
 from beliefnest.scenarios.expected import Deed
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome
-from beliefnest.scenarios.probing import Asking, run_probe
+from beliefnest.scenarios.probing import Asking, resolved, run_probe
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import parse_path, path_text
 
@@ -38,6 +38,7 @@ def run_scenario(
         InputError: A judging function does not exist; nothing was played.
         ModelError: The model gave no usable answer.
         BodyError: The Minecraft side died.
+        ScenarioError: A belief gives no right answer; no model was asked.
     """
     _check_functions(scenario)
     nest.play(on_progress)
@@ -56,9 +57,11 @@ def run_scenario(
         for each in scenario.expectations
     )
     probes = []
-    for number, probe in enumerate(scenario.probes):
+    # Compute right answers before any model is asked: errors in them then cost nothing.
+    asked = [resolved(nest, probe) for probe in scenario.probes]
+    for number, probe in enumerate(asked):
         verb = "asking" if probe.asks_model else "inferring"
-        on_progress(f"{verb}: {probe.asked}", number, len(scenario.probes))
+        on_progress(f"{verb}: {probe.asked}", number, len(asked))
         probes.append(run_probe(nest, number + 1, probe, model, seed, asking or Asking()))
     return Outcome(
         scenario=scenario,

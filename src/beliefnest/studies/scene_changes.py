@@ -13,6 +13,7 @@ import msgspec
 from beliefnest.belief.conditions import ConditionEntry
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
+from beliefnest.scenarios.believed import BelievedEntry
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
 from beliefnest.scenarios.expected import AnswersEntry, ExpectEntry
 from beliefnest.scenarios.expected_state import ExpectationEntry
@@ -67,6 +68,14 @@ class _ByKind:
     shapes: Mapping[str, Any]
 
 
+@dataclass(frozen=True, slots=True)
+class _OrMapping:
+    """Value of one shape, or a mapping of another shape."""
+
+    shape: Any
+    mapping: Any
+
+
 _ITEMS = _Map("item", "keep")
 _CORNERS = _Each("block")
 _BLOCKS = _Each({"block": "state", "at": "block", "fill": _CORNERS, "walls": _CORNERS})
@@ -89,9 +98,14 @@ def _shapes(form: type[msgspec.Struct]) -> dict[str, Any]:
 
 
 _EXPECTATION = _shapes(ExpectationEntry)
+_BELIEVED = _shapes(BelievedEntry)
+_ASKED = _shapes(AnswersEntry)
 _EXPECT = {
-    **_shapes(ExpectEntry),
-    "answers": _Each(_shapes(AnswersEntry)),
+    **{
+        key: _OrMapping(shape, _BELIEVED) if key in ("opens", "arrives", "intends") else shape
+        for key, shape in _shapes(ExpectEntry).items()
+    },
+    "answers": _Each({**_ASKED, "right": _OrMapping(_ASKED["right"], _BELIEVED)}),
     "believes": _Each(_EXPECTATION),
 }
 _INFER = {
@@ -237,6 +251,8 @@ def _templates(document: Document, change: SceneChange) -> Iterator[tuple[str, s
 def _changed(
     document: Document, node: YamlNode, shape: Any, path: KeyPath, change: SceneChange
 ) -> YamlNode:
+    if isinstance(shape, _OrMapping):
+        shape = shape.mapping if isinstance(node.value, dict) else shape.shape
     if node.value is None or shape == "keep" or (path == ("conditions",)):
         return node
     if isinstance(shape, str):

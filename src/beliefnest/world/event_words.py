@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import EventKind, Position
-from beliefnest.world.words import items_words, point_words
+from beliefnest.world.words import items_words, point_words, with_the
 
 __all__ = [
     "EVENT_WORDS",
@@ -214,7 +214,7 @@ def place_name(place: Any, labels: Mapping[Position, str]) -> str:
     if place is None:
         return "somewhere"
     label = labels.get(tuple(place))
-    return point_words(place) if label is None else f"the {label}"
+    return point_words(place) if label is None else with_the(label)
 
 
 def _told(event: _Event) -> dict[str, Any]:

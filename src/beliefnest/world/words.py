@@ -5,8 +5,18 @@ from collections.abc import Iterable, Sequence
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Items
 
-__all__ = ["contents_words", "counted", "items_words", "point_words", "told_apart"]
+__all__ = [
+    "contents_words",
+    "counted",
+    "items_words",
+    "listed",
+    "point_words",
+    "things_words",
+    "told_apart",
+    "with_the",
+]
 
+_DETERMINERS = frozenset({"the", "a", "an", "my", "his", "her", "our", "your", "their"})
 _STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "out")}
 
 
@@ -34,6 +44,38 @@ def items_words(items: Items, joint: str = ", ", *, ids: bool = False, ones: boo
         for name, count in sorted(items.items())
     ]
     return joint.join(told if ids else (each.replace("_", " ") for each in told))
+
+
+def things_words(items: Items) -> str:
+    """Return items as prose, such as `a diamond and 2 oak planks`; empty if there are none."""
+    return listed([_thing(name, count) for name, count in sorted(items.items())])
+
+
+def _thing(name: str, count: int) -> str:
+    words = name.replace("_", " ")
+    if count > 1:
+        return f"{count} {words if words.endswith('s') else f'{words}s'}"
+    if words.endswith("s") and not words.endswith("ss"):
+        return words
+    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
+
+
+def listed(parts: Sequence[str], last: str = "and") -> str:
+    """Return parts as a list in prose: `a`, `a and b`, `a, b and c`."""
+    if len(parts) < 2:  # a list of one has no joint
+        return "".join(parts)
+    return f"{', '.join(parts[:-1])} {last} {parts[-1]}"
+
+
+def with_the(name: str) -> str:
+    """Return a name with `the`, unless it is a proper name or has a determiner.
+
+    A name is proper if its first word is written with a capital letter or has the ending `'s`, or
+    if it begins with something other than a letter, such as a position.
+    """
+    first, *_ = name.split(maxsplit=1) or [""]
+    bare = not first[:1].isalpha() or first[:1].isupper() or first.endswith(("'s", "\u2019s"))
+    return name if bare or first in _DETERMINERS else f"the {name}"
 
 
 def contents_words(items: Items, *, complete: bool, ones: bool = True) -> str:

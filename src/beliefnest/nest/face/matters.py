@@ -15,7 +15,7 @@ from beliefnest.nest.explain.parts import Contents
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.event_words import EVENT_WORDS, did_to_block
 from beliefnest.world.values import Items, Point, Position
-from beliefnest.world.words import contents_words, point_words, told_apart
+from beliefnest.world.words import contents_words, point_words, told_apart, with_the
 
 __all__ = ["BlockAt", "Carried", "Contained", "Course", "Matter", "Owned", "Whereabouts"]
 
@@ -90,7 +90,7 @@ class Contained(_Amounts):
     def title(self) -> str:
         """The title of the plot."""
         item = "" if self.item is None else f" and the {_plain(self.item)}"
-        return f"What is believed of the {self.label}{item}"
+        return f"What is believed of {with_the(self.label)}{item}"
 
     def value(self, held: NodeView) -> Contents | None:
         """Return the contents of the container."""

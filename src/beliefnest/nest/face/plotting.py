@@ -24,7 +24,7 @@ from beliefnest.pictures.time_axis import NotedAct
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 from beliefnest.world.values import EventKind, Position
-from beliefnest.world.words import point_words
+from beliefnest.world.words import point_words, with_the
 
 __all__ = ["matter_of", "plot_of"]
 
@@ -116,7 +116,7 @@ def _names(recording: Recording) -> Mapping[Position, str]:
 
 def _stores(recording: Recording) -> Mapping[Position, str]:
     """Return the names of containers, by position."""
-    return {place: f"the {label}" for place, label in recording.setting.labels.items()}
+    return {place: with_the(label) for place, label in recording.setting.labels.items()}
 
 
 def _said(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:

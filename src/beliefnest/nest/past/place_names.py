@@ -1,0 +1,80 @@
+"""Names of containers, signs and places of a setting, for prose and for right answers."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from beliefnest.nest.past.setting import Setting
+from beliefnest.world.registry import Registry
+from beliefnest.world.signs import is_sign, plain_state
+from beliefnest.world.texts import on_one_line
+from beliefnest.world.values import Point, Position
+
+__all__ = ["NEAR", "names_near", "object_names", "place_names"]
+
+NEAR: Final = 3.0
+"""Distance in blocks up to which an agent counts as being at a named place."""
+
+_SIDES: Final = (("western", "eastern"), ("northern", "southern"), ("lower", "upper"))
+"""Words for two objects that differ in x, else z, else y."""
+_AXES: Final = (0, 2, 1)
+_ORDINALS: Final = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+
+
+def object_names(setting: Setting) -> Mapping[Position, str]:
+    """Return names of the containers and signs of a setting, without articles, by position.
+
+    The name is the label, else the kind of block, such as `chest` or `sign`. Two objects of one
+    name get a compass direction (`western chest`), more of them get numbers, counted from the
+    west (`first chest`).
+    """
+    snapshot, registry = setting.snapshot, Registry.load()
+    signs = _signs(setting, registry)
+    groups: dict[str, list[Position]] = {}
+    for at in {*snapshot.containers, *signs, *setting.labels}:
+        groups.setdefault(_base(setting, registry, at, sign=at in signs), []).append(at)
+    named = {at: name for base, group in groups.items() for at, name in _apart(base, group).items()}
+    return dict(sorted(named.items()))
+
+
+def place_names(setting: Setting) -> Mapping[Position, str]:
+    """Return the names of objects and of named places, by position; named places come last."""
+    return {**object_names(setting), **{at: name for name, at in setting.places.items()}}
+
+
+def names_near(point: Point, names: Mapping[Position, str]) -> list[str]:
+    """Return the names of the positions within `NEAR` blocks of a point, the nearest first."""
+    far = {at: math.dist(point, (at[0] + 0.5, at[1], at[2] + 0.5)) for at in names}
+    return [names[at] for at in sorted(names, key=lambda at: far[at]) if far[at] <= NEAR]
+
+
+def _signs(setting: Setting, registry: Registry) -> set[Position]:
+    snapshot = setting.snapshot
+    states = [int(n) for n in np.unique(snapshot.blocks) if n >= 0 and is_sign(registry.name(n))]
+    low = snapshot.box.low
+    return {
+        (low[0] + x, low[1] + y, low[2] + z)
+        for x, y, z in np.argwhere(np.isin(snapshot.blocks, states)).tolist()
+    }
+
+
+def _base(setting: Setting, registry: Registry, at: Position, *, sign: bool) -> str:
+    label = setting.labels.get(at)
+    if label is not None:
+        return on_one_line(label)
+    state = plain_state(setting.snapshot.block(at))
+    return "sign" if sign else registry.name(state).replace("_", " ")
+
+
+def _apart(base: str, group: Sequence[Position]) -> dict[Position, str]:
+    """Return names that distinguish the positions of one group."""
+    if len(group) == 1:
+        return {group[0]: base}
+    axis = next(axis for axis in _AXES if len({at[axis] for at in group}) > 1)
+    ordered = sorted(group, key=lambda at: (at[axis], at))
+    words: Sequence[str] = _SIDES[_AXES.index(axis)]
+    if len(group) > 2:  # a pair has two sides
+        words = [*_ORDINALS, *(f"{n}th" for n in range(len(_ORDINALS) + 1, len(group) + 1))]
+    return {at: f"{word} {base}" for at, word in zip(ordered, words, strict=False)}

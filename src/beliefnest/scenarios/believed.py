@@ -1,0 +1,264 @@
+"""Right answers that the nest computes: what a simulator believes about one thing."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+import msgspec
+
+from beliefnest.belief.view import State
+from beliefnest.errors import ScenarioError
+from beliefnest.nest.past.place_names import NEAR, names_near, object_names
+from beliefnest.nest.past.setting import Setting
+from beliefnest.scenarios.checks import Checks
+from beliefnest.scenarios.document import KeyPath
+from beliefnest.world import forms
+from beliefnest.world.doors import is_door, is_switch
+from beliefnest.world.forms import note
+from beliefnest.world.registry import block_name, parse_state
+from beliefnest.world.signs import sign_words
+from beliefnest.world.values import Point, Position
+from beliefnest.world.words import listed, point_words
+
+__all__ = ["Believed", "BelievedEntry", "Look"]
+
+Look = Callable[[str], State]
+"""Function from a belief path to the state after the script."""
+
+_UNKNOWN = "unknown"
+_NOT_KNOWN = (
+    *(
+        "not known",
+        "not know",
+        "don't know",
+        "doesn't know",
+        "don\u2019t know",
+        "doesn\u2019t know",
+    ),
+    "no idea",
+)
+"""Further words for the answer that something is unknown."""
+_EMPTY = ("nothing", "empty")
+_SMALL = frozenset(
+    ["a", "an", "the", "in", "at", "on", "inside", "with", "by", "near", "has", "is", "it", "to"]
+)
+"""Words that do not distinguish options."""
+
+
+class BelievedEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What a simulator believes after the script: a path and exactly one thing."""
+
+    believed: Annotated[str, note("Belief path; / is the real world.", "path")]
+    item: Annotated[str | None, note("An item: where it is.", "item")] = None
+    agent: Annotated[str | None, note("An agent: at which named place it is.", "agent")] = None
+    container: Annotated[
+        forms.Position | None, note("A container: names of the items in it.", "block")
+    ] = None
+    block: Annotated[
+        forms.Position | None, note("A block: its name; open or shut; on or off.", "block")
+    ] = None
+    sign: Annotated[forms.Position | None, note("A sign: its text.", "block")] = None
+    unknown: Annotated[str, note("The right answer if the simulator does not know it.", "text")] = (
+        _UNKNOWN
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """One right answer.
+
+    Attributes:
+        names: Texts that give this answer, the best first.
+        ranked: True if only the best one is right; with options, the best that is an option.
+        place: Its place, if it is a place.
+    """
+
+    names: tuple[str, ...]
+    ranked: bool = False
+    place: Point | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Believed:
+    """Right answer that is read from a simulator after the script.
+
+    Attributes:
+        path: Path of the simulator.
+        kind: Kind of the thing: a key of `BelievedEntry`.
+        thing: Name or position of the thing.
+        unknown: Right answer if the simulator does not know it.
+        where: File, line and key, for messages.
+    """
+
+    kinds: ClassVar[tuple[str, ...]] = ("item", "agent", "container", "block", "sign")
+    path: str
+    kind: str
+    thing: str | Position
+    unknown: str
+    where: str
+
+    @classmethod
+    def read(cls, entry: BelievedEntry, path: KeyPath, checks: Checks) -> "Believed":
+        """Return the right answer of an entry.
+
+        Raises:
+            ScenarioError: The entry names no thing or several, or something that does not exist.
+        """
+        checks.belief_path((*path, "believed"), entry.believed)
+        given = [kind for kind in cls.kinds if getattr(entry, kind) is not None]
+        if len(given) != 1:
+            raise checks.fault(path, f"name exactly one of {', '.join(cls.kinds)}")
+        kind, thing = given[0], getattr(entry, given[0])
+        match kind:
+            case "item":
+                with checks.document.naming((*path, kind)):
+                    checks.registry.item_stack(thing)
+            case "agent":
+                checks.agent((*path, kind), thing)
+            case "container":
+                checks.container((*path, kind), thing)
+            case _:
+                checks.inside((*path, kind), thing)
+        if not entry.unknown.strip():
+            raise checks.fault((*path, "unknown"), "is empty; give the answer")
+        return cls(entry.believed, kind, thing, entry.unknown, checks.document.key_at(path))
+
+    def written(self) -> dict[str, Any]:
+        """Return plain values with the keys of scenario files."""
+        thing = self.thing if isinstance(self.thing, str) else list(self.thing)
+        told: dict[str, Any] = {"believed": self.path, self.kind: thing}
+        return told if self.unknown == _UNKNOWN else {**told, "unknown": self.unknown}
+
+    @property
+    def words(self) -> str:
+        """Return what is asked of the nest, for people."""
+        thing = self.thing if isinstance(self.thing, str) else point_words(self.thing)
+        holder = "in reality" if self.path == "/" else f"as {self.path} believes"
+        return f"{self.kind} {thing.replace('_', ' ')}, {holder}"
+
+    def answers(self, look: Look, setting: Setting, options: Sequence[str]) -> tuple[str, ...]:
+        """Return the right answers: options, or texts if there are no options.
+
+        An item that is believed to be in several places has several right answers.
+
+        Raises:
+            ScenarioError: An answer is none of the options, or all options are right, or the agent
+                is near no named place.
+        """
+        found = self._found(look(self.path), setting)
+        if not options:
+            texts = [name for each in found for name in each.names[: 1 if each.ranked else None]]
+            return tuple(dict.fromkeys(texts))
+        right = dict.fromkeys(self._option(each, options) for each in found)
+        if len(right) == len(options):
+            raise self._fault("all options are right; give one that is not")
+        return tuple(option for option in options if option in right)
+
+    def place(self, look: Look, setting: Setting) -> Point:
+        """Return the one place of an item or agent; containers have the place of their block.
+
+        Raises:
+            ScenarioError: The place is unknown, or there are several.
+        """
+        found = self._found(look(self.path), setting)
+        places = [each.place for each in found if each.place is not None]
+        if len(places) != 1:
+            told = listed([each.names[0] for each in found])
+            raise self._fault(f"needs one place, but the belief is: {told}")
+        return places[0]
+
+    def _option(self, found: _Found, options: Sequence[str]) -> str:
+        for name in found.names:
+            alike = [option for option in options if _bare(option) == _bare(name)]
+            if len(alike) == 1:
+                return alike[0]
+        raise self._fault(
+            f"the right answer is {found.names[0]!r}, which is none of the options "
+            f"{', '.join(options)}; add it"
+        )
+
+    def _found(self, state: State, setting: Setting) -> list[_Found]:
+        match self.kind, self.thing:
+            case "item", str(name):
+                found = list(_located(state, setting, name))
+            case "agent", str(name):
+                found = list(self._standing(state, setting, name))
+            case "container", (int(), int(), int()) as at:
+                found = list(_contained(state, at))
+            case "sign", (int(), int(), int()) as at:
+                text = state.signs.get(at)
+                said = () if text is None else (sign_words(text),) if text else ("nothing", "blank")
+                found = [_Found(said)] if said else []
+            case _, (int(), int(), int()) as at:
+                found = list(_stated(state, at))
+            case _:
+                raise AssertionError(self.kind)
+        also = _NOT_KNOWN if self.unknown == _UNKNOWN else ()
+        return found or [_Found((self.unknown, *also))]
+
+    def _standing(self, state: State, setting: Setting, agent: str) -> Iterator[_Found]:
+        feet = state.agents[agent].position
+        if feet is None:
+            return
+        names = [
+            *names_near(feet, {at: name for name, at in setting.places.items()}),
+            *names_near(feet, object_names(setting)),
+        ]
+        if not names:
+            raise self._fault(
+                f"{agent} is believed at {point_words(feet)}, which is within {NEAR:g} blocks of "
+                "nothing that has a name; name the place under 'places'"
+            )
+        yield _Found(tuple(names), ranked=True, place=feet)
+
+    def _fault(self, message: str) -> ScenarioError:
+        return ScenarioError(f"{self.where}{message}")
+
+
+def _located(state: State, setting: Setting, item: str) -> Iterator[_Found]:
+    """Yield the containers, agents and places that have an item."""
+    names: Mapping[Position, str] = object_names(setting)
+    for at, held in state.containers.items():
+        if held.items.get(item):
+            words = point_words(at)
+            known = () if at in setting.labels else (words,)
+            yield _Found((names.get(at, words), *known), place=at)
+    for name, agent in state.agents.items():
+        if agent.inventory.get(item) or item in (agent.equipment or {}).values():
+            yield _Found((name,), place=agent.position)
+    for dropped in state.items.values():
+        if dropped.name == item:
+            near = names_near(dropped.position, {at: n for n, at in setting.places.items()})
+            yield _Found(("floor", "ground", *near), place=dropped.position)
+
+
+def _contained(state: State, at: Position) -> Iterator[_Found]:
+    held = state.containers.get(at)
+    if held is None or not (held.items or held.complete):
+        return
+    if not held.items:
+        yield _Found(_EMPTY)
+        return
+    words = [name.replace("_", " ") for name in sorted(held.items)]
+    plural = [f"{word}s" for word in words]
+    yield _Found((listed(words), listed(plural), *(held.items if len(words) == 1 else ())))
+
+
+def _stated(state: State, at: Position) -> Iterator[_Found]:
+    block = state.blocks[at]
+    if block is None:
+        return
+    name, properties = block_name(block), parse_state(block)[1]
+    if is_door(name):
+        yield _Found(("open",) if properties.get("open") == "true" else ("shut", "closed"))
+    elif is_switch(name):
+        yield _Found(("on",) if properties.get("powered") == "true" else ("off",))
+    else:
+        yield _Found((name.replace("_", " "), name, block))
+
+
+def _bare(text: str) -> list[str]:
+    """Return the words that distinguish an option."""
+    words = re.findall(r"[\w'.-]+", text.replace("_", " ").replace("\u2019", "'").casefold())
+    return [word.rstrip(".") for word in words if word not in _SMALL] or words
