@@ -308,6 +308,18 @@ def prompt(
 
 
 @app.command()
+def template(
+    name: Annotated[
+        str | None, typer.Argument(help="Built-in template; without it, the names of all.")
+    ] = None,
+) -> None:
+    """Print a built-in prompt template, to copy and change it."""
+    from beliefnest.cli.listing import print_template
+
+    print_template(name)
+
+
+@app.command()
 def new(
     name: Annotated[str, typer.Argument(help="Name of the scenario and of its file.")],
 ) -> None:

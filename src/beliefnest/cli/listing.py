@@ -9,14 +9,14 @@ from rich.table import Table
 from beliefnest.cli.console import print_table, stdout
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.llm.resolve import model_names
-from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.outline import builtin_outline
 from beliefnest.scenarios.sources import builtin_names
 from beliefnest.suites import SUITES
 from beliefnest.worlds.names import WORLDS
 from beliefnest.worlds.servers.address import SCHEME
 
-__all__ = ["print_installed"]
+__all__ = ["print_installed", "print_template"]
 
 
 def print_installed(*, as_json: bool) -> None:
@@ -53,9 +53,22 @@ def print_installed(*, as_json: bool) -> None:
     further = {
         "tasks": builtin_tasks(),
         "suites": SUITES,
-        "templates": BUILT_IN_TEMPLATES,
+        "templates": tuple(BUILT_IN_TEMPLATES),
         "worlds": (*WORLDS, f"{SCHEME}://HOST:PORT"),
         "models": model_names(),
     }
     for what, names in further.items():
         console.print(f"{what}: {', '.join(names)}", highlight=False)
+
+
+def print_template(name: str | None) -> None:
+    """Print the text of a built-in prompt template; without a name, the names of all.
+
+    Raises:
+        TemplateError: There is no built-in template of that name.
+    """
+    if name is None:
+        for each, description in BUILT_IN_TEMPLATES.items():
+            sys.stdout.write(f"{each:14}{description}\n")
+        return
+    sys.stdout.write(built_in_template(name).text.rstrip("\n") + "\n")

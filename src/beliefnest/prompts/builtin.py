@@ -12,6 +12,7 @@ from beliefnest.prompts import event_rows, text
 from beliefnest.prompts.filterset import FilterSet, filter
 from beliefnest.prompts.memory_filters import FILTERS
 from beliefnest.prompts.simulator_view import BranchView, belief_of, believed_agent, owner_of
+from beliefnest.prompts.story_filters import FILTERS as STORY_FILTERS
 from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.values import EQUIPMENT_SLOTS, Position
 
@@ -336,6 +337,7 @@ BUILT_IN = FilterSet.of(
         events,
         events_and_visibilities,
         *FILTERS,
+        *STORY_FILTERS,
     ]
 )
 """Filters of interface.md, and those of the default template."""

@@ -1,6 +1,6 @@
 """A small hand-made belief for the filter reference and for trying out filters."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,6 +14,7 @@ from beliefnest.belief.grounds import (
 )
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import PathError, PositionError
+from beliefnest.prompts.observations import Found, Happened, Observation, Outset, Read, Sight
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
@@ -93,6 +94,9 @@ class ExampleBranch:
     state: FixedState
     children: Mapping[str, "ExampleBranch"] = field(default_factory=dict)
     labels: Mapping[Position, str] = field(default_factory=dict)
+    names: Mapping[Position, str] = field(default_factory=dict)
+    places: Mapping[str, Position] = field(default_factory=dict)
+    observations: Sequence[Observation] = ()
 
     def child(self, agent: str) -> "ExampleBranch":
         """Return the belief of an agent; for the owner, this belief itself.
@@ -120,8 +124,28 @@ def example_branch() -> ExampleBranch:
     anne = ExampleBranch(
         _state(("sally", "anne"), (deposit, lever), frozenset({_RIGHT})), {"sally": outer}
     )
+    told = (
+        Outset(
+            0,
+            "sally",
+            {"sally": (-0.5, -51, 3.5), "anne": (2.5, -51, -0.5)},
+            {"sally": {"diamond": 1}, "anne": {"iron_helmet": 1}},
+        ),
+        Sight(0, "sally", {"anne": (2.5, -51, -0.5)}, (_LEFT, _RIGHT, _SIGN)),
+        Read(0, _SIGN, "keep shut\nplease"),
+        Happened(68, PerceivedEvent(68, EventKind.OPEN_CONTAINER, "sally", {"position": _LEFT})),
+        Found(68, _LEFT, {}),
+        Happened(69, deposit),
+        Happened(80, PerceivedEvent(80, EventKind.CHAT, "anne", {"text": "Where are you going?"})),
+        Happened(95, PerceivedEvent(95, EventKind.CHAT, "sally", {"text": "Out. Back soon!"})),
+        Happened(131, lever),
+        Sight(131, "sally", lost_agents={"anne": (2.5, -51, -5.5)}, lost_places=(_RIGHT,)),
+    )
     return ExampleBranch(
-        _state(("sally",), (deposit, lever), frozenset({_LEFT, _LEVER})), {"anne": anne}
+        _state(("sally",), (deposit, lever), frozenset({_LEFT, _LEVER})),
+        {"anne": anne},
+        names={_LEFT: "western chest", _RIGHT: "eastern chest", _LEVER: "lever", _SIGN: "sign"},
+        observations=told,
     )
 
 

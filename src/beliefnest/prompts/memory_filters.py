@@ -166,7 +166,8 @@ def memory(state: State, basis: Basis, *, current: bool) -> str:
 def _heard(state: State, basis: Basis) -> str:
     """Return the source of hearsay in words; a speaker's own words are `said`."""
     if basis.speaker is None:
-        return "heard"
+        # Every utterance has a speaker; only the writer of a sign can be unknown.
+        return "read on a sign"
     return "said" if basis.speaker == state.owner else f"heard from {basis.speaker}"
 
 

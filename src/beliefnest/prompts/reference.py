@@ -12,10 +12,12 @@ from beliefnest.prompts.builtin import BUILT_IN
 from beliefnest.prompts.example import ExampleBranch, example_branch
 from beliefnest.prompts.filterset import PromptFilter
 from beliefnest.prompts.rendering import render
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 
 __all__ = ["EXAMPLES", "filter_reference"]
 
 EXAMPLES: Mapping[str, tuple[str, ...]] = {
+    "beginning": ("{{ branch | beginning }}", "{{ branch | beginning(narrated=true) }}"),
     "block_property": ('{{ branch | block_property("lever") }}',),
     "blocks": ('{{ branch | blocks(["chest", "furnace"]) }}',),
     "blocks_and_visibilities": (
@@ -34,9 +36,11 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "mechanisms": ("{{ branch | mechanisms }}",),
     "helditem": ("{{ branch | helditem }}", '{{ branch | helditem("anne") }}'),
     "inventory": ("{{ branch | inventory }}", '{{ branch | inventory("anne") }}'),
+    "observations": ("{{ branch | observations }}",),
     "other_players": ("{{ branch | other_players }}",),
     "position": ("{{ branch | position }}", '{{ branch | position("anne") }}'),
     "whereabouts": ("{{ branch | whereabouts }}",),
+    "story": ("{{ branch | story }}", "{{ branch | story(coordinates=true) }}"),
     "signs": ("{{ branch | signs }}",),
     "thought": ("{{ branch | thought }}",),
 }
@@ -60,6 +64,25 @@ direction escaped.
 `$$LAST_CODE$$` and `$$LAST_ERROR$$` stand for the variables `last_code` and `last_error`:
 the program of the previous round and its error. If these are not set, the markers print
 `No code was executed` and `No error`.
+
+## Built-in templates
+
+`beliefnest template NAME` prints a built-in template, to copy and change. Name it in a probe
+(`template: story`), in a study (`templates: [question, story]`) or in
+`beliefnest prompt RUN --path /ann --template story`.
+
+@TEMPLATES@
+
+Questions get the variables `question`, `options`, `reason` and `places`; programs get `task`.
+`story` and `question` tell what the mind of the probe's `path` observed, and leave it to the
+reader what follows. They do not tell who else perceived an event, nor what somebody believes
+now; contents that nobody looked at do not appear. With the path `/` a narrator tells
+everything, and which agents and things each agent could see. With a path such as `/lia/wim`
+the text tells only what Lia knows that Wim observed: the nest has worked that out already. To
+leave it to the reader, take `/lia` or `/` and ask about Wim in words. `story` has no coordinates in
+questions; it has them in tasks, because programs need them. Containers without a `label` are
+named by their block, and by a compass direction or a number if there are several (`western
+chest`, `third chest`, counted from the west).
 
 ## Your own filters
 
@@ -93,7 +116,9 @@ def filter_reference() -> str:
     """Return the text of docs/filters.md."""
     branch = example_branch()
     sections = [_section(each, branch) for each in BUILT_IN.filters.values()]
-    return "\n".join([_HEAD, *sections])
+    rows = [f"| `{name}` | {told} |" for name, told in BUILT_IN_TEMPLATES.items()]
+    table = "\n".join(["| template | text |", "|---|---|", *rows])
+    return "\n".join([_HEAD.replace("@TEMPLATES@", table), *sections])
 
 
 def _section(described: PromptFilter[Any], branch: ExampleBranch) -> str:

@@ -1,11 +1,12 @@
 """Read-only view of simulators for prompts: states, and beliefs of agents."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from beliefnest.belief.grounds import AgentBelief
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.prompts.observations import Observation
 from beliefnest.prompts.text import nearest
 from beliefnest.world.values import Position
 
@@ -22,6 +23,18 @@ class BranchView(Protocol):
     @property
     def labels(self) -> Mapping[Position, str]:
         """Labels of containers (name and appearance), if prompts may show them."""
+
+    @property
+    def names(self) -> Mapping[Position, str]:
+        """Names of containers, signs, doors and switches, without articles."""
+
+    @property
+    def places(self) -> Mapping[str, Position]:
+        """Positions of named places, by name."""
+
+    @property
+    def observations(self) -> Sequence[Observation]:
+        """Observations of the owner until now, in the order of time; in the real world, all."""
 
     def child(self, agent: str) -> "BranchView":
         """Return the simulator of an agent's belief; for the owner, this simulator itself."""

@@ -1,21 +1,29 @@
 """Prompt templates: named Jinja2 texts, built-in or from files."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 
 from beliefnest.errors import TemplateError
 from beliefnest.files import read_regular_text
-from beliefnest.prompts.text import nearest
 
 __all__ = ["BUILT_IN_TEMPLATES", "Template", "built_in_template", "load_template"]
 
-BUILT_IN_TEMPLATES = ("answering", "default", "instructions", "paper", "question")
-"""Names of the built-in templates. `default`: complete prompt for a program. `instructions`: its
-part about the form of the answer, used as a system message with other templates. `paper`:
-template of the paper's appendix. `question`: a question and the relevant knowledge. `answering`:
-the system message for questions."""
+BUILT_IN_TEMPLATES: Mapping[str, str] = MappingProxyType(
+    {
+        "answering": "the system message for questions: the form of the answer",
+        "default": "a complete prompt for a program, with everything that the simulator believes",
+        "instructions": "the part of `default` about the form of the answer, a system message",
+        "paper": "the prompt of the paper's appendix; for programs if no template is named",
+        "question": "a question and what its mind observed, as a table; for questions if no "
+        "template is named",
+        "story": "a question or task after what its mind observed, as prose in the past tense",
+    }
+)
+"""Descriptions of the built-in templates, by name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +47,9 @@ def built_in_template(name: str) -> Template:
         TemplateError: There is no built-in template of that name.
     """
     if name not in BUILT_IN_TEMPLATES:
-        raise TemplateError(f"no built-in template {name!r}{nearest(name, BUILT_IN_TEMPLATES)}")
+        raise TemplateError(
+            f"there is no built-in template {name!r}; there are {', '.join(BUILT_IN_TEMPLATES)}"
+        )
     source = files("beliefnest.prompts") / "texts" / f"{name}.txt"
     return Template(name, source.read_text(encoding="utf-8"))
 

@@ -9,13 +9,14 @@ import msgspec
 
 from beliefnest.belief.view import State
 from beliefnest.errors import ScenarioError
-from beliefnest.nest.past.place_names import NEAR, names_near, object_names
+from beliefnest.nest.past.place_names import object_names
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.world import forms
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.forms import note
+from beliefnest.world.near import NEAR, names_near
 from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Point, Position
@@ -47,7 +48,7 @@ _SMALL = frozenset(
 
 
 class BelievedEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a simulator believes after the script: a path and exactly one thing."""
+    """Belief of a simulator after the script: a path and exactly one thing."""
 
     believed: Annotated[str, note("Belief path; / is the real world.", "path")]
     item: Annotated[str | None, note("An item: where it is.", "item")] = None
@@ -155,6 +156,10 @@ class Believed:
             raise self._fault("all options are right; give one that is not")
         return tuple(option for option in options if option in right)
 
+    def accepted(self, right: Sequence[str]) -> tuple[str, ...]:
+        """Return texts of a right answer in words: those given, and other words for `unknown`."""
+        return (*right, *_NOT_KNOWN) if _UNKNOWN in right else tuple(right)
+
     def place(self, look: Look, setting: Setting) -> Point:
         """Return the one place of an item or agent; containers have the place of their block.
 
@@ -194,8 +199,7 @@ class Believed:
                 found = list(_stated(state, at))
             case _:
                 raise AssertionError(self.kind)
-        also = _NOT_KNOWN if self.unknown == _UNKNOWN else ()
-        return found or [_Found((self.unknown, *also))]
+        return found or [_Found((self.unknown,))]
 
     def _standing(self, state: State, setting: Setting, agent: str) -> Iterator[_Found]:
         feet = state.agents[agent].position

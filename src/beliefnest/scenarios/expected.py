@@ -681,7 +681,8 @@ class Answers(Expected):
         if self.options:
             ok = answer in self.right
         else:
-            named = [any(_has(answer, each) for each in all_) for all_ in (self.right, self.wrong)]
+            right = self.right if self.believed is None else self.believed.accepted(self.right)
+            named = [any(_has(answer, each) for each in all_) for all_ in (right, self.wrong)]
             ok = named == [True, False]
         return self.verdict(ok, f"answered {answer!r}", by_deed=True)
 

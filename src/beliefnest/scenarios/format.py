@@ -297,7 +297,10 @@ class ProbeEntry(_Entry, frozen=True):
     label: Annotated[str, note("A name for tables and overrides.")] = ""
     template: Annotated[
         str | None,
-        note("`default`, `paper`, or a prompt template file beside the scenario; null: `paper`."),
+        note(
+            "A built-in template, such as `story`, or a prompt template file beside the scenario; "
+            "null: `paper` for programs, `question` for questions."
+        ),
     ] = None
     expect: Annotated[ExpectEntry | None, note("How the outcome is judged.")] = None
     infer: Annotated[

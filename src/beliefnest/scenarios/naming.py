@@ -1,7 +1,7 @@
 """Names of places of a scenario, for people."""
 
-from beliefnest.nest.past.place_names import names_near
 from beliefnest.nest.past.setting import Setting
+from beliefnest.world.near import names_near
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
 

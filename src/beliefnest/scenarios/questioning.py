@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from beliefnest.llm.messages import Message, Model, Sampling, Usage
 from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.place_names import place_names
 from beliefnest.prompts import Template, built_in_template
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Answers
@@ -96,5 +97,5 @@ def _chosen(said: str, options: Sequence[str]) -> str | None:
 
 
 def _places(nest: Nest) -> Mapping[str, Position]:
-    setting = nest.setting
-    return {**{label: at for at, label in setting.labels.items()}, **setting.places}
+    names = {name: at for at, name in place_names(nest.setting).items()}
+    return {**names, **nest.setting.places}

@@ -14,6 +14,7 @@ __all__ = [
     "EventWords",
     "did",
     "did_to_block",
+    "happened",
     "happens",
     "is_lid",
     "kind_words",
@@ -52,6 +53,7 @@ class EventWords:
         of_block: Pattern of the words in a plot of a block.
         of_agent: Words in a plot of an agent's place.
         switches: Detail that says how a switch is then, and the skills that turn it off and on.
+        past: Pattern of a line of a story, after the actor; `thing` is a named block.
     """
 
     skill: str
@@ -64,18 +66,31 @@ class EventWords:
     of_block: str = ""
     of_agent: str = ""
     switches: tuple[str, str, str] = ("", "", "")
+    past: str = ""
 
 
 EVENT_WORDS: Mapping[EventKind, EventWords] = {
-    EventKind.CHAT: EventWords("chat", ": “{text}”"),
-    EventKind.THINK: EventWords("think", " thinks: {text}"),
-    EventKind.MOVE_TO: EventWords("goToPosition", " walks to {destination}", of_agent="arrives"),
-    EventKind.MINE_BLOCK: EventWords("mineBlock", " mines {block} at {place}", of_block="mines it"),
-    EventKind.PLACE_BLOCK: EventWords(
-        "placeItem", " places {block} at {place}", "made it {block}", of_block="places it"
+    EventKind.CHAT: EventWords("chat", ": “{text}”", past=" said: “{text}”"),
+    EventKind.THINK: EventWords("think", " thinks: {text}", past=" thought: “{text}”"),
+    EventKind.MOVE_TO: EventWords(
+        "goToPosition", " walks to {destination}", of_agent="arrives", past=" walked {destination}"
     ),
-    EventKind.CRAFT_ITEM: EventWords("craftItem", " crafts {items}", place="crafting_table"),
-    EventKind.SMELT_ITEM: EventWords("smeltItem", " smelts {items}", place="furnace"),
+    EventKind.MINE_BLOCK: EventWords(
+        "mineBlock", " mines {block} at {place}", of_block="mines it", past=" dug away {thing}"
+    ),
+    EventKind.PLACE_BLOCK: EventWords(
+        "placeItem",
+        " places {block} at {place}",
+        "made it {block}",
+        of_block="places it",
+        past=" put down {thing}",
+    ),
+    EventKind.CRAFT_ITEM: EventWords(
+        "craftItem", " crafts {items}", place="crafting_table", past=" made {items}"
+    ),
+    EventKind.SMELT_ITEM: EventWords(
+        "smeltItem", " smelts {items}", place="furnace", past=" smelted {items}"
+    ),
     EventKind.GET_ITEM_FROM_CHEST: EventWords(
         "getItemFromChest",
         " takes {items} out of {place}",
@@ -84,6 +99,7 @@ EVENT_WORDS: Mapping[EventKind, EventWords] = {
         place="chest",
         in_container="takes out",
         of_item="takes",
+        past=" took {items} out of {thing}",
     ),
     EventKind.DEPOSIT_ITEM_INTO_CHEST: EventWords(
         "depositItemIntoChest",
@@ -93,6 +109,7 @@ EVENT_WORDS: Mapping[EventKind, EventWords] = {
         place="chest",
         in_container="puts in",
         of_item="puts away",
+        past=" put {items} into {thing}",
     ),
     EventKind.OPEN_CONTAINER: EventWords(
         "openContainer",
@@ -101,6 +118,7 @@ EVENT_WORDS: Mapping[EventKind, EventWords] = {
         "somebody looked in",
         place="chest",
         in_container="looks in",
+        past=" opened {thing}",
     ),
     EventKind.USE_LEVER: EventWords(
         "useLever",
@@ -109,6 +127,7 @@ EVENT_WORDS: Mapping[EventKind, EventWords] = {
         place="lever",
         of_block="turns it",
         switches=("powered", "turnOffLever", "turnOnLever"),
+        past=" turned {thing} {power}",
     ),
     EventKind.PRESS_BUTTON: EventWords(
         "pressButton",
@@ -116,6 +135,7 @@ EVENT_WORDS: Mapping[EventKind, EventWords] = {
         "pressed it",
         place="button",
         of_block="presses it",
+        past=" pressed {thing}",
     ),
     EventKind.USE_DOOR: EventWords(
         "useDoor",
@@ -124,28 +144,38 @@ EVENT_WORDS: Mapping[EventKind, EventWords] = {
         place="door",
         of_block="{opens} it",
         switches=("open", "closeDoor", "openDoor"),
+        past=" {opened} {thing}",
     ),
     EventKind.GIVE_ITEM_TO_OTHER: EventWords(
-        "giveItemToOther", " gives {items} to {other}", of_item="gives"
+        "giveItemToOther",
+        " gives {items} to {other}",
+        of_item="gives",
+        past=" gave {items} to {other}",
     ),
     EventKind.RECEIVE_ITEM_FROM_OTHER: EventWords(
-        "receiveItemFromOther", " gets {items} from {other}", of_item="gets"
+        "receiveItemFromOther",
+        " gets {items} from {other}",
+        of_item="gets",
+        past=" got {items} from {other}",
     ),
-    EventKind.EMOTE: EventWords("emote", " shows {name}"),
+    EventKind.EMOTE: EventWords("emote", " shows {name}", past=" made a gesture: {name}"),
     EventKind.BLOCK_UPDATE: EventWords(
-        "blockUpdate", " {block} is now at {place}", "made it {block}"
+        "blockUpdate", " {block} is now at {place}", "made it {block}", past=" {thing} changed"
     ),
 }
 
-_WHISPERS = EventWords("chat", " whispers to {to}: “{text}”")
+_WHISPERS = EventWords("chat", " whispers to {to}: “{text}”", past=" whispered to {to}: “{text}”")
 _WRITES = EventWords(
     "writeSign",
     " writes “{text}” on the sign at {place}",
     'wrote "{text}" on it',
     of_block="writes on it",
+    past=" wrote on {thing}: “{text}”",
 )
-_WIPES = replace(_WRITES, did="wiped what was written on it")
-_SAYS = EventWords("blockUpdate", " the sign at {place} says “{text}”")
+_WIPES = replace(_WRITES, did="wiped what was written on it", past=" wiped {thing} clean")
+_SAYS = EventWords(
+    "blockUpdate", " the sign at {place} says “{text}”", past=" {thing} now said: “{text}”"
+)
 
 _MISSING = {"destination": "somewhere", "block": "a block", "other": "somebody", "power": "off"}
 """Words of lines on the page for details that are missing."""
@@ -180,6 +210,18 @@ def happens(event: _Event, labels: Mapping[Position, str]) -> str:
     items = items_words(event.detail.get("items", {}), " and ")
     told |= {**_told(event), "items": items or "something"}
     return f"{event.actor or ''}{words_of(event).happens.format_map(told)}".strip()
+
+
+def happened(event: _Event, actor: str, told: Mapping[str, str]) -> str:
+    """Return an event as a sentence in the past tense, without its full stop.
+
+    Args:
+        event: The event.
+        actor: Its actor in words; empty: nobody.
+        told: Words for `thing`, `destination`, `items`, `to` and `other`, as far as it has them.
+    """
+    words = {**_MISSING, **_told(event), "thing": "something", **told}
+    return f"{actor}{words_of(event).past.format_map(words)}".strip()
 
 
 def did(act: _Event) -> str:

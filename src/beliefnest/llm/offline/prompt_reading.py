@@ -21,10 +21,18 @@ _CONTAINER = re.compile(
 )
 _SIGN = re.compile(rf'({_POINT.pattern}) \w*sign: says (?:"(.*)"|nothing)(?:;.*)?')
 _PLAYER = re.compile(rf"(\w+): (?:unknown|at ({_POINT.pattern}); ([^;]*)).*")
-_CHAT = re.compile(r"\d+;([A-Za-z0-9_]+)(?: whispers to \w+)?;(.*)")
+_CHAT = re.compile(r"(\d+);([A-Za-z0-9_]+)(?: whispers to \w+)?;(.*)")
 _SIGHTING = re.compile(
     rf"\d+;(?:goToPosition|lastSeen|heardOf|visible);(\w+);(?:destination|position):({_POINT.pattern}).*"
 )
+_OBSERVED = re.compile(
+    rf"(\d+);(assumed|inside|getItemFromChest|depositItemIntoChest);[\w-]+;"
+    rf"chest:({_POINT.pattern}) & items:(\{{.*\}})"
+)
+_SEEN = re.compile(
+    rf"\d+;(visible|lastSeen|goToPosition);(\w+);(?:position|destination):({_POINT.pattern}).*"
+)
+_OWNER = re.compile(r"^You are (\w+)\.$", re.MULTILINE)
 _OTHERS_TASK = re.compile(r"(\w+)'s task:\s*(.+)")
 _PLACE = re.compile(rf"(?:-\s*)?([A-Za-z][\w' ]*?)(?: is at|:)\s*({_POINT.pattern})\.?")
 _PLACE_IN_SENTENCE = re.compile(rf"\b([A-Z]\w*(?: [A-Z]\w*)*) is at ({_POINT.pattern})")
@@ -32,10 +40,11 @@ _PLACE_IN_SENTENCE = re.compile(rf"\b([A-Z]\w*(?: [A-Z]\w*)*) is at ({_POINT.pat
 
 @dataclass(frozen=True, slots=True)
 class Utterance:
-    """Speaker and text of something heard."""
+    """Speaker, text and tick of something heard."""
 
     speaker: str
     text: str
+    tick: int = 0
 
 
 @dataclass(frozen=True)
@@ -78,14 +87,20 @@ def points_in(text: str) -> list[Point]:
 def read_prompt(text: str) -> Reading:
     """Parse a prompt; missing or unclear sections are read as unknown."""
     sections = _sections(text)
+    chat = _chat(sections.get("Chat log", []))
+    places = _places(sections.get("Places", []), text)
+    told = {"Chest", "Containers"} & sections.keys()
+    chests = _chests(sections.get("Chest", [])) | _containers(sections.get("Containers", []))
     here = points_in("\n".join(sections.get("Position", [])))
     return Reading(
         task=_task(text),
         position=here[0] if here else None,
-        chests=_chests(sections.get("Chest", [])) | _containers(sections.get("Containers", [])),
-        players=_players(sections.get("Other players", [])),
-        chat=_chat(sections.get("Chat log", [])),
-        places=_places(sections.get("Places", []), text),
+        chests=chests if told else _remembered(text, chat, places),
+        players=_players(sections["Other players"])
+        if "Other players" in sections
+        else _seen_players(text),
+        chat=chat,
+        places=places,
         sightings=_sightings(text),
         others_tasks=_others_tasks(text),
         signs=_signs(sections.get("Signs", [])),
@@ -185,9 +200,65 @@ def _players(lines: Sequence[str]) -> dict[str, Point | None]:
     return players
 
 
+def _remembered(
+    text: str, chat: Sequence[Utterance], places: Mapping[str, Point]
+) -> dict[Point, dict[str, int]]:
+    """Return the contents of chests that follow from a history of observations.
+
+    The newest knowledge counts: what was seen inside, put in or taken out, and what others said
+    in words such as `The diamond is in the left chest`.
+    """
+    owner = _OWNER.search(text)
+    rows = [match for match in map(_OBSERVED.fullmatch, text.splitlines()) if match is not None]
+    heard = [said for said in chat if owner is None or said.speaker != owner[1]]
+    # Events of a tick come before words of the same tick. Narrators know all and need no words.
+    changes: list[tuple[int, int, re.Match[str] | Utterance]] = []
+    changes += [(int(row[1]), 0, row) for row in rows]
+    changes += [(said.tick, 1, said) for said in heard if owner is not None]
+    chests: dict[Point, dict[str, int]] = {}
+    for _, _, change in sorted(changes, key=lambda each: each[:2]):
+        if isinstance(change, Utterance):
+            _believe(change.text, chests, places)
+        else:
+            _observe(change, chests)
+    return chests
+
+
+def _observe(row: re.Match[str], chests: dict[Point, dict[str, int]]) -> None:
+    at, items = points_in(row[3])[0], _items(row[7])
+    held = chests.setdefault(at, {})
+    if row[2] in ("assumed", "inside"):
+        held.clear()
+    sign = -1 if row[2] == "getItemFromChest" else 1
+    for name, count in items.items():
+        held[name] = max(0, held.get(name, 0) + sign * count)
+
+
+def _believe(text: str, chests: dict[Point, dict[str, int]], places: Mapping[str, Point]) -> None:
+    for name, at in places.items():
+        told = re.search(
+            rf"(?:^|\b(?:the|a|an) )([a-z ]+?) is (?:now )?in (?:the )?{re.escape(name)}\b",
+            text,
+            re.IGNORECASE,
+        )
+        if told is not None:
+            item = re.sub(r"^(?:the|an?) ", "", told[1].lower()).replace(" ", "_")
+            for held in chests.values():
+                held.pop(item, None)
+            chests.setdefault(at, {})[item] = 1
+
+
+def _seen_players(text: str) -> dict[str, Point | None]:
+    """Return the places of the players that are in sight by the history; None: out of sight."""
+    matches = [match for match in map(_SEEN.fullmatch, text.splitlines()) if match is not None]
+    return {
+        match[2]: None if match[1] == "lastSeen" else points_in(match[3])[0] for match in matches
+    }
+
+
 def _chat(lines: Sequence[str]) -> list[Utterance]:
     matches = (_CHAT.fullmatch(line.strip()) for line in lines)
-    return [Utterance(match[1], match[2]) for match in matches if match is not None]
+    return [Utterance(match[2], match[3], int(match[1])) for match in matches if match is not None]
 
 
 def _places(lines: Sequence[str], text: str) -> dict[str, Point]:

@@ -17,10 +17,13 @@ from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.made_claims import MadeClaim, claims_made
 from beliefnest.nest.face.given import tick_of
 from beliefnest.nest.face.turns import in_turn
+from beliefnest.nest.past.observing import observations_of
+from beliefnest.nest.past.place_names import object_names
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.words import state_words
 from beliefnest.prompts import Template
+from beliefnest.prompts.observations import Observation
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Placements, Position
@@ -59,6 +62,22 @@ class ShownSimulator(ABC):
     def labels(self) -> Mapping[Position, str]:
         """The labels of containers for prompts, by position: names and suggested contents."""
         return self._recording.setting.prompt_labels
+
+    @property
+    def names(self) -> Mapping[Position, str]:
+        """The names of containers, signs, doors and switches for prose, by position."""
+        return object_names(self._recording.setting)
+
+    @property
+    def places(self) -> Mapping[str, Position]:
+        """The positions of the scenario's named places, by name."""
+        return self._recording.setting.places
+
+    @property
+    @in_turn
+    def observations(self) -> tuple[Observation, ...]:
+        """The observations of the simulator's owner in the order of time; in reality, all."""
+        return observations_of(self._recording, self._path, self._tick)
 
     @property
     def tick(self) -> int:

@@ -1,21 +1,18 @@
 """Names of containers, signs and places of a setting, for prose and for right answers."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
 
 from beliefnest.nest.past.setting import Setting
+from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign, plain_state
 from beliefnest.world.texts import on_one_line
-from beliefnest.world.values import Point, Position
+from beliefnest.world.values import Position
 
-__all__ = ["NEAR", "names_near", "object_names", "place_names"]
-
-NEAR: Final = 3.0
-"""Distance in blocks up to which an agent counts as being at a named place."""
+__all__ = ["object_names", "place_names", "sign_places"]
 
 _SIDES: Final = (("western", "eastern"), ("northern", "southern"), ("lower", "upper"))
 """Words for two objects that differ in x, else z, else y."""
@@ -24,16 +21,19 @@ _ORDINALS: Final = ("first", "second", "third", "fourth", "fifth", "sixth", "sev
 
 
 def object_names(setting: Setting) -> Mapping[Position, str]:
-    """Return names of the containers and signs of a setting, without articles, by position.
+    """Return names of containers, signs, doors and switches, without articles, by position.
 
     The name is the label, else the kind of block, such as `chest` or `sign`. Two objects of one
     name get a compass direction (`western chest`), more of them get numbers, counted from the
     west (`first chest`).
     """
     snapshot, registry = setting.snapshot, Registry.load()
-    signs = _signs(setting, registry)
+    signs = sign_places(setting)
+    moving = _blocks(setting, lambda name: is_door(name) or is_switch(name))
+    # The upper half of a door belongs to the lower one.
+    moving = {at for at in moving if (at[0], at[1] - 1, at[2]) not in moving}
     groups: dict[str, list[Position]] = {}
-    for at in {*snapshot.containers, *signs, *setting.labels}:
+    for at in {*snapshot.containers, *signs, *moving, *setting.labels}:
         groups.setdefault(_base(setting, registry, at, sign=at in signs), []).append(at)
     named = {at: name for base, group in groups.items() for at, name in _apart(base, group).items()}
     return dict(sorted(named.items()))
@@ -44,15 +44,16 @@ def place_names(setting: Setting) -> Mapping[Position, str]:
     return {**object_names(setting), **{at: name for name, at in setting.places.items()}}
 
 
-def names_near(point: Point, names: Mapping[Position, str]) -> list[str]:
-    """Return the names of the positions within `NEAR` blocks of a point, the nearest first."""
-    far = {at: math.dist(point, (at[0] + 0.5, at[1], at[2] + 0.5)) for at in names}
-    return [names[at] for at in sorted(names, key=lambda at: far[at]) if far[at] <= NEAR]
+def sign_places(setting: Setting) -> set[Position]:
+    """Return the positions of the signs of a setting."""
+    return _blocks(setting, is_sign)
 
 
-def _signs(setting: Setting, registry: Registry) -> set[Position]:
-    snapshot = setting.snapshot
-    states = [int(n) for n in np.unique(snapshot.blocks) if n >= 0 and is_sign(registry.name(n))]
+def _blocks(setting: Setting, accepts: Callable[[str], bool]) -> set[Position]:
+    snapshot, registry = setting.snapshot, Registry.load()
+    states = [
+        int(n) for n in np.unique(snapshot.blocks) if n >= 0 and accepts(registry.name(int(n)))
+    ]
     low = snapshot.box.low
     return {
         (low[0] + x, low[1] + y, low[2] + z)

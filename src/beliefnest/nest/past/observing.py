@@ -1,0 +1,256 @@
+"""Observations of a node's owner in the order of time, read from the node's timeline."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from beliefnest.belief.columns import cell_of
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import PerceivedEvent, Source
+from beliefnest.belief.node_view import NodeView
+from beliefnest.nest.past.place_names import sign_places
+from beliefnest.nest.past.recording import Recording
+from beliefnest.prompts.observations import (
+    Assumed,
+    Found,
+    Happened,
+    Lying,
+    Observation,
+    Outset,
+    Read,
+    Sight,
+)
+from beliefnest.timeline.journal import ForkPoint
+from beliefnest.world.event_words import is_lid
+from beliefnest.world.paths import BeliefPath
+from beliefnest.world.values import DroppedItem, EventKind, Items, Point, Position
+
+__all__ = ["observations_of"]
+
+_DEEDS_AT_BLOCKS = frozenset(
+    {
+        *(EventKind.USE_DOOR, EventKind.USE_LEVER, EventKind.PRESS_BUTTON),
+        *(EventKind.PLACE_BLOCK, EventKind.MINE_BLOCK),
+    }
+)
+"""Acts that say what happens to blocks in the same tick."""
+
+
+@dataclass(frozen=True)
+class _Look:
+    """View of one observer at a tick.
+
+    Attributes:
+        agents: Feet of the other agents that it sees.
+        places: Containers and signs that it sees.
+    """
+
+    agents: Mapping[str, Point]
+    places: frozenset[Position]
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """Percepts in a node at a tick, as far as a story tells them.
+
+    Attributes:
+        looks: What each viewer sees: the owner, or each agent if the node is the real world.
+        contents: Complete contents that the owner perceives.
+        texts: Texts of the signs that the owner sees.
+        items: Dropped items that the owner sees, by number.
+    """
+
+    looks: Mapping[str, _Look]
+    contents: Mapping[Position, Items]
+    texts: Mapping[Position, str]
+    items: Mapping[int, DroppedItem]
+
+
+def observations_of(
+    recording: Recording, path: BeliefPath, tick: int | None = None
+) -> tuple[Observation, ...]:
+    """Return the observations of a node's owner until a tick; None: until now.
+
+    Changes of sight are told before the next perceived event: those in between have no
+    consequences. In the real world every event and every agent's sight is told.
+    """
+    moment = recording.moment(path, tick)
+    return tuple(_Observer(recording, path).read(moment))
+
+
+class _Observer:
+    def __init__(self, recording: Recording, path: BeliefPath) -> None:
+        self._recording = recording
+        self._path = path
+        self._owner = path[-1] if path else None
+        viewers = recording.agents if self._owner is None else (self._owner,)
+        self._nodes = {name: (name,) if self._owner is None else path for name in viewers}
+        self._paths = list(dict.fromkeys((path, *self._nodes.values())))
+        snapshot = recording.setting.snapshot
+        self._signs = frozenset(sign_places(recording.setting))
+        self._places = tuple(sorted({*snapshot.containers, *self._signs}))
+        self._seen: dict[str, _Look] = {}
+        self._contents: dict[Position, Items | None] = {}
+        self._texts: dict[Position, str] = {}
+        self._lying: set[int] = set()
+
+    def read(self, moment: ForkPoint) -> Iterator[Observation]:
+        """Yield the observations until a moment."""
+        recording, history = self._recording, self._recording.history
+        journal = recording.journal
+        scene: _Scene | None = None
+        tick = 0
+        for stretch in recording.stretches(moment):
+            key, count = stretch.timeline, 0
+            forest = history.walk(key, self._paths)
+            if scene is None:
+                scene, tick = self._scene(forest), forest.tick
+                yield from self._outset(forest, scene)
+            entries = list(journal.entries(key, 0, stretch.entries))
+            for number, entry in enumerate(entries):
+                last = number + 1 == len(entries) or entries[number + 1].tick > entry.tick
+                if not last:
+                    continue
+                after = journal.events_until(key, number + 1)
+                before = self._scene(forest) if after > count else None
+                history.advance(key, forest, number + 1)
+                if before is not None:
+                    tick = forest.tick
+                    events = NodeView(forest, self._path).events_since(count)
+                    yield from self._told(tick, before, events, forest)
+                    count = after
+            scene, tick = self._scene(forest), moment.tick
+        if scene is not None:
+            yield from self._changes(tick, scene)
+
+    def _outset(self, forest: Forest, scene: _Scene) -> Iterator[Observation]:
+        view, tick = NodeView(forest, self._path), forest.tick
+        perceived = {n: a for n, a in view.agents.items() if a.current and a.position is not None}
+        feet = {name: agent.position for name, agent in perceived.items() if agent.position}
+        has = {name: dict(agent.inventory) for name, agent in perceived.items() if agent.inventory}
+        yield Outset(tick, self._owner, feet, has)
+        for at, held in view.containers.items():
+            if held.basis.source is Source.PRIOR and (held.items or held.complete):
+                yield Assumed(tick, at, dict(held.items))
+        yield from self._changes(tick, scene)
+
+    def _told(
+        self, tick: int, before: _Scene, events: Sequence[PerceivedEvent], forest: Forest
+    ) -> Iterator[Observation]:
+        """Yield the events of one tick with the changes of sight before and after them."""
+        told = [event for event in events if not _is_noise(event, events)]
+        if not told:
+            return
+        if told[0].kind is not EventKind.MOVE_TO:
+            yield from self._changes(tick - 1, before)
+        for event in told:
+            self._moved(event)
+            yield Happened(tick, event)
+        after = self._scene(forest)
+        if told[-1].kind is EventKind.MOVE_TO:
+            yield from self._changes(tick, after)
+        else:
+            yield from self._findings(tick, after)
+
+    def _moved(self, event: PerceivedEvent) -> None:
+        """Follow the known contents through an event."""
+        place, stores = event.detail.get("position"), event.kind.traits.stores
+        if place is None:
+            return
+        text = event.detail.get("text")
+        if text is not None:
+            self._texts[place] = text
+        known = self._contents.get(place)
+        if known is None or not stores:
+            return
+        now = dict(known)
+        for name, count in event.detail.get("items", {}).items():
+            now[name] = now.get(name, 0) + stores * count
+        self._contents[place] = {name: count for name, count in now.items() if count > 0}
+
+    def _changes(self, tick: int, scene: _Scene) -> Iterator[Observation]:
+        for viewer, look in scene.looks.items():
+            past = self._seen.get(viewer, _Look({}, frozenset()))
+            sight = Sight(
+                tick,
+                viewer,
+                {name: at for name, at in look.agents.items() if name not in past.agents},
+                tuple(sorted(look.places - past.places)),
+                {name: at for name, at in past.agents.items() if name not in look.agents},
+                tuple(sorted(past.places - look.places)),
+            )
+            self._seen[viewer] = look
+            if sight.agents or sight.places or sight.lost_agents or sight.lost_places:
+                yield sight
+        yield from self._findings(tick, scene)
+
+    def _findings(self, tick: int, scene: _Scene) -> Iterator[Observation]:
+        for at, text in scene.texts.items():
+            if self._texts.get(at) != text:
+                self._texts[at] = text
+                yield Read(tick, at, text)
+        for at, items in scene.contents.items():
+            if self._contents.get(at) != items:
+                self._contents[at] = dict(items)
+                yield Found(tick, at, dict(items))
+        for number, item in scene.items.items():
+            if number not in self._lying:
+                self._lying.add(number)
+                yield Lying(tick, item.name, item.count, item.position)
+
+    def _scene(self, forest: Forest) -> _Scene:
+        view = NodeView(forest, self._path)
+        looks = {name: self._look(forest, name, node) for name, node in self._nodes.items()}
+        box = forest.context.box
+        if self._owner is None:
+            contents = {at: held.items for at, held in view.containers.items()}
+            return _Scene(looks, contents, self._sign_texts(view, self._signs), view.items)
+        present = forest.is_current(self._path, self._owner)
+        contents = {
+            at: held.items
+            for at, held in view.containers.items()
+            if present and held.current and held.complete
+        }
+        signs = looks[self._owner].places & self._signs
+        cells = {
+            number: cell_of(box, cell)
+            for number, item in view.items.items()
+            if (cell := _cell(item.position)) in box
+        }
+        seen = forest.current_blocks(self._path, cells.values()) if present else set()
+        items = {number: view.items[number] for number, cell in cells.items() if cell in seen}
+        return _Scene(looks, contents, self._sign_texts(view, signs), items)
+
+    def _sign_texts(self, view: NodeView, signs: frozenset[Position]) -> dict[Position, str]:
+        # A sign without text is not among `view.signs`.
+        return {at: view.signs.get(at, "") for at in sorted(signs)}
+
+    def _look(self, forest: Forest, viewer: str, node: BeliefPath) -> _Look:
+        if not forest.is_current(node, viewer):
+            return _Look({}, frozenset())
+        box = forest.context.box
+        cells = {cell_of(box, at): at for at in self._places}
+        seen = forest.current_blocks(node, cells)
+        feet = {
+            name: forest.feet(node, name)
+            for name in forest.context.agents
+            if name != viewer and forest.is_current(node, name)
+        }
+        return _Look(
+            {name: at for name, at in feet.items() if at is not None},
+            frozenset(cells[cell] for cell in seen),
+        )
+
+
+def _cell(point: Point) -> Position:
+    x, y, z = (int(value // 1) for value in point)
+    return (x, y, z)
+
+
+def _is_noise(event: PerceivedEvent, events: Sequence[PerceivedEvent]) -> bool:
+    """Return True for changes of blocks that another event tells, and for receiving."""
+    if event.kind is EventKind.RECEIVE_ITEM_FROM_OTHER:
+        # The giver's event tells the same, if it was perceived.
+        return any(each.kind is EventKind.GIVE_ITEM_TO_OTHER for each in events)
+    if event.kind is not EventKind.BLOCK_UPDATE or event.detail.get("text") is not None:
+        return False
+    return is_lid(event) or any(each.kind in _DEEDS_AT_BLOCKS for each in events)

@@ -1,0 +1,95 @@
+"""Observations of a mind in the order of time: what a story is told from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from beliefnest.belief.grounds import PerceivedEvent
+from beliefnest.world.values import Items, Point, Position
+
+__all__ = ["Assumed", "Found", "Happened", "Lying", "Observation", "Outset", "Read", "Sight"]
+
+
+@dataclass(frozen=True, slots=True)
+class Outset:
+    """Agents and possessions that are perceived at the first tick.
+
+    Attributes:
+        tick: The tick.
+        owner: The observer; None: a narrator, who perceives everything.
+        feet: Feet of the perceived agents, by name; the observer's own included.
+        has: Items that each of them is known to have.
+    """
+
+    tick: int
+    owner: str | None
+    feet: Mapping[str, Point]
+    has: Mapping[str, Items]
+
+
+@dataclass(frozen=True, slots=True)
+class Assumed:
+    """Contents that the observer took for granted from the start."""
+
+    tick: int
+    place: Position
+    items: Items
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """Change of what a viewer can see.
+
+    Attributes:
+        tick: The tick.
+        viewer: The viewer: the observer, or any agent if a narrator tells.
+        agents: Agents that come into sight, with their feet.
+        places: Containers and signs that come into sight.
+        lost_agents: Agents that are no longer seen, with their feet when last seen.
+        lost_places: Containers and signs that are no longer seen.
+    """
+
+    tick: int
+    viewer: str
+    agents: Mapping[str, Point] = field(default_factory=dict)
+    places: tuple[Position, ...] = ()
+    lost_agents: Mapping[str, Point] = field(default_factory=dict)
+    lost_places: tuple[Position, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Complete contents that the observer perceives and could not have known before."""
+
+    tick: int
+    place: Position
+    items: Items
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """Text of a sign that the observer sees and has not seen before; empty: it is blank."""
+
+    tick: int
+    place: Position
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Lying:
+    """Items that the observer sees lying on the floor for the first time."""
+
+    tick: int
+    name: str
+    count: int
+    position: Point
+
+
+@dataclass(frozen=True, slots=True)
+class Happened:
+    """Event that the observer perceives."""
+
+    tick: int
+    event: PerceivedEvent
+
+
+Observation = Outset | Assumed | Sight | Found | Read | Lying | Happened

@@ -1,0 +1,139 @@
+"""Stories: prompts as prose, and tables of observations."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import beliefnest as bn
+from beliefnest.llm.messages import Message, Sampling
+from beliefnest.llm.offline.offline_model import OfflineModel
+from beliefnest.prompts import built_in_template
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
+
+SCENE = """
+name: lie
+box: [[0, 0, 0], [16, 3, 10]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [16, 0, 10]]}
+  - {block: bricks, fill: [[9, 1, 0], [9, 3, 7]]}
+containers:
+  - {at: [2, 1, 2], block: chest}
+  - {at: [6, 1, 2], block: chest}
+  - {at: [4, 1, 1], block: barrel, label: A, items: {apple: 1}}
+signs:
+  - {at: [4, 1, 7], text: no toys}
+places: {garden: [13, 1, 2]}
+agents:
+  lia: {position: [3.5, 1, 4.5], inventory: {diamond: 1}}
+  wim: {position: [5.5, 1, 5.5]}
+  tom: {position: [7.5, 1, 5.5]}
+static_blocks: [stone, bricks]
+initial_beliefs:
+  - {path: /tom, containers: [{at: [4, 1, 1], items: {cookie: 2}}]}
+script:
+  - {agent: lia, program: "await depositItemIntoChest(bot, new Vec3(2, 1, 2), {diamond: 1});"}
+  - {agent: wim, program: "await goToPosition(bot, new Vec3(13, 1, 2), 0);"}
+  - agent: tom
+    program: |
+      await getItemFromChest(bot, new Vec3(2, 1, 2), {diamond: 1});
+      await depositItemIntoChest(bot, new Vec3(6, 1, 2), {diamond: 1});
+  - {agent: lia, program: "await say(bot, 'The diamond is in A.');"}
+"""
+
+
+@pytest.fixture(scope="module")
+def nest(tmp_path_factory: pytest.TempPathFactory) -> Iterator[bn.Nest]:
+    file: Path = tmp_path_factory.mktemp("story") / "lie.yaml"
+    file.write_text(SCENE)
+    with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as opened:
+        opened.play()
+        yield opened
+
+
+def story(nest: bn.Nest, path: str, **variables: object) -> str:
+    return nest[path].render(built_in_template("story"), **variables)
+
+
+def test_a_story_is_told_from_the_view_of_the_mind(nest):
+    assert story(nest, "/lia", question="Where?", options=("here", "there")) == (
+        "You are Lia.\n\n"
+        "At first you could see Tom, Wim, the western chest, A, the sign and the eastern chest. "
+        "You stood near the western chest. Wim stood near the sign. You had a diamond. "
+        "On the sign was written: “no toys”.\n\n"
+        "You opened the western chest. It was empty. You put a diamond into it. "
+        "You could no longer see Wim. "
+        "Tom opened the western chest and took a diamond out of it. "
+        "Tom opened the eastern chest and put a diamond into it. "
+        "You said: “The diamond is in A.”\n\n"
+        "Question: Where?\n\nOptions:\nA) here\nB) there\n"
+    )
+
+
+def test_a_mind_is_told_only_what_it_observed(nest):
+    wim = story(nest, "/wim", question="Where?")
+    assert "Tom opened" not in wim
+    assert "You walked to the garden. You could no longer see Lia, Tom or any of the things" in wim
+    # Observations, not beliefs: nobody has looked into A.
+    assert "apple" not in wim
+    assert "empty" not in wim
+
+
+def test_what_is_assumed_differs_from_what_was_seen(nest):
+    assert "granted" not in story(nest, "/lia")
+    assert "took it for granted that 2 cookies were in A" in story(nest, "/tom", question="?")
+
+
+def test_a_narrator_tells_everything_and_who_could_see_what(nest):
+    told = story(nest, "/", question="Where does Wim think the diamond is?")
+    assert told.startswith("This is a story about Lia, Tom and Wim. There were ")
+    assert "In A was an apple." in told
+    assert "nor could Lia or Tom see Wim. Tom opened the western chest" in told
+    assert "believe" not in told
+    assert "(" not in told
+
+
+def test_a_story_has_coordinates_if_they_are_wanted(nest):
+    told = story(nest, "/wim", task="Get a diamond.", instructed=True)
+    assert "Lia opened the western chest at (2, 1, 2) and put a diamond into it." in told
+    assert told.endswith("Task: Get a diamond.\n")
+    named = nest["/wim"].render("{{ branch | story(narrated=true) }}")
+    assert "Wim walked to the garden." in named
+    assert "You" not in named
+
+
+def test_observations_tell_unknown_from_empty_and_hand_out_no_belief(nest):
+    prompt = nest["/tom"].render(built_in_template("question"), question="Where?")
+    assert "inside;-;chest:(6, 1, 2) & items:{}" in prompt
+    assert "assumed;-;chest:(4, 1, 1) & items:{'cookie': 2}" in prompt
+    assert "perceived_by" not in prompt
+    assert "Chest:" not in prompt
+    seen = nest["/wim"].render(built_in_template("question"), question="Where?")
+    assert "inside" not in seen
+
+
+@pytest.mark.parametrize(
+    ("path", "question", "answer"),
+    [
+        ("/tom", "Where is the diamond?", "A"),
+        ("/lia", "Where is the diamond?", "eastern chest"),
+        ("/", "Where is the apple?", "A"),
+        ("/lia", "Where is the apple?", "I do not know"),
+        ("/wim", "What does the sign say?", "no toys"),
+        ("/", "Where is Wim?", "garden"),
+    ],
+)
+def test_the_offline_model_answers_from_observations(nest, path, question, answer):
+    places = {"western chest": (2, 1, 2), "eastern chest": (6, 1, 2), "A": (4, 1, 1)}
+    places["garden"] = (13, 1, 2)
+    prompt = nest[path].render(built_in_template("question"), question=question, places=places)
+    said = OfflineModel().answer((Message("user", prompt),), Sampling()).text
+    assert said.startswith(f"Answer: {answer}\n")
+
+
+@pytest.mark.parametrize("name", BUILT_IN_TEMPLATES)
+def test_every_built_in_template_renders_for_a_question(nest, name):
+    for path in ("/wim", "/lia/wim"):
+        assert nest[path].render(
+            built_in_template(name), question="?", task="?", options=(), reason=False, places={}
+        )
