@@ -8,6 +8,7 @@ import yaml
 
 from beliefnest import Nest
 from beliefnest.cli.app import run_command_line
+from beliefnest.scenarios.probing import resolved
 from beliefnest.scenarios.scenario import Scenario
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
@@ -38,7 +39,7 @@ def test_the_scenario_of_the_guide_does_as_it_expects(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     guide = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
-    text, beliefs, _ = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    text, beliefs, computed, _ = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     Path("boxes.yaml").write_text(text, encoding="utf-8")
     assert run_command_line(["run", "boxes.yaml", "--out", "run"]) == 0
@@ -49,6 +50,12 @@ def test_the_scenario_of_the_guide_does_as_it_expects(
         known = {path: nest[path].state.containers for path in ("/ann/bob", "/bob/ann")}
     assert known["/ann/bob"][4, 1, 2].items == {"apple": 3}
     assert known["/bob/ann"][2, 1, 2].complete
+    probe = {"path": "/ann", **yaml.safe_load(computed)}
+    asking = Scenario.from_mapping({**yaml.safe_load(text), "probes": [probe]}, condition=1)
+    with Nest.open(asking, world="scripted") as nest:
+        nest.play()
+        (question,) = resolved(nest, asking.probes[0]).questions
+    assert question.right == ("he does not know",)
 
 
 def test_the_readme_begins_with_the_two_commands() -> None:
