@@ -12,13 +12,12 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
-from beliefnest.cli.serve import ServeOptions, listening
+from beliefnest.cli.options import ServeOptions
+from beliefnest.cli.serve import listening
 
 
 def test_the_address_can_be_connected_to_as_soon_as_it_is_known() -> None:
-    options = ServeOptions(
-        what="run", port=0, address="127.0.0.1", conditions=(), out=None, depth=2
-    )
+    options = ServeOptions(what="run", port=0)
     with listening(options) as listener:
         socket.create_connection(listener.getsockname(), timeout=120).close()
 

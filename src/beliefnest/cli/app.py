@@ -8,6 +8,20 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from beliefnest.cli.options import (
+    CaptureOptions,
+    ExportOptions,
+    Json,
+    PlayOptions,
+    PowerOptions,
+    ServeOptions,
+    ShowOptions,
+    StatsOptions,
+    StudyOptions,
+    SuiteOptions,
+    joining_address,
+    with_options,
+)
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.version import VERSION
@@ -33,7 +47,6 @@ app = typer.Typer(
 )
 
 Cache = Literal["read", "write", "off"]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 
 def run_command_line(arguments: Sequence[str]) -> int:
@@ -185,7 +198,7 @@ def run(
     from beliefnest.worlds.names import world_name
     from beliefnest.worlds.servers.address import overwriting
 
-    named = world_name(world, realtime=realtime, listen=_listening(listen))
+    named = world_name(world, realtime=realtime, listen=joining_address(listen))
     # A folder may have all results already; then no world is needed.
     begun = out is not None and out.exists()
     with nullcontext() if begun else ahead(named, seed) as launch:
@@ -212,69 +225,27 @@ def run(
 
 
 @app.command()
-def show(
-    run: Annotated[Path, typer.Argument(help="Run folder, or the folder of one condition in it.")],
-    path: Annotated[str, typer.Option(help="Belief path; / is the real world.")] = "/",
-    tick: Annotated[int | None, typer.Option(help="Tick; default: the latest.")] = None,
-    branch: Annotated[str | None, typer.Option(help="Branch of the simulator.")] = None,
-    png: Annotated[Path | None, typer.Option(help="Draw the state to a PNG file.")] = None,
-    svg: Annotated[Path | None, typer.Option(help="Draw the state to an SVG file.")] = None,
-    pdf: Annotated[Path | None, typer.Option(help="Draw the state to a PDF file.")] = None,
-    gif: Annotated[
-        Path | None, typer.Option(help="Draw all states up to the tick to a GIF or WebP animation.")
-    ] = None,
-    against: Annotated[
-        str, typer.Option(help="Belief path to compare with; differences are drawn as false.")
-    ] = "/",
-    height: Annotated[
-        int | None, typer.Option(help="Storey to draw: height y of things on its floor.")
-    ] = None,
-    html: Annotated[
-        Path | None, typer.Option(help="Write the whole run as one page that needs no network.")
-    ] = None,
-    claims: Annotated[
-        bool, typer.Option("--claims", help="Show only claims, and the beliefs that took them up.")
-    ] = False,
-    depth: Annotated[
-        int, typer.Option(help="Depth of the beliefs on the page of --html or in --claims.")
-    ] = 2,
-    json: Json = False,
-) -> None:
+@with_options(ShowOptions)
+def show(options: ShowOptions) -> None:
     """Show the state of a simulator in a recorded run."""
-    from beliefnest.cli.page import PageOptions, write_page
-    from beliefnest.cli.show import ShowOptions, show_run
+    if options.html is not None:
+        from beliefnest.cli.page import PageOptions, write_page
 
-    forms = {"png": png, "svg": svg, "pdf": pdf}
-    figures = {form: file for form, file in forms.items() if file is not None}
-    page = None if html is None else PageOptions(run, html, path, tick, branch, depth)
-    if page is not None:
-        write_page(page)
-    if page is None or figures or gif or json:
-        deep = depth if claims else None
-        show_run(ShowOptions(run, path, tick, branch, json, figures, gif, against, height, deep))
+        at = (options.path, options.tick, options.branch, options.depth)
+        write_page(PageOptions(options.run, options.html, *at))
+    if options.html is None or options.figures or options.gif or options.json:
+        from beliefnest.cli.show import show_run
+
+        show_run(options)
 
 
 @app.command()
-def serve(
-    what: Annotated[
-        str,
-        typer.Argument(help="Run folder, or a scenario to run.", metavar="RUN|SCENARIO"),
-    ],
-    port: Annotated[int | None, typer.Option(help="Port; default: 8642, or a free one.")] = None,
-    address: Annotated[
-        str, typer.Option(help="Address to listen on; other machines need the token in the URL.")
-    ] = "127.0.0.1",
-    condition: Annotated[
-        list[int] | None,
-        typer.Option(help="Run only this condition of the scenario; can be repeated."),
-    ] = None,
-    out: Annotated[Path | None, typer.Option(help="Run folder for the scenario.")] = None,
-    depth: Annotated[int, typer.Option(help="Depth of the beliefs that are shown first.")] = 2,
-) -> None:
+@with_options(ServeOptions)
+def serve(options: ServeOptions) -> None:
     """Show a run in the browser, live while it is being recorded."""
-    from beliefnest.cli.serve import ServeOptions, serve
+    from beliefnest.cli.serve import serve
 
-    serve(ServeOptions(what, port, address, tuple(condition or ()), out, depth))
+    serve(options)
 
 
 @app.command()
@@ -330,27 +301,12 @@ def new(
 
 
 @app.command()
-def capture(
-    where: Annotated[
-        str, typer.Argument(help="Server minecraft://HOST:PORT, or a .schem or .nbt file.")
-    ],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Scenario file to write.")],
-    box: Annotated[
-        tuple[int, int, int, int, int, int] | None,
-        typer.Option(help="For a server: two corners of the place, X1 Y1 Z1 X2 Y2 Z2."),
-    ] = None,
-    at: Annotated[
-        tuple[int, int, int] | None,
-        typer.Option(help="For a file: position of its lowest corner, X Y Z; default 0 0 0."),
-    ] = None,
-    name: Annotated[
-        str | None, typer.Option(help="Name of the scenario; default: the name of its file.")
-    ] = None,
-) -> None:
+@with_options(CaptureOptions)
+def capture(options: CaptureOptions) -> None:
     """Write a place on a server, or in a file, as a scenario."""
-    from beliefnest.cli.capture import CaptureOptions, write_capture
+    from beliefnest.cli.capture import write_capture
 
-    write_capture(CaptureOptions(where, out, box, at, name))
+    write_capture(options)
 
 
 @app.command()
@@ -365,19 +321,12 @@ def replay(
 
 
 @app.command()
-def export(
-    run: Annotated[Path, typer.Argument(help="Run folder or run file.")],
-    out: Annotated[Path, typer.Option(help="Folder to write; it must not exist.")],
-    format: Annotated[str, typer.Option(help="Format of the tables: jsonl or parquet.")] = "jsonl",
-    path: Annotated[
-        list[str] | None,
-        typer.Option(help="Belief path whose states are written over time; can be repeated."),
-    ] = None,
-) -> None:
+@with_options(ExportOptions)
+def export(options: ExportOptions) -> None:
     """Write a run as tables that other programs can read."""
-    from beliefnest.cli.exchange import ExportOptions, export_run
+    from beliefnest.cli.exchange import export_run
 
-    export_run(ExportOptions(run, format, tuple(path or ()), out))
+    export_run(options)
 
 
 @app.command("import")
@@ -400,219 +349,52 @@ def list_installed(json: Json = False) -> None:
 
 
 @app.command()
-def suite(
-    name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom, stories, food-trucks.")],
-    data: Annotated[Path, typer.Option(help="File of stories and questions, or of films.")],
-    world: Annotated[str, typer.Option(help="World in which the stories play.")] = "scripted",
-    rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None,
-    limit: Annotated[int | None, typer.Option(help="Most stories or films to play.")] = None,
-    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0,
-    claims_from: Annotated[
-        str | None, typer.Option(help="Model that extracts claims from utterances.")
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for the figure and tables of films.")
-    ] = None,
-    json: Json = False,
-) -> int:
+@with_options(SuiteOptions)
+def suite(options: SuiteOptions) -> int:
     """Answer a file of questions from nests; compare with its answers, or with people."""
-    from beliefnest.cli.suite import SuiteOptions, run_suite
+    from beliefnest.cli.suite import run_suite
 
-    options = SuiteOptions(name, data, world, rows, limit, seed, json, claims_from, out)
     return run_suite(options)
 
 
 @app.command()
-def study(
-    study: Annotated[Path, typer.Argument(help="YAML file of the study.")],
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Study folder; an interrupted or enlarged study continues in it."),
-    ] = None,
-    jobs: Annotated[int, typer.Option(help="Cells to play in parallel.", min=1)] = 2,
-    backend: Annotated[
-        str, typer.Option(help="loky: processes on this machine; dask or ray: a cluster.")
-    ] = "loky",
-    shard: Annotated[
-        str | None, typer.Option(help="Play only this part of the study, as I/N, such as 1/4.")
-    ] = None,
-    merge: Annotated[
-        list[Path] | None,
-        typer.Option(help="Folder of a shard whose cells are copied first; can be repeated."),
-    ] = None,
-    record: Annotated[bool, typer.Option(help="Record the runs in OUT/runs.")] = False,
-    claims_from: Annotated[
-        str | None, typer.Option(help="Model that extracts claims from utterances.")
-    ] = None,
-    by: Annotated[
-        list[str] | None,
-        typer.Option(metavar="COLUMN", help="Group rows by this column; can be repeated."),
-    ] = None,
-    json: Json = False,
-) -> int:
+@with_options(StudyOptions)
+def study(options: StudyOptions) -> int:
     """Play many variations of scenarios with several models; print accuracies with intervals."""
-    from beliefnest.cli.study import StudyOptions, run_study
+    from beliefnest.cli.study import run_study
 
-    merged = tuple(merge or ())
-    return run_study(
-        StudyOptions(
-            study, out, jobs, backend, shard, merged, record, json, claims_from, tuple(by or ())
-        )
-    )
+    return run_study(options)
 
 
 @app.command()
-def stats(
-    study: Annotated[Path, typer.Argument(help="Folder of a study.")],
-    by: Annotated[
-        list[str] | None,
-        typer.Option(metavar="COLUMN", help="Group rows by this column; can be repeated."),
-    ] = None,
-    between: Annotated[
-        list[str] | None,
-        typer.Option(metavar="COLUMN", help="Compare its values in pairs; can be repeated."),
-    ] = None,
-    effect: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="COLUMN",
-            help="Fit a regression on this column (A:B: interaction); can be repeated.",
-        ),
-    ] = None,
-    kind: Annotated[
-        Literal["gee", "mixed"], typer.Option(help="Kind of regression; variations are groups.")
-    ] = "gee",
-    family: Annotated[
-        Literal["binomial", "gaussian"],
-        typer.Option(help="binomial: log odds; gaussian: differences of accuracies."),
-    ] = "binomial",
-    positions: Annotated[
-        bool, typer.Option("--positions", help="Count chosen options by their position.")
-    ] = False,
-    json: Json = False,
-) -> int:
+@with_options(StatsOptions)
+def stats(options: StatsOptions) -> int:
     """Print accuracies, paired differences and regressions of a study, clustered by variation."""
-    from beliefnest.cli.stats import StatsOptions, run_stats
+    from beliefnest.cli.stats import run_stats
 
-    by, between, effect = by or [], between or [], effect or []
-    options = StatsOptions(
-        study, tuple(by), tuple(between), tuple(effect), kind, family, positions, json
-    )
     return run_stats(options)
 
 
 @app.command()
-def power(
-    study: Annotated[
-        Path, typer.Argument(help="YAML file of a study to plan, or folder of one to draw from.")
-    ],
-    size: Annotated[
-        list[int] | None,
-        typer.Option(help="Number of variations; can be repeated.", min=1),
-    ] = None,
-    accuracy: Annotated[float | None, typer.Option(help="Assumed accuracy; default: 0.8.")] = None,
-    difference: Annotated[
-        float | None, typer.Option(help="Assumed difference of accuracy; default: 0.1.")
-    ] = None,
-    correlation: Annotated[
-        float | None,
-        typer.Option(help="Assumed correlation of rows of one variation; default: 0.3."),
-    ] = None,
-    between: Annotated[
-        str | None, typer.Option(metavar="COLUMN", help="Column whose values are compared.")
-    ] = None,
-    simulations: Annotated[int, typer.Option(help="Simulated studies of each size.", min=1)] = 400,
-    seed: Annotated[int, typer.Option(help="Seed of the simulations.", min=0)] = 0,
-    json: Json = False,
-) -> int:
+@with_options(PowerOptions)
+def power(options: PowerOptions) -> int:
     """Simulate how wide intervals are, and which differences are found, with more variations."""
-    from beliefnest.cli.stats import PowerOptions, run_power
+    from beliefnest.cli.stats import run_power
 
-    assumed = {"accuracy": accuracy, "difference": difference, "correlation": correlation}
-    return run_power(
-        PowerOptions(study, tuple(size or ()), assumed, between, simulations, seed, json)
-    )
+    return run_power(options)
 
 
 @app.command()
-def play(
-    task: Annotated[
-        str | None, typer.Argument(help="Built-in task or scenario, or a file of either.")
-    ] = None,
-    agent: Annotated[
-        list[str] | None,
-        typer.Option(help="Policy of an agent, such as anne=search:1; can be repeated."),
-    ] = None,
-    set: Annotated[
-        list[str] | None,
-        typer.Option(help="Size of a task, or parameter of a scenario, as agents=3; repeatable."),
-    ] = None,
-    condition: Annotated[int | None, typer.Option(help="Condition of the scenario.")] = None,
-    rounds: Annotated[int | None, typer.Option(help="Limit of rounds.", min=0)] = None,
-    seed: Annotated[
-        int, typer.Option(help="Instance of the task, and seed of all random numbers.")
-    ] = 0,
-    world: Annotated[str, typer.Option(help="World in which the episode plays.")] = "scripted",
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Folder for the run; an interrupted episode continues in it."),
-    ] = None,
-    max_ticks: Annotated[int | None, typer.Option(help="Limit of ticks.", min=1)] = None,
-    max_tokens: Annotated[int | None, typer.Option(help="Limit of model tokens.", min=1)] = None,
-    max_cost: Annotated[float | None, typer.Option(help="Limit of US dollars.", min=0)] = None,
-    patience: Annotated[
-        float | None, typer.Option(help="Seconds after which a policy loses its round.")
-    ] = None,
-    measure_help: Annotated[
-        bool, typer.Option("--measure-help", help="Print the help needed, given and superfluous.")
-    ] = False,
-    listen: Annotated[
-        str | None,
-        typer.Option(help="Address for people to join: PORT of this machine, or HOST:PORT."),
-    ] = None,
-    export: Annotated[
-        Path | None, typer.Option(help="Write the task to this scenario file; do not play it.")
-    ] = None,
-    baselines: Annotated[
-        bool, typer.Option("--baselines", help="Play the task, or all tasks, with all baselines.")
-    ] = False,
-    seeds: Annotated[int, typer.Option(help="Instances of each task, for --baselines.")] = 50,
-    jobs: Annotated[int, typer.Option(help="Episodes in parallel, for --baselines.", min=1)] = 1,
-    page: Annotated[
-        Path | None, typer.Option(help="Markdown file to write, for --baselines.")
-    ] = None,
-    json: Json = False,
-) -> int:
+@with_options(PlayOptions)
+def play(options: PlayOptions) -> int:
     """Let agents act on their own beliefs, round after round; say if they reach the goal."""
-    if baselines:
-        from beliefnest.cli.baselines import BaselineOptions, run_baselines
+    if options.baselines:
+        from beliefnest.cli.baselines import run_baselines
 
-        return run_baselines(BaselineOptions(task, seeds, jobs, out, page, json))
-    from beliefnest.cli.play import PlayOptions, play_task
-    from beliefnest.episodes.episode import Budget
+        return run_baselines(options)
+    from beliefnest.cli.play import play_task
 
-    options = PlayOptions(
-        task=task,
-        condition=condition,
-        agents=tuple(agent or ()),
-        parameters=tuple(set or ()),
-        rounds=rounds,
-        seed=seed,
-        world=world,
-        out=out,
-        budget=Budget(max_ticks, max_tokens, max_cost),
-        patience_s=patience,
-        measures_help=measure_help,
-        listen=_listening(listen),
-        export=export,
-        as_json=json,
-    )
     return play_task(options)
-
-
-def _listening(listen: str | None) -> str | None:
-    """Return the address at which people join; a port alone is on this machine."""
-    return f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
 
 
 @app.command()

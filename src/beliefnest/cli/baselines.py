@@ -5,7 +5,6 @@ import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.options import PlayOptions
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import parameters_of, source_of
@@ -23,7 +23,7 @@ from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
 from beliefnest.version import VERSION
 
-__all__ = ["BaselineOptions", "page_of", "run_baselines"]
+__all__ = ["page_of", "run_baselines"]
 
 _POLICIES, _ORDERS = ("random", "search", "omniscient:search"), (0, 1, 2)
 """Policies and orders of the players; all other agents follow the task's script."""
@@ -43,28 +43,7 @@ Group = Mapping[str, Any]
 """A row of a study's summary."""
 
 
-@dataclass(frozen=True, slots=True)
-class BaselineOptions:
-    """Options of `beliefnest play --baselines`.
-
-    Attributes:
-        task: The only task; None: all.
-        seeds: Number of instances of each task.
-        jobs: Number of episodes played in parallel.
-        out: Folder of the study; an interrupted study continues there. None: a temporary folder.
-        page: Markdown file to write, with pictures in `img` beside it; None: none.
-        as_json: Print one JSON object instead of a table.
-    """
-
-    task: str | None
-    seeds: int
-    jobs: int
-    out: Path | None
-    page: Path | None
-    as_json: bool
-
-
-def run_baselines(options: BaselineOptions) -> int:
+def run_baselines(options: PlayOptions) -> int:
     """Play the baselines, print the table, and write the page.
 
     Returns:
@@ -82,7 +61,7 @@ def run_baselines(options: BaselineOptions) -> int:
     if options.page is not None:
         _draw(names, found, options.page.parent / "img")
         options.page.write_text(page_of(names, found, options.seeds), encoding="utf-8")
-    if options.as_json:
+    if options.json:
         content = {"seeds": options.seeds, "baselines": found}
         sys.stdout.write(json.dumps(content, indent=2) + "\n")
     else:
@@ -90,7 +69,7 @@ def run_baselines(options: BaselineOptions) -> int:
     return 0 if all(_is_as_claimed(each) for each in found) else 1
 
 
-def _played(names: Sequence[str], options: BaselineOptions) -> list[dict[str, Any]]:
+def _played(names: Sequence[str], options: PlayOptions) -> list[dict[str, Any]]:
     """Return the summary of studies of all baselines, in the order of the names."""
     hidden = [name for name in names if _hides_goals(name)]
     known = [name for name in names if name not in hidden]
@@ -110,7 +89,7 @@ def _hides_goals(name: str) -> bool:
     return not Task.load(name).form.goals_known
 
 
-def _summary(study: Study, options: BaselineOptions, part: str) -> list[dict[str, Any]]:
+def _summary(study: Study, options: PlayOptions, part: str) -> list[dict[str, Any]]:
     """Return the summary of one study, in a folder of its own."""
     with ExitStack() as stack:
         out = options.out

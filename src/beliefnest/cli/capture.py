@@ -2,42 +2,23 @@
 
 import re
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 
+from beliefnest.cli.options import CaptureOptions
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import read_regular
 from beliefnest.scenarios.writing import scenario_text
-from beliefnest.world.values import Box, Position
+from beliefnest.world.values import Box
 from beliefnest.worlds.servers.address import ServerAddress, is_server
 from beliefnest.worlds.servers.capturing import Captured, capture_file, capture_server
 
-__all__ = ["CaptureOptions", "write_capture"]
+__all__ = ["write_capture"]
 
 _LARGEST_FILE = 64 * 2**20
 _SUFFIX = ".yaml"
 _NO_NAME = re.compile(r"[^A-Za-z0-9_-]+")
 _LONGEST_NAME = 64
-
-
-@dataclass(frozen=True)
-class CaptureOptions:
-    """Options of `beliefnest capture`.
-
-    Attributes:
-        where: Address of a server, or path of a file.
-        out: Scenario file to write; it must not exist.
-        box: Two corners of the place; for servers only.
-        at: Position of the place's lowest corner in the scenario; for files only.
-        name: Name of the scenario; None: the name of the file `out`.
-    """
-
-    where: str
-    out: Path
-    box: tuple[int, int, int, int, int, int] | None = None
-    at: Position | None = None
-    name: str | None = None
 
 
 def write_capture(options: CaptureOptions) -> None:

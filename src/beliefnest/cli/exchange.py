@@ -2,13 +2,13 @@
 
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 from typing import cast, get_args
 
 from beliefnest.belief.plain import belief_json, place_key
 from beliefnest.cli.folder import store_in
+from beliefnest.cli.options import ExportOptions
 from beliefnest.episodes.telling import goal_rows, round_rows, told_episode
 from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
@@ -21,24 +21,7 @@ from beliefnest.timeline.trace import load_trace
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.registry import Registry
 
-__all__ = ["ExportOptions", "export_run", "import_run"]
-
-
-@dataclass(frozen=True, slots=True)
-class ExportOptions:
-    """Options of `beliefnest export`.
-
-    Attributes:
-        run: Run folder or run file.
-        format: Name of the format.
-        paths: Belief paths; their states are written at each tick with a change, on all branches.
-        out: Folder to write; it must not exist.
-    """
-
-    run: Path
-    format: str
-    paths: tuple[str, ...]
-    out: Path
+__all__ = ["export_run", "import_run"]
 
 
 def export_run(options: ExportOptions) -> None:
@@ -51,11 +34,11 @@ def export_run(options: ExportOptions) -> None:
         raise InputError(
             f"there is no format {options.format!r}; there are {', '.join(get_args(Format))}"
         )
-    store = store_in(options.run)
+    store, paths = store_in(options.run), options.path or ()
     # The run may still be recorded: read all tables from one moment.
     with SqliteJournal.read(store) as journal, journal.unchanging():
         nest = RecordedNest(journal)
-        for path in options.paths:
+        for path in paths:
             parse_path(path, nest.agents)
         counts = export(
             journal,
@@ -63,7 +46,7 @@ def export_run(options: ExportOptions) -> None:
             options.out,
             registry=Registry.load(),
             first=nest.setting.snapshot,
-            beliefs=_beliefs(nest, options.paths),
+            beliefs=_beliefs(nest, paths),
             notes=chain(_notes(journal.records), _rounds(nest)),
         )
     for table, count in counts.items():

@@ -3,8 +3,7 @@
 import json
 import math
 import sys
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
 from beliefnest.studies.plainframe import Typed, write_csv, write_parquet
@@ -22,7 +22,7 @@ from beliefnest.suites.films.film import ABOUT, About, Film, FilmParameters, gri
 from beliefnest.suites.films.film_files import read_films
 from beliefnest.suites.films.film_inference import LESIONS, Judgment, Lesion, judge
 
-__all__ = ["FilmOptions", "run_films"]
+__all__ = ["run_films"]
 
 _MODELS: tuple[Lesion | None, ...] = (None, *LESIONS)
 _WORDS: Mapping[Lesion | None, str] = {
@@ -44,36 +44,19 @@ _REPORTS = 10
 """Lines of progress where there is no terminal."""
 
 
-@dataclass(frozen=True, slots=True)
-class FilmOptions:
-    """Options of `beliefnest suite food-trucks`.
-
-    Attributes:
-        data: File of films.
-        rows: Ids of the films to judge; None: all.
-        limit: Judge no more films than this; None: all.
-        seed: Drives the bootstrap.
-        as_json: True to print one JSON object instead of tables.
-        out: Folder of the figure and the tables; None: a new one in `suites`.
-    """
-
-    data: Path
-    rows: frozenset[int] | None
-    limit: int | None
-    seed: int
-    as_json: bool
-    out: Path | None
-
-
-def run_films(options: FilmOptions) -> int:
+def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
     """Act the films out, judge, print and write files.
+
+    Args:
+        options: Options of the command.
+        rows: Ids of the films to judge; None: all.
 
     Raises:
         BeliefNestError: The input is wrong, or a file cannot be written.
     """
     films, parameters = read_films(options.data)
-    if options.rows is not None:
-        films = [film for film in films if film.name in {str(row) for row in options.rows}]
+    if rows is not None:
+        films = [film for film in films if film.name in {str(row) for row in rows}]
     films = films[: options.limit]
     if not films:
         raise InputError(f"{options.data} holds none of the films asked for")
@@ -90,7 +73,7 @@ def run_films(options: FilmOptions) -> int:
         on_progress("all films judged", len(films), len(films))
     report = _report(options, judged, parameters)
     report["files"] = _write(folder, options, judged)
-    if options.as_json:
+    if options.json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")
     else:
         _print(options, judged, report)
@@ -107,7 +90,7 @@ def _folder(out: Path | None) -> Path:
 
 
 def _report(
-    options: FilmOptions,
+    options: SuiteOptions,
     judged: Mapping[Lesion | None, Sequence[Judgment]],
     parameters: FilmParameters,
 ) -> dict[str, Any]:
@@ -179,7 +162,7 @@ def _judgment(judgment: Judgment) -> dict[str, Any]:
 
 
 def _write(
-    folder: Path, options: FilmOptions, judged: Mapping[Lesion | None, Sequence[Judgment]]
+    folder: Path, options: SuiteOptions, judged: Mapping[Lesion | None, Sequence[Judgment]]
 ) -> list[str]:
     """Write the figure, if people judged, and the tables; without pyarrow, no Parquet file."""
     written = []
@@ -266,7 +249,7 @@ def _coefficient(pairs: Agreement, seed: int) -> str:
 
 
 def _print(
-    options: FilmOptions,
+    options: SuiteOptions,
     judged: Mapping[Lesion | None, Sequence[Judgment]],
     report: Mapping[str, Any],
 ) -> None:

@@ -2,7 +2,7 @@
 
 import statistics
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from rich import box
@@ -16,7 +16,7 @@ __all__ = ["ConditionScore", "score_runs", "score_table", "scores_json"]
 
 @dataclass(frozen=True, slots=True)
 class ConditionScore:
-    """Score of all repeats of one condition with one model.
+    """Score of all repeats of one condition with one model, as reports have it.
 
     Attributes:
         condition: Number of the condition; None: the scenario has no conditions.
@@ -24,6 +24,8 @@ class ConditionScore:
         passed: Number of repeats in which all expectations held.
         total: Number of repeats with a result.
         failed: Number of repeats without a result, because the model failed.
+        rate: Share of the repeats with a result that passed; None: no repeat has a result.
+        interval: 95 % interval of the rate; None: no repeat has a result.
         tokens: Tokens sent and received in all repeats.
         cost: US dollars of all repeats; None: not known.
         seconds: Mean wall time of a repeat, in seconds.
@@ -34,14 +36,11 @@ class ConditionScore:
     passed: int
     total: int
     failed: int
+    rate: float | None
+    interval: tuple[float, float] | None
     tokens: int
     cost: float | None
     seconds: float
-
-    @property
-    def interval(self) -> tuple[float, float] | None:
-        """Return the 95 % interval of the pass rate; None if no repeat has a result."""
-        return wilson_interval(self.passed, self.total) if self.total else None
 
 
 def score_runs(
@@ -66,12 +65,15 @@ def _score(
 ) -> ConditionScore:
     used = [run["usage"] for run in runs]
     costs = [usage["cost"] for usage in used]
+    passed, total = sum(run["ok"] for run in runs), len(runs)
     return ConditionScore(
         condition=condition,
         model=model,
-        passed=sum(run["ok"] for run in runs),
-        total=len(runs),
+        passed=passed,
+        total=total,
         failed=failed,
+        rate=passed / total if total else None,
+        interval=wilson_interval(passed, total) if total else None,
         tokens=sum(usage["input_tokens"] + usage["output_tokens"] for usage in used),
         cost=None if None in costs else sum(costs),
         seconds=statistics.mean(run["seconds"] for run in runs) if runs else 0.0,
@@ -80,21 +82,7 @@ def _score(
 
 def scores_json(scores: Sequence[ConditionScore]) -> list[dict[str, object]]:
     """Return scores as plain data for the report."""
-    return [
-        {
-            "condition": score.condition,
-            "model": score.model,
-            "passed": score.passed,
-            "total": score.total,
-            "failed": score.failed,
-            "rate": score.passed / score.total if score.total else None,
-            "interval": None if score.interval is None else list(score.interval),
-            "tokens": score.tokens,
-            "cost": score.cost,
-            "seconds": round(score.seconds, 3),
-        }
-        for score in scores
-    ]
+    return [{**asdict(score), "seconds": round(score.seconds, 3)} for score in scores]
 
 
 def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
@@ -105,13 +93,12 @@ def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
     for heading in ("passed", "rate", "95 % interval", "no result", "tokens", "cost", "seconds"):
         table.add_column(heading, justify="right")
     for score in scores:
-        rate = f"{score.passed / score.total:.0%}" if score.total else "-"
         low, high = score.interval or (0.0, 1.0)
         table.add_row(
             "-" if score.condition is None else str(score.condition),
             score.model,
             f"{score.passed} of {score.total}",
-            rate,
+            "-" if score.rate is None else f"{score.rate:.0%}",
             f"{low:.0%} to {high:.0%}",
             str(score.failed) if score.failed else "",
             f"{score.tokens:,}",

@@ -3,7 +3,6 @@
 import json
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.options import PlayOptions, joining_address
 from beliefnest.cli.terminal_text import printable
 from beliefnest.episodes.episode import Budget, Episode
 from beliefnest.episodes.helping import Help
@@ -21,46 +21,9 @@ from beliefnest.errors import InputError, NotBegunError
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
 
-__all__ = ["PlayOptions", "play_task"]
+__all__ = ["play_task"]
 
 _RUN = "run.bn"
-
-
-@dataclass(frozen=True, slots=True)
-class PlayOptions:
-    """Options of `beliefnest play`.
-
-    Attributes:
-        task: Name of a built-in task or scenario, or a file of either; None: no task was named.
-        condition: Number of a scenario's condition; None: the scenario as written.
-        agents: Policies of agents, each as `NAME=POLICY`.
-        parameters: Sizes of a task or parameters of a scenario, each as `NAME=VALUE`.
-        rounds: Greatest number of rounds; None: as many as the task has.
-        seed: Number of the task's instance, and seed of every random number.
-        world: Name of the world.
-        out: Folder for the recorded run; an interrupted episode continues in it.
-        budget: Limits of the episode.
-        patience_s: Seconds after which a policy loses its round.
-        measures_help: Measure help, which plays further branches.
-        listen: Address HOST:PORT at which people join to play agents.
-        export: File to write the task to, instead of playing it.
-        as_json: Print one JSON object instead of a table.
-    """
-
-    task: str | None
-    condition: int | None
-    agents: tuple[str, ...]
-    parameters: tuple[str, ...]
-    rounds: int | None
-    seed: int
-    world: str
-    out: Path | None
-    budget: Budget
-    patience_s: float | None
-    measures_help: bool
-    listen: str | None
-    export: Path | None
-    as_json: bool
 
 
 def play_task(options: PlayOptions) -> int:
@@ -75,8 +38,8 @@ def play_task(options: PlayOptions) -> int:
     if options.task is None:
         raise InputError(f"name a task: {', '.join(Task.names())}, or a file")
     check_world(options.world, servers=False)
-    policies = _pairs(options.agents, "--agent", "NAME=POLICY")
-    given = _pairs(options.parameters, "--set", "NAME=VALUE")
+    policies = _pairs(options.agent or (), "--agent", "NAME=POLICY")
+    given = _pairs(options.set or (), "--set", "NAME=VALUE")
     parameters = {name: _value(text) for name, text in given.items()}
     task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
     if options.export is not None:
@@ -86,12 +49,12 @@ def play_task(options: PlayOptions) -> int:
         while episode.rounds < limit and not episode.is_over:
             on_progress(f"round {episode.rounds + 1}", episode.rounds, limit)
             episode.play(1)
-        if options.measures_help:
+        if options.measure_help:
             on_progress("playing branches without help", limit, limit)
             episode.help()
         on_progress("over", limit, limit)
-        report = _report(episode, measures_help=options.measures_help)
-    if options.as_json:
+        report = _report(episode, measures_help=options.measure_help)
+    if options.json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")
     else:
         _print(report)
@@ -115,23 +78,24 @@ def _export(task: Task, file: Path) -> int:
 
 def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> Episode:
     """Return the episode; if the folder holds its beginning, continue from there."""
+    budget = Budget(options.max_ticks, options.max_tokens, options.max_cost)
     asked = Episode(
         task,
         policies,
         world=options.world,
         store=None if options.out is None else _store_in(options.out),
         seed=options.seed,
-        budget=options.budget,
-        patience_s=options.patience_s,
-        listen=options.listen,
+        budget=budget,
+        patience_s=options.patience,
+        listen=joining_address(options.listen),
     )
     if options.out is None or not _store_in(options.out).exists():
         return asked
     try:
         held = Episode.resume(
             _store_in(options.out),
-            budget=options.budget if options.budget != Budget() else None,
-            patience_s=options.patience_s,
+            budget=budget if budget != Budget() else None,
+            patience_s=options.patience,
         )
     except NotBegunError:
         # The episode was stopped before its first entry: the file holds nothing yet.

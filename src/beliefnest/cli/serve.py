@@ -6,7 +6,6 @@ import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from datetime import datetime
 from ipaddress import ip_address
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import STORE, stores_in
+from beliefnest.cli.options import ServeOptions
 from beliefnest.cli.page import about_run
 from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
@@ -25,30 +25,9 @@ from beliefnest.viewer.serving.host import Host, OpenRun
 if TYPE_CHECKING:  # Starlette is an optional dependency: `serve` imports it when it runs.
     from starlette.applications import Starlette
 
-__all__ = ["ServeOptions", "listening", "serve"]
+__all__ = ["listening", "serve"]
 
 _PORT = 8642
-
-
-@dataclass(frozen=True, slots=True)
-class ServeOptions:
-    """Options of `beliefnest serve`.
-
-    Attributes:
-        what: Run folder, run file, or a scenario to run.
-        port: Port; None: 8642, or a free one if 8642 is taken.
-        address: Address to listen on.
-        conditions: Numbers of the scenario's conditions to run; empty: all.
-        out: Run folder for the scenario; None: a new one in `runs`.
-        depth: Depth down to which the page shows beliefs at first.
-    """
-
-    what: str
-    port: int | None
-    address: str
-    conditions: tuple[int, ...]
-    out: Path | None
-    depth: int
 
 
 def serve(options: ServeOptions) -> None:
@@ -139,12 +118,12 @@ def _running(options: ServeOptions) -> Iterator[Path]:
         yield path
         return
     name = Scenario.load_all(options.what)[0].name
-    for number in options.conditions:
+    for number in options.condition or ():
         # Refuse an unknown condition here: in the child it would leave an empty page.
         Scenario.load(options.what, number)
     folder = options.out or Path("runs") / f"{name}-{datetime.now():%Y%m%d-%H%M%S}"
     command = [sys.executable, "-m", "beliefnest", "run", options.what, "--out", str(folder)]
-    for number in options.conditions:
+    for number in options.condition or ():
         command += ["--condition", str(number)]
     # Drop the table of the child, which would be mixed with our own lines.
     child = subprocess.Popen(command, stdout=subprocess.DEVNULL)

@@ -5,7 +5,7 @@ import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 from rich import box
@@ -18,6 +18,7 @@ from beliefnest.belief.view import State
 from beliefnest.cli.claims import claims_json, claims_table, paths_of_beliefs, print_claims
 from beliefnest.cli.console import print_table, stdout
 from beliefnest.cli.folder import store_in, stores_in
+from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.report import placed_lines
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BranchError, InputError, TickError
@@ -42,40 +43,10 @@ from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.words import items_words
 
-__all__ = ["ShowOptions", "print_prompt", "show_run"]
+__all__ = ["print_prompt", "show_run"]
 
 _FRAMES = 120
 """Greatest number of pictures in an animation."""
-
-
-@dataclass(frozen=True, slots=True)
-class ShowOptions:
-    """Options of `beliefnest show`.
-
-    Attributes:
-        run: Run folder or run file.
-        path: Belief path.
-        tick: Tick; None: the latest.
-        branch: Branch of the simulator; None: the branch that it ended on, or `follow`.
-        as_json: Print JSON.
-        figures: Files for figures, by format: `png`, `svg`, `pdf`.
-        animation: File for an animation; None: none.
-        against: Path of the simulator that figures compare with.
-        height: Height y of the storey that figures show; None: the one with most things.
-        claims: Show only claims, and their verdicts in all beliefs down to this depth; None: show
-            the state.
-    """
-
-    run: Path
-    path: str
-    tick: int | None
-    branch: str | None
-    as_json: bool
-    figures: Mapping[str, Path] = field(default_factory=dict)
-    animation: Path | None = None
-    against: str = "/"
-    height: int | None = None
-    claims: int | None = None
 
 
 def show_run(options: ShowOptions) -> None:
@@ -88,23 +59,23 @@ def show_run(options: ShowOptions) -> None:
     for form, file in options.figures.items():
         if file.suffix.lower() != f".{form}":
             raise InputError(f"--{form} writes {form.upper()}: {file} must end in .{form}")
-    if options.as_json or options.animation is not None:
+    if options.json or options.gif is not None:
         stores: tuple[Path, ...] = (store_in(options.run),)
     else:
         stores = stores_in(options.run)
         if len(stores) > 1:
             _check(options, stores)
-    if options.animation is not None:
+    if options.gif is not None:
         _animate(options, stores[0])
     if options.figures:
         figure = figure_of([scene for store in stores for scene in _scenes(options, store, stores)])
         for file in options.figures.values():
             figure.save(file)
-    if options.as_json or not (options.figures or options.animation):
+    if options.json or not (options.figures or options.gif):
         for store in stores:
             if len(stores) > 1:
                 stdout().print(f"[bold]{_name_in(store, options.run)}[/bold]", highlight=False)
-            (_show if options.claims is None else _show_claims)(options, store)
+            (_show_claims if options.claims else _show)(options, store)
 
 
 def _check(options: ShowOptions, stores: Sequence[Path]) -> None:
@@ -128,7 +99,7 @@ def _show(options: ShowOptions, store: Path) -> None:
         asked = [each for each in nest.prompts(options.path) if each.tick <= state.tick]
         programs = [each for each in nest.programs(options.path) if each.tick <= state.tick]
         claims = nest.at(state.tick).claims(options.path)
-        if options.as_json:
+        if options.json:
             held_by = [simulator.path] if claims and claims[0].made_in != simulator.path else []
             place = {"path": simulator.path, "branch": options.branch or FOLLOW, "tick": state.tick}
             content = {
@@ -153,12 +124,11 @@ def _show(options: ShowOptions, store: Path) -> None:
 
 def _show_claims(options: ShowOptions, store: Path) -> None:
     """Print every claim made in the world of a simulator, with the verdicts of all beliefs."""
-    assert options.claims is not None
     with _opened(store) as (scenario, nest, _):
         simulator = _simulator(options, nest)
         claims = nest.at(simulator.tick).claims(options.path)
-        paths = paths_of_beliefs(claims, nest.agents, options.claims) if claims else []
-        if options.as_json:
+        paths = paths_of_beliefs(claims, nest.agents, options.depth) if claims else []
+        if options.json:
             sys.stdout.write(json.dumps(claims_json(claims, paths), indent=2) + "\n")
         elif claims:
             print_claims(stdout(), claims, paths, scenario)
@@ -185,7 +155,7 @@ def _scenes(options: ShowOptions, store: Path, stores: Sequence[Path]) -> tuple[
 
 def _animate(options: ShowOptions, store: Path) -> None:
     """Write an animation of the simulator over its ticks with a change."""
-    file = options.animation
+    file = options.gif
     assert file is not None
     check_animated(file)
     with _opened(store) as (_, nest, _):

@@ -3,8 +3,6 @@
 import json
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from rich import box
@@ -12,42 +10,18 @@ from rich.markup import escape
 from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.options import PowerOptions, StatsOptions
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
-from beliefnest.studies.regression import Effect, Family, Kind, Regression
+from beliefnest.studies.regression import Effect, Regression
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study import Study
 
-__all__ = ["PowerOptions", "StatsOptions", "run_power", "run_stats"]
+__all__ = ["run_power", "run_stats"]
 
 _Rows = Sequence[Mapping[str, Any]]
-
-
-@dataclass(frozen=True, slots=True)
-class StatsOptions:
-    """Options of `beliefnest stats`.
-
-    Attributes:
-        study: Folder of the study.
-        by: Columns by which rows are grouped; empty: the default columns.
-        between: Columns whose levels are compared in pairs.
-        effects: Columns of a regression; `A:B` for an interaction.
-        kind: Kind of the regression.
-        family: Family of the regression.
-        positions: Count chosen options by position.
-        as_json: Print JSON instead of tables.
-    """
-
-    study: Path
-    by: tuple[str, ...]
-    between: tuple[str, ...]
-    effects: tuple[str, ...]
-    kind: Kind
-    family: Family
-    positions: bool
-    as_json: bool
 
 
 def run_stats(options: StatsOptions) -> int:
@@ -60,7 +34,7 @@ def run_stats(options: StatsOptions) -> int:
         InputError: A column does not exist, or the rows do not allow a statistic.
     """
     result = StudyResult.read(options.study)
-    by = list(options.by) or None
+    by = options.by or None
     found: dict[str, Any] = {"summary": result.counted(result.checked(by or result.groups))}
     if options.between:
         found["differences"] = {name: result.compared(name, by) for name in options.between}
@@ -76,16 +50,16 @@ def run_stats(options: StatsOptions) -> int:
         }
     if options.positions:
         found["positions"] = result.counted_positions(result.checked(by or result.position_groups))
-    if options.as_json:
+    if options.json:
         sys.stdout.write(json.dumps(found, indent=2) + "\n")
     else:
-        _print(found, list(options.by) or list(result.groups))
+        _print(found, options.by or list(result.groups))
     return 0
 
 
 def _fitted(result: StudyResult, options: StatsOptions) -> Regression | None:
     effects: list[Effect] = [
-        tuple(each.split(":")) if ":" in each else each for each in options.effects
+        tuple(each.split(":")) if ":" in each else each for each in options.effect or () or ()
     ]
     return result.fit(effects, options.kind, options.family) if effects else None
 
@@ -136,29 +110,6 @@ def _cell(name: str, value: object) -> str:
     return escape(printable(str(value)))
 
 
-@dataclass(frozen=True, slots=True)
-class PowerOptions:
-    """Options of `beliefnest power`.
-
-    Attributes:
-        study: File of a study, or folder of one that was played.
-        sizes: Numbers of variations; empty: the default ones.
-        assumed: Assumptions by name; None: not given.
-        between: Column to compare; None: the first that varies.
-        simulations: Number of simulated studies of each size.
-        seed: Seed of the simulations.
-        as_json: Print JSON instead of a table.
-    """
-
-    study: Path
-    sizes: tuple[int, ...]
-    assumed: Mapping[str, float | None]
-    between: str | None
-    simulations: int
-    seed: int
-    as_json: bool
-
-
 def run_power(options: PowerOptions) -> int:
     """Simulate studies of different sizes and print widths of intervals and power.
 
@@ -168,7 +119,12 @@ def run_power(options: PowerOptions) -> int:
     Raises:
         BeliefNestError: The study or a number is wrong.
     """
-    given = {name: value for name, value in options.assumed.items() if value is not None}
+    assumed = {
+        "accuracy": options.accuracy,
+        "difference": options.difference,
+        "correlation": options.correlation,
+    }
+    given = {name: value for name, value in assumed.items() if value is not None}
     with progress_on("power") as on_progress:
         on_progress("reading the study", 0, 0)
         sources = _sources(options, given)
@@ -176,8 +132,8 @@ def run_power(options: PowerOptions) -> int:
         def told(done: int, total: int) -> None:
             on_progress("simulating", done, total)
 
-        rows = power_rows(sources, options.sizes or SIZES, options.simulations, options.seed, told)
-    if options.as_json:
+        rows = power_rows(sources, options.size or SIZES, options.simulations, options.seed, told)
+    if options.json:
         sys.stdout.write(json.dumps(rows, indent=2) + "\n")
         return 0
     for title, measure in (("accuracies", "width"), ("paired differences", "difference_width")):

@@ -4,7 +4,6 @@ import json
 import re
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.options import StudyOptions
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
@@ -23,38 +23,9 @@ from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study import Study, checked_shard
 from beliefnest.world.words import counted
 
-__all__ = ["StudyOptions", "run_study"]
+__all__ = ["run_study"]
 
 _MOST_TOLD = 10
-
-
-@dataclass(frozen=True, slots=True)
-class StudyOptions:
-    """Options of `beliefnest study`.
-
-    Attributes:
-        file: YAML file of the study.
-        out: Folder of the study; None: a new one in `studies`.
-        jobs: Number of cells played in parallel.
-        backend: Joblib backend that runs the cells.
-        shard: Part of the study to play, as `I/N`; None: all of it.
-        merge: Folders of shards whose cells are copied here first.
-        record: Record the runs.
-        as_json: Print the report as JSON instead of a table.
-        claims_from: Model that extracts claims from utterances; None: as the file says.
-        by: Columns by which rows are grouped; empty: the default columns of this kind of study.
-    """
-
-    file: Path
-    out: Path | None
-    jobs: int
-    backend: str
-    shard: str | None
-    merge: tuple[Path, ...]
-    record: bool
-    as_json: bool
-    claims_from: str | None = None
-    by: tuple[str, ...] = ()
 
 
 def run_study(options: StudyOptions) -> int:
@@ -67,15 +38,15 @@ def run_study(options: StudyOptions) -> int:
         BeliefNestError: The input is wrong, or cells have no result.
     """
     shard = _shard(options.shard)
-    study = Study.load(options.file, options.claims_from)
+    study = Study.load(options.study, options.claims_from)
     now = datetime.now()
-    folder = options.out or Path("studies", f"{options.file.stem}-{now:%Y%m%d-%H%M%S}")
-    with progress_on(options.file.stem) as on_progress:
+    folder = options.out or Path("studies", f"{options.study.stem}-{now:%Y%m%d-%H%M%S}")
+    with progress_on(options.study.stem) as on_progress:
         on_progress("checking all variations", 0, 0)
         if options.merge:
             taken = study.take_over(folder, options.merge)
             on_progress(f"took over {taken} cells", 0, 0)
-        checked_columns(options.by, study.columns)
+        checked_columns(options.by or (), study.columns)
 
         def told(progress: StudyProgress) -> None:
             on_progress(_progress_text(progress), progress.done, progress.total)
@@ -94,7 +65,7 @@ def run_study(options: StudyOptions) -> int:
             raise
     by = options.by or result.groups
     _write_files(result, by)
-    if options.as_json:
+    if options.json:
         sys.stdout.write(json.dumps(_report(result, by), indent=2) + "\n")
     else:
         _print(result, by)

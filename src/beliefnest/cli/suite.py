@@ -6,15 +6,15 @@ import re
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from rich import box
 from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
-from beliefnest.cli.films import FilmOptions, run_films
+from beliefnest.cli.films import run_films
+from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.suites import FILMS, SUITES
 from beliefnest.suites.stories.data import StoryItems, read_items
@@ -31,40 +31,12 @@ from beliefnest.worlds.names import check_world
 if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
     from beliefnest.llm.claim_reader import ClaimsFromModel
 
-__all__ = ["SuiteOptions", "run_suite"]
+__all__ = ["run_suite"]
 
 _ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
 
 _REPORTS = 20
 """Number of progress lines if stderr is not a terminal."""
-
-
-@dataclass(frozen=True, slots=True)
-class SuiteOptions:
-    """Options of `beliefnest suite`.
-
-    Attributes:
-        name: Name of the suite.
-        data: File of stories, questions and answers, or of films.
-        world: Name of the world.
-        rows: Numbers of the rows to answer, as in `1-20,35`; None: all.
-        limit: Greatest number of stories to play; None: all.
-        seed: Seed of every random number.
-        as_json: Print one JSON object instead of a table.
-        claims_from: Name of a model that extracts claims from utterances; None: use the claims
-            that the stories state beside the words.
-        out: Folder for figures and tables of films; None: a new one.
-    """
-
-    name: str
-    data: Path
-    world: str
-    rows: str | None
-    limit: int | None
-    seed: int
-    as_json: bool
-    claims_from: str | None = None
-    out: Path | None = None
 
 
 def run_suite(options: SuiteOptions) -> int:
@@ -83,7 +55,8 @@ def run_suite(options: SuiteOptions) -> int:
     check_world(options.world, servers=False)
     rows = None if options.rows is None else parse_rows(options.rows)
     if options.name == FILMS:
-        return run_films(_film_options(options, rows))
+        _check_films(options)
+        return run_films(options, rows)
     if options.out is not None:
         raise InputError(f"--out is for films; the suite {options.name} writes no files")
     read = read_items if options.name == "hi-tom" else read_own
@@ -93,21 +66,19 @@ def run_suite(options: SuiteOptions) -> int:
     started = time.perf_counter()
     judged = _answer(stories, options)
     report = _report(options, len(stories), judged, time.perf_counter() - started)
-    if options.as_json:
+    if options.json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")
     else:
         _print(options, stories, judged)
     return 0 if all(each.ok for each in judged) else 1
 
 
-def _film_options(options: SuiteOptions, rows: frozenset[int] | None) -> FilmOptions:
+def _check_films(options: SuiteOptions) -> None:
+    """Raise InputError if an option is not for films."""
     if options.world != "scripted":
         raise InputError(f"--world is {options.world}; films are acted out in the scripted world")
     if options.claims_from is not None:
         raise InputError("--claims-from is for stories; nobody says anything in films")
-    return FilmOptions(
-        options.data, rows, options.limit, options.seed, options.as_json, options.out
-    )
 
 
 def parse_rows(text: str) -> frozenset[int]:

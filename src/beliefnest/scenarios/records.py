@@ -1,25 +1,22 @@
 """Outcomes as plain values, for `--json` and for the files of runs and studies."""
 
 import math
+from dataclasses import asdict
 from pathlib import Path
+
+import msgspec
 
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.outcome import ExpectationOutcome, ProbeOutcome, Reply
 from beliefnest.world.values import Placements, Point
-from beliefnest.worlds.protocol import Aim
 
 __all__ = ["expectation_json", "placed_json", "probe_json", "usage_json"]
 
 
 def usage_json(usage: Usage) -> dict[str, object]:
     """Return the usage of answers as plain values."""
-    return {
-        "requests": usage.requests,
-        "input_tokens": usage.input_tokens,
-        "output_tokens": usage.output_tokens,
-        "cost": usage.cost,
-    }
+    return asdict(usage)
 
 
 def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
@@ -68,7 +65,7 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
         "lines": [] if result is None else list(result.lines),
         "log": [] if result is None else list(result.log),
         "unfinished": [] if result is None else [str(each) for each in result.unfinished],
-        "aims": [] if result is None else [_aim_json(each) for each in result.aims],
+        "aims": [] if result is None else msgspec.to_builtins(result.aims),
         "branch": outcome.branch,
         "placed": {} if result is None else placed_json(result.placed),
         "intended": _list(outcome.intended),
@@ -98,16 +95,6 @@ def _reply_json(reply: Reply) -> dict[str, object]:
         "options": list(reply.options),
         "answer": reply.answer,
         "reason": reply.reason,
-    }
-
-
-def _aim_json(aim: Aim) -> dict[str, object]:
-    return {
-        "tick": aim.tick,
-        "call": aim.call,
-        "place": _list(aim.place),
-        "agent": aim.agent,
-        "uses": aim.uses,
     }
 
 

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 from filelock import FileLock
@@ -36,14 +36,8 @@ class SharedBudget(RunSpending):
 
     def add(self, usage: Usage) -> None:
         """Count the usage of an answer."""
-        line = {
-            "requests": usage.requests,
-            "input_tokens": usage.input_tokens,
-            "output_tokens": usage.output_tokens,
-            "cost": usage.cost,
-        }
         with FileLock(f"{self.file}.lock"):
-            append_line(self.file, json.dumps(line))
+            append_line(self.file, json.dumps(asdict(usage)))
 
     @classmethod
     def of(cls, limits: RunLimits, file: Path) -> "SharedBudget":

@@ -1,7 +1,7 @@
 """Recording model: asks another model and records requests and answers in the run."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import ModelError
@@ -91,11 +91,4 @@ class RecordingModel:
 
 
 def _spent(usage: "Usage | None") -> dict[str, Any]:
-    if usage is None:
-        return {}
-    return {
-        "requests": usage.requests,
-        "input_tokens": usage.input_tokens,
-        "output_tokens": usage.output_tokens,
-        "cost": usage.cost,
-    }
+    return {} if usage is None else asdict(usage)

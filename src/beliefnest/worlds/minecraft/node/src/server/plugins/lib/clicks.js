@@ -28,34 +28,19 @@ function put (menu, slot, item, count) {
   return withCount(item, item.count - moved)
 }
 
-function leftClick (menu, cursor, slot) {
-  const there = menu.get(slot)
-  if (menu.isResult(slot)) return takeResultToCursor(menu, cursor, there)
-  if (!cursor) {
-    menu.set(slot, null)
-    return there
-  }
-  if (!there || alike(there, cursor)) {
-    if (there && !menu.mayPlace(slot, cursor)) return takeOnto(menu, cursor, slot, there)
-    return put(menu, slot, cursor, cursor.count)
-  }
-  return swap(menu, cursor, slot, there)
-}
-
-function rightClick (menu, cursor, slot) {
+/** Take a whole stack (left) or half of it onto an empty cursor; put a whole stack or one item down. */
+function clickOn (menu, cursor, slot, isLeft) {
   const there = menu.get(slot)
   if (menu.isResult(slot)) return takeResultToCursor(menu, cursor, there)
   if (!cursor) {
     if (!there) return null
-    const taken = Math.ceil(there.count / 2)
+    const taken = isLeft ? there.count : Math.ceil(there.count / 2)
     menu.set(slot, withCount(there, there.count - taken))
     return withCount(there, taken)
   }
-  if (!there || alike(there, cursor)) {
-    if (there && !menu.mayPlace(slot, cursor)) return takeOnto(menu, cursor, slot, there)
-    return put(menu, slot, cursor, 1)
-  }
-  return swap(menu, cursor, slot, there)
+  if (there && !alike(there, cursor)) return swap(menu, cursor, slot, there)
+  if (there && !menu.mayPlace(slot, cursor)) return takeOnto(menu, cursor, slot, there)
+  return put(menu, slot, cursor, isLeft ? cursor.count : 1)
 }
 
 function swap (menu, cursor, slot, there) {
@@ -149,10 +134,7 @@ function clickOutside (cursor, mouseButton) {
 function click (menu, cursor, { slot, mouseButton, mode }) {
   if (slot === OUTSIDE) return mode === 0 || mode === 4 ? clickOutside(cursor, mouseButton) : null
   if (!(slot >= 0 && slot < menu.size)) return null
-  if (mode === 0) {
-    const side = mouseButton === 0 ? leftClick : rightClick
-    return { cursor: side(menu, cursor, slot), dropped: [] }
-  }
+  if (mode === 0) return { cursor: clickOn(menu, cursor, slot, mouseButton === 0), dropped: [] }
   if (mode === 1) shiftClick(menu, slot)
   else if (mode === 2) numberKey(menu, slot, mouseButton)
   else if (mode === 4) return { cursor, dropped: cursor ? [] : dropKey(menu, slot, mouseButton === 1) }

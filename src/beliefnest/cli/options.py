@@ -1,0 +1,310 @@
+"""Options of commands: each option with its type, its default and its text in `--help`.
+
+Commands get their options as one of these objects; `with_options` tells typer of the fields.
+"""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Literal, TypeVar, get_type_hints
+
+import typer
+
+__all__ = [
+    "CaptureOptions",
+    "ExportOptions",
+    "Json",
+    "PlayOptions",
+    "PowerOptions",
+    "ServeOptions",
+    "ShowOptions",
+    "StatsOptions",
+    "StudyOptions",
+    "SuiteOptions",
+    "joining_address",
+    "with_options",
+]
+
+Options = TypeVar("Options")
+Status = TypeVar("Status")
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
+
+
+def with_options(
+    kind: type[Options],
+) -> Callable[[Callable[[Options], Status]], Callable[..., Status]]:
+    """Return a decorator that replaces a command's argument by an argument for each option."""
+
+    def decorated(command: Callable[[Options], Status]) -> Callable[..., Status]:
+        @wraps(command)
+        def called(**given: object) -> Status:
+            return command(kind(**given))
+
+        # Typer reads a command's options from its signature.
+        called.__dict__["__signature__"] = inspect.signature(kind)
+        called.__annotations__ = get_type_hints(kind, include_extras=True)
+        return called
+
+    return decorated
+
+
+def joining_address(listen: str | None) -> str | None:
+    """Return the address at which people join; a port alone is on this machine."""
+    return f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
+
+
+@dataclass(frozen=True, slots=True)
+class ShowOptions:
+    """Options of `beliefnest show`."""
+
+    run: Annotated[Path, typer.Argument(help="Run folder, or the folder of one condition in it.")]
+    path: Annotated[str, typer.Option(help="Belief path; / is the real world.")] = "/"
+    tick: Annotated[int | None, typer.Option(help="Tick; default: the latest.")] = None
+    branch: Annotated[str | None, typer.Option(help="Branch of the simulator.")] = None
+    png: Annotated[Path | None, typer.Option(help="Draw the state to a PNG file.")] = None
+    svg: Annotated[Path | None, typer.Option(help="Draw the state to an SVG file.")] = None
+    pdf: Annotated[Path | None, typer.Option(help="Draw the state to a PDF file.")] = None
+    gif: Annotated[
+        Path | None, typer.Option(help="Draw all states up to the tick to a GIF or WebP animation.")
+    ] = None
+    against: Annotated[
+        str, typer.Option(help="Belief path to compare with; differences are drawn as false.")
+    ] = "/"
+    height: Annotated[
+        int | None, typer.Option(help="Storey to draw: height y of things on its floor.")
+    ] = None
+    html: Annotated[
+        Path | None, typer.Option(help="Write the whole run as one page that needs no network.")
+    ] = None
+    claims: Annotated[
+        bool, typer.Option("--claims", help="Show only claims, and the beliefs that took them up.")
+    ] = False
+    depth: Annotated[
+        int, typer.Option(help="Depth of the beliefs on the page of --html or in --claims.")
+    ] = 2
+    json: Json = False
+
+    @property
+    def figures(self) -> Mapping[str, Path]:
+        """Return the files of figures by format."""
+        files = {"png": self.png, "svg": self.svg, "pdf": self.pdf}
+        return {form: file for form, file in files.items() if file is not None}
+
+
+@dataclass(frozen=True, slots=True)
+class ServeOptions:
+    """Options of `beliefnest serve`."""
+
+    what: Annotated[
+        str,
+        typer.Argument(help="Run folder, or a scenario to run.", metavar="RUN|SCENARIO"),
+    ]
+    port: Annotated[int | None, typer.Option(help="Port; default: 8642, or a free one.")] = None
+    address: Annotated[
+        str, typer.Option(help="Address to listen on; other machines need the token in the URL.")
+    ] = "127.0.0.1"
+    condition: Annotated[
+        list[int] | None,
+        typer.Option(help="Run only this condition of the scenario; can be repeated."),
+    ] = None
+    out: Annotated[Path | None, typer.Option(help="Run folder for the scenario.")] = None
+    depth: Annotated[int, typer.Option(help="Depth of the beliefs that are shown first.")] = 2
+
+
+@dataclass(frozen=True, slots=True)
+class CaptureOptions:
+    """Options of `beliefnest capture`."""
+
+    where: Annotated[
+        str, typer.Argument(help="Server minecraft://HOST:PORT, or a .schem or .nbt file.")
+    ]
+    out: Annotated[Path, typer.Option("-o", "--out", help="Scenario file to write.")]
+    box: Annotated[
+        tuple[int, int, int, int, int, int] | None,
+        typer.Option(help="For a server: two corners of the place, X1 Y1 Z1 X2 Y2 Z2."),
+    ] = None
+    at: Annotated[
+        tuple[int, int, int] | None,
+        typer.Option(help="For a file: position of its lowest corner, X Y Z; default 0 0 0."),
+    ] = None
+    name: Annotated[
+        str | None, typer.Option(help="Name of the scenario; default: the name of its file.")
+    ] = None
+
+
+@dataclass(frozen=True, slots=True)
+class ExportOptions:
+    """Options of `beliefnest export`."""
+
+    run: Annotated[Path, typer.Argument(help="Run folder or run file.")]
+    out: Annotated[Path, typer.Option(help="Folder to write; it must not exist.")]
+    format: Annotated[str, typer.Option(help="Format of the tables: jsonl or parquet.")] = "jsonl"
+    path: Annotated[
+        list[str] | None,
+        typer.Option(help="Belief path whose states are written over time; can be repeated."),
+    ] = None
+
+
+@dataclass(frozen=True, slots=True)
+class SuiteOptions:
+    """Options of `beliefnest suite`."""
+
+    name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom, stories, food-trucks.")]
+    data: Annotated[Path, typer.Option(help="File of stories and questions, or of films.")]
+    world: Annotated[str, typer.Option(help="World in which the stories play.")] = "scripted"
+    rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None
+    limit: Annotated[int | None, typer.Option(help="Most stories or films to play.")] = None
+    seed: Annotated[int, typer.Option(help="Seed of all random numbers.")] = 0
+    claims_from: Annotated[
+        str | None, typer.Option(help="Model that extracts claims from utterances.")
+    ] = None
+    out: Annotated[Path | None, typer.Option(help="Folder for the figure and tables of films.")] = (
+        None
+    )
+    json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
+class StudyOptions:
+    """Options of `beliefnest study`."""
+
+    study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Study folder; an interrupted or enlarged study continues in it."),
+    ] = None
+    jobs: Annotated[int, typer.Option(help="Cells to play in parallel.", min=1)] = 2
+    backend: Annotated[
+        str, typer.Option(help="loky: processes on this machine; dask or ray: a cluster.")
+    ] = "loky"
+    shard: Annotated[
+        str | None, typer.Option(help="Play only this part of the study, as I/N, such as 1/4.")
+    ] = None
+    merge: Annotated[
+        list[Path] | None,
+        typer.Option(help="Folder of a shard whose cells are copied first; can be repeated."),
+    ] = None
+    record: Annotated[bool, typer.Option(help="Record the runs in OUT/runs.")] = False
+    claims_from: Annotated[
+        str | None, typer.Option(help="Model that extracts claims from utterances.")
+    ] = None
+    by: Annotated[
+        list[str] | None,
+        typer.Option(metavar="COLUMN", help="Group rows by this column; can be repeated."),
+    ] = None
+    json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
+class StatsOptions:
+    """Options of `beliefnest stats`."""
+
+    study: Annotated[Path, typer.Argument(help="Folder of a study.")]
+    by: Annotated[
+        list[str] | None,
+        typer.Option(metavar="COLUMN", help="Group rows by this column; can be repeated."),
+    ] = None
+    between: Annotated[
+        list[str] | None,
+        typer.Option(metavar="COLUMN", help="Compare its values in pairs; can be repeated."),
+    ] = None
+    effect: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="COLUMN",
+            help="Fit a regression on this column (A:B: interaction); can be repeated.",
+        ),
+    ] = None
+    kind: Annotated[
+        Literal["gee", "mixed"], typer.Option(help="Kind of regression; variations are groups.")
+    ] = "gee"
+    family: Annotated[
+        Literal["binomial", "gaussian"],
+        typer.Option(help="binomial: log odds; gaussian: differences of accuracies."),
+    ] = "binomial"
+    positions: Annotated[
+        bool, typer.Option("--positions", help="Count chosen options by their position.")
+    ] = False
+    json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
+class PowerOptions:
+    """Options of `beliefnest power`."""
+
+    study: Annotated[
+        Path, typer.Argument(help="YAML file of a study to plan, or folder of one to draw from.")
+    ]
+    size: Annotated[
+        list[int] | None,
+        typer.Option(help="Number of variations; can be repeated.", min=1),
+    ] = None
+    accuracy: Annotated[float | None, typer.Option(help="Assumed accuracy; default: 0.8.")] = None
+    difference: Annotated[
+        float | None, typer.Option(help="Assumed difference of accuracy; default: 0.1.")
+    ] = None
+    correlation: Annotated[
+        float | None,
+        typer.Option(help="Assumed correlation of rows of one variation; default: 0.3."),
+    ] = None
+    between: Annotated[
+        str | None, typer.Option(metavar="COLUMN", help="Column whose values are compared.")
+    ] = None
+    simulations: Annotated[int, typer.Option(help="Simulated studies of each size.", min=1)] = 400
+    seed: Annotated[int, typer.Option(help="Seed of the simulations.", min=0)] = 0
+    json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
+class PlayOptions:
+    """Options of `beliefnest play`."""
+
+    task: Annotated[
+        str | None, typer.Argument(help="Built-in task or scenario, or a file of either.")
+    ] = None
+    agent: Annotated[
+        list[str] | None,
+        typer.Option(help="Policy of an agent, such as anne=search:1; can be repeated."),
+    ] = None
+    set: Annotated[
+        list[str] | None,
+        typer.Option(help="Size of a task, or parameter of a scenario, as agents=3; repeatable."),
+    ] = None
+    condition: Annotated[int | None, typer.Option(help="Condition of the scenario.")] = None
+    rounds: Annotated[int | None, typer.Option(help="Limit of rounds.", min=0)] = None
+    seed: Annotated[
+        int, typer.Option(help="Instance of the task, and seed of all random numbers.")
+    ] = 0
+    world: Annotated[str, typer.Option(help="World in which the episode plays.")] = "scripted"
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the run; an interrupted episode continues in it."),
+    ] = None
+    max_ticks: Annotated[int | None, typer.Option(help="Limit of ticks.", min=1)] = None
+    max_tokens: Annotated[int | None, typer.Option(help="Limit of model tokens.", min=1)] = None
+    max_cost: Annotated[float | None, typer.Option(help="Limit of US dollars.", min=0)] = None
+    patience: Annotated[
+        float | None, typer.Option(help="Seconds after which a policy loses its round.")
+    ] = None
+    measure_help: Annotated[
+        bool, typer.Option("--measure-help", help="Print the help needed, given and superfluous.")
+    ] = False
+    listen: Annotated[
+        str | None,
+        typer.Option(help="Address for people to join: PORT of this machine, or HOST:PORT."),
+    ] = None
+    export: Annotated[
+        Path | None, typer.Option(help="Write the task to this scenario file; do not play it.")
+    ] = None
+    baselines: Annotated[
+        bool, typer.Option("--baselines", help="Play the task, or all tasks, with all baselines.")
+    ] = False
+    seeds: Annotated[int, typer.Option(help="Instances of each task, for --baselines.")] = 50
+    jobs: Annotated[int, typer.Option(help="Episodes in parallel, for --baselines.", min=1)] = 1
+    page: Annotated[Path | None, typer.Option(help="Markdown file to write, for --baselines.")] = (
+        None
+    )
+    json: Json = False
