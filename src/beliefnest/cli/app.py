@@ -4,7 +4,7 @@ import errno
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
 
@@ -14,12 +14,12 @@ from beliefnest.cli.options import (
     Json,
     PlayOptions,
     PowerOptions,
+    RunOptions,
     ServeOptions,
     ShowOptions,
     StatsOptions,
     StudyOptions,
     SuiteOptions,
-    joining_address,
     with_options,
 )
 from beliefnest.cli.terminal_text import printable
@@ -45,8 +45,6 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-Cache = Literal["read", "write", "off"]
 
 
 def run_command_line(arguments: Sequence[str]) -> int:
@@ -121,107 +119,19 @@ def common(
 
 
 @app.command()
-def run(
-    scenario: Annotated[str, typer.Argument(help="A built-in name, or a scenario file.")],
-    condition: Annotated[
-        list[int] | None, typer.Option(help="Run only this condition; can be repeated.")
-    ] = None,
-    world: Annotated[
-        str, typer.Option(help="World: embedded, scripted, or minecraft://HOST:PORT.")
-    ] = "embedded",
-    overwrite: Annotated[
-        bool,
-        typer.Option(
-            "--overwrite", help="Replace what stands in the box on the server for the run."
-        ),
-    ] = False,
-    realtime: Annotated[
-        bool, typer.Option("--realtime", help="Play in real time, so that people can join.")
-    ] = False,
-    listen: Annotated[
-        str | None,
-        typer.Option(help="Address for people to join: PORT or HOST:PORT; default: 25565."),
-    ] = None,
-    embody: Annotated[
-        list[str] | None,
-        typer.Option(help="Let people visit this belief until you press Enter; can be repeated."),
-    ] = None,
-    model: Annotated[
-        str, typer.Option(help="Model: offline, PROVIDER:MODEL, replay:FILE or scripted:FILE.")
-    ] = "offline",
-    models: Annotated[
-        str | None, typer.Option(help="Several models, separated by commas, instead of --model.")
-    ] = None,
-    repeat: Annotated[int, typer.Option(help="Runs of each condition with each model.")] = 1,
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Run folder to write; an interrupted run continues in it."),
-    ] = None,
-    seed: Annotated[
-        int, typer.Option(help="Seed of all random numbers; each further repeat adds 1.")
-    ] = 0,
-    cache: Annotated[
-        Cache, typer.Option(help="Cached answers: use and store them, only store them, or neither.")
-    ] = "read",
-    answers: Annotated[
-        Path | None, typer.Option(help="Folder of cached answers; default OUT/answers.")
-    ] = None,
-    max_tokens: Annotated[
-        int,
-        typer.Option(
-            help="Token limit of the whole run; the default does not count free models.",
-            min=1,
-        ),
-    ] = 1_000_000,
-    max_cost: Annotated[
-        float, typer.Option(help="Cost limit of the whole run in US dollars.", min=0)
-    ] = 5.0,
-    temperature: Annotated[
-        float, typer.Option(help="Sampling temperature; 0: the likeliest answer.")
-    ] = 0.0,
-    attempts: Annotated[
-        int,
-        typer.Option(
-            help="Most answers for one probe; a failed program is sent back to the model."
-        ),
-    ] = 3,
-    claims_from: Annotated[
-        str | None,
-        typer.Option(help="Model that extracts claims from utterances; default: none."),
-    ] = None,
-    json: Json = False,
-) -> int:
+@with_options(RunOptions)
+def run(options: RunOptions) -> int:
     """Play a scenario, track the beliefs, ask the model, and judge the results."""
     from contextlib import nullcontext
 
     from beliefnest.cli.ahead import ahead
-    from beliefnest.worlds.names import world_name
-    from beliefnest.worlds.servers.address import overwriting
 
-    named = world_name(world, realtime=realtime, listen=joining_address(listen))
     # A folder may have all results already; then no world is needed.
-    begun = out is not None and out.exists()
-    with nullcontext() if begun else ahead(named, seed) as launch:
-        from beliefnest.cli.run import ModelOptions, RunOptions, run_scenarios
-        from beliefnest.llm.budget import RunLimits
+    begun = options.out is not None and options.out.exists()
+    with nullcontext() if begun else ahead(options.full_world, options.seed) as launch:
+        from beliefnest.cli.run import run_scenarios
 
-        limits = RunLimits(max_tokens, max_cost)
-        return run_scenarios(
-            RunOptions(
-                scenario=scenario,
-                conditions=tuple(condition or ()),
-                world=overwriting(named) if overwrite else named,
-                models=tuple(models.split(",")) if models is not None else (model,),
-                repeat=repeat,
-                out=out,
-                seed=seed,
-                as_json=json,
-                asking=ModelOptions(cache, answers, limits, attempts, temperature),
-                claims_from=claims_from,
-                embody=tuple(embody or ()),
-            ),
-            launch,
-        )
+        return run_scenarios(options, launch)
 
 
 @app.command()

@@ -18,6 +18,7 @@ __all__ = [
     "Json",
     "PlayOptions",
     "PowerOptions",
+    "RunOptions",
     "ServeOptions",
     "ShowOptions",
     "StatsOptions",
@@ -30,6 +31,7 @@ __all__ = [
 Options = TypeVar("Options")
 Status = TypeVar("Status")
 
+Cache = Literal["read", "write", "off"]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 
@@ -54,6 +56,115 @@ def with_options(
 def joining_address(listen: str | None) -> str | None:
     """Return the address at which people join; a port alone is on this machine."""
     return f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """Options of `beliefnest run`."""
+
+    scenario: Annotated[str, typer.Argument(help="A built-in name, or a scenario file.")]
+    condition: Annotated[
+        list[int] | None, typer.Option(help="Run only this condition; can be repeated.")
+    ] = None
+    world: Annotated[
+        str, typer.Option(help="World: embedded, scripted, or minecraft://HOST:PORT.")
+    ] = "embedded"
+    overwrite: Annotated[
+        bool,
+        typer.Option(
+            "--overwrite", help="Replace what stands in the box on the server for the run."
+        ),
+    ] = False
+    realtime: Annotated[
+        bool, typer.Option("--realtime", help="Play in real time, so that people can join.")
+    ] = False
+    listen: Annotated[
+        str | None,
+        typer.Option(help="Address for people to join: PORT or HOST:PORT; default: 25565."),
+    ] = None
+    embody: Annotated[
+        list[str] | None,
+        typer.Option(help="Let people visit this belief until you press Enter; can be repeated."),
+    ] = None
+    model: Annotated[
+        str, typer.Option(help="Model: offline, PROVIDER:MODEL, replay:FILE or scripted:FILE.")
+    ] = "offline"
+    models: Annotated[
+        str | None, typer.Option(help="Several models, separated by commas, instead of --model.")
+    ] = None
+    repeat: Annotated[int, typer.Option(help="Runs of each condition with each model.")] = 1
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Run folder to write; an interrupted run continues in it."),
+    ] = None
+    seed: Annotated[
+        int, typer.Option(help="Seed of all random numbers; each further repeat adds 1.")
+    ] = 0
+    cache: Annotated[
+        Cache, typer.Option(help="Cached answers: use and store them, only store them, or neither.")
+    ] = "read"
+    answers: Annotated[
+        Path | None, typer.Option(help="Folder of cached answers; default OUT/answers.")
+    ] = None
+    max_tokens: Annotated[
+        int,
+        typer.Option(
+            help="Token limit of the whole run; the default does not count free models.",
+            min=1,
+        ),
+    ] = 1_000_000
+    max_cost: Annotated[
+        float, typer.Option(help="Cost limit of the whole run in US dollars.", min=0)
+    ] = 5.0
+    temperature: Annotated[
+        float, typer.Option(help="Sampling temperature; 0: the likeliest answer.")
+    ] = 0.0
+    attempts: Annotated[
+        int,
+        typer.Option(
+            help="Most answers for one probe; a failed program is sent back to the model."
+        ),
+    ] = 3
+    claims_from: Annotated[
+        str | None,
+        typer.Option(help="Model that extracts claims from utterances; default: none."),
+    ] = None
+    json: Json = False
+
+    @property
+    def named_models(self) -> tuple[str, ...]:
+        """Return the names of the models that play."""
+        return (self.model,) if self.models is None else tuple(self.models.split(","))
+
+    @property
+    def asked_models(self) -> tuple[str, ...]:
+        """Return the names of all models that the run may ask, each once."""
+        more = () if self.claims_from is None else (self.claims_from,)
+        return tuple(dict.fromkeys((*self.named_models, *more)))
+
+    @property
+    def full_world(self) -> str:
+        """Return the name of the world with the address to join and the permission to build."""
+        from beliefnest.worlds.names import world_name
+        from beliefnest.worlds.servers.address import overwriting
+
+        listen = joining_address(self.listen)
+        named = world_name(self.world, realtime=self.realtime, listen=listen)
+        return overwriting(named) if self.overwrite else named
+
+    @property
+    def settings(self) -> dict[str, object]:
+        """Return the settings that affect results, for the record."""
+        return {
+            "conditions": list(dict.fromkeys(self.condition or ())),
+            "world": self.full_world,
+            "models": list(self.named_models),
+            "repeat": self.repeat,
+            "seed": self.seed,
+            "attempts": self.attempts,
+            "temperature": self.temperature,
+            **({} if self.claims_from is None else {"claims_from": self.claims_from}),
+        }
 
 
 @dataclass(frozen=True, slots=True)

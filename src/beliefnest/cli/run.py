@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any, Literal
@@ -19,6 +19,7 @@ from beliefnest.cli.accounts import accounts
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
+from beliefnest.cli.options import RunOptions
 from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.report import (
     OutcomeRow,
@@ -33,7 +34,6 @@ from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
 from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import RunLimits, RunSpending
-from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, check_model, open_model
@@ -49,7 +49,7 @@ from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.names import check_world
 
-__all__ = ["ModelOptions", "RunOptions", "run_scenarios"]
+__all__ = ["run_scenarios"]
 
 _MOST_TIMES = 10_000
 """Greatest number of repeats, and of attempts for one probe."""
@@ -57,76 +57,6 @@ _HOTTEST = 10.0
 """Greatest temperature; more than any provider accepts."""
 
 Status = Literal["running", "done", "failed", "interrupted"]
-
-
-@dataclass(frozen=True, slots=True)
-class ModelOptions:
-    """Options of requests to models.
-
-    Attributes:
-        cache: Use of cached answers.
-        answers: Folder of cached answers; None: the folder `answers` in the run folder.
-        limits: Limits of tokens and cost of the whole run.
-        attempts: Greatest number of requests for one probe.
-        temperature: Sampling temperature; None: the provider's default.
-    """
-
-    cache: CacheMode = "read"
-    answers: Path | None = None
-    limits: RunLimits = field(default_factory=RunLimits)
-    attempts: int = 3
-    temperature: float | None = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class RunOptions:
-    """Options of `beliefnest run`.
-
-    Attributes:
-        scenario: Name or path of the scenario.
-        conditions: Numbers of the conditions to run; empty: all.
-        world: Name of the world.
-        models: Names of the models.
-        repeat: Number of runs of each condition with each model.
-        out: Run folder; None: a new one in `runs`.
-        seed: Seed of every random number; each further repeat adds 1.
-        as_json: Print the report as JSON instead of a table.
-        asking: Options of requests to models.
-        claims_from: Name of the model that extracts claims from utterances; None: no extraction.
-        embody: Belief paths of the simulators that people can visit.
-    """
-
-    scenario: str
-    conditions: tuple[int, ...]
-    world: str
-    models: tuple[str, ...]
-    repeat: int
-    out: Path | None
-    seed: int
-    as_json: bool
-    asking: ModelOptions
-    claims_from: str | None = None
-    embody: tuple[str, ...] = ()
-
-    @property
-    def settings(self) -> dict[str, object]:
-        """Return the settings that affect results, for the record."""
-        return {
-            "conditions": list(dict.fromkeys(self.conditions)),
-            "world": self.world,
-            "models": list(self.models),
-            "repeat": self.repeat,
-            "seed": self.seed,
-            "attempts": self.asking.attempts,
-            "temperature": self.asking.temperature,
-            **({} if self.claims_from is None else {"claims_from": self.claims_from}),
-        }
-
-    @property
-    def named_models(self) -> tuple[str, ...]:
-        """Return the names of all models that the run may ask, each once."""
-        more = () if self.claims_from is None else (self.claims_from,)
-        return tuple(dict.fromkeys((*self.models, *more)))
 
 
 def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
@@ -144,10 +74,10 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
             the condition that asked it; the error is raised after all conditions have run.
     """
     scenarios = _scenarios(options)
-    check_world(options.world)
-    check_visits(options.embody, options.world)
+    check_world(options.full_world)
+    check_visits(options.embody or (), options.full_world)
     _check_numbers(options)
-    for name in options.named_models:
+    for name in options.asked_models:
         check_model(name, os.environ, _connection(options, RunSpending(), options.out))
     first = scenarios[0]
     settings = options.settings
@@ -157,7 +87,7 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
     )
     folder = RunFolder.open(options.out, datetime.now(), settings, whole)
     run = _Run(options, folder)
-    cells = plan_run_cells(scenarios, options.models, options.repeat, options.seed)
+    cells = plan_run_cells(scenarios, options.named_models, options.repeat, options.seed)
     status: Status = "failed"
     try:
         with Worlds(options.seed, launch=launch) as worlds:
@@ -176,7 +106,7 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
         report["scores"] = scores_json(score_runs(run.results, run.failures))
         folder.write_report(report)
         folder.write_page(_page(report, options, first))
-    _print(run, cells, report, as_json=options.as_json)
+    _print(run, cells, report, as_json=options.json)
     if run.failures:
         raise ModelError(_failures_text(run.failures, len(cells), folder))
     return 0 if all(result["ok"] for result in run.results) else 1
@@ -185,8 +115,7 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
 def _connection(options: RunOptions, budget: RunSpending, folder: Path | None) -> Connection:
     """Return the connection to models; the cache is in the run folder unless another is named."""
     kept = None if folder is None else RunFolder(folder).answers
-    asking = options.asking
-    return Connection(budget=budget, cache=asking.answers or kept, cache_mode=asking.cache)
+    return Connection(budget=budget, cache=options.answers or kept, cache_mode=options.cache)
 
 
 class _Run:
@@ -195,12 +124,12 @@ class _Run:
     def __init__(self, options: RunOptions, folder: RunFolder) -> None:
         self._options = options
         self.folder = folder
-        self.budget = RunSpending(options.asking.limits)
+        self.budget = RunSpending(RunLimits(options.max_tokens, options.max_cost))
         connection = replace(
             _connection(options, self.budget, folder.path), record=folder.exchanges
         )
         self._models = {
-            name: open_model(name, os.environ, connection) for name in options.named_models
+            name: open_model(name, os.environ, connection) for name in options.asked_models
         }
         self.rows: list[OutcomeRow] = []
         self.pictures: list[ConditionPicture] = []
@@ -249,19 +178,19 @@ class _Run:
         name = self._options.claims_from
         if name is None:
             return None
-        temperature = self._options.asking.temperature
+        temperature = self._options.temperature
         return claims_from_model(self._models[name], Sampling(temperature, seed))
 
 
 def _scenarios(options: RunOptions) -> tuple[Scenario, ...]:
     try:
-        return _loaded(options.scenario, options.conditions)
+        return _loaded(options.scenario, options.condition or ())
     except ScenarioError:
         # An interrupted run continues with the scenario file that its folder keeps.
         kept = kept_scenario_file(options.out, options.scenario)
         if kept is None:
             raise
-    return _loaded(str(kept), options.conditions)
+    return _loaded(str(kept), options.condition or ())
 
 
 def _loaded(name_or_path: str, conditions: Sequence[int]) -> tuple[Scenario, ...]:
@@ -271,13 +200,12 @@ def _loaded(name_or_path: str, conditions: Sequence[int]) -> tuple[Scenario, ...
 
 
 def _check_numbers(options: RunOptions) -> None:
-    asking = options.asking
     for name, number, low, high in (
         ("--repeat", options.repeat, 1, _MOST_TIMES),
-        ("--attempts", asking.attempts, 1, _MOST_TIMES),
-        ("--max-tokens", asking.limits.tokens, 0, math.inf),
-        ("--max-cost", asking.limits.cost, 0, math.inf),
-        ("--temperature", asking.temperature, 0, _HOTTEST),
+        ("--attempts", options.attempts, 1, _MOST_TIMES),
+        ("--max-tokens", options.max_tokens, 0, math.inf),
+        ("--max-cost", options.max_cost, 0, math.inf),
+        ("--temperature", options.temperature, 0, _HOTTEST),
     ):
         # Written so that NaN is refused, too.
         if number is not None and not low <= number <= high:
@@ -285,7 +213,8 @@ def _check_numbers(options: RunOptions) -> None:
             raise InputError(f"{name} is {number}; it must be {above}")
     checked_seed(options.seed, "--seed")
     checked_seed(options.seed + options.repeat, "--seed with --repeat")
-    twice = [name for name in options.models if options.models.count(name) > 1]
+    models = options.named_models
+    twice = [name for name in models if models.count(name) > 1]
     if twice:
         raise InputError(f"the model {twice[0]} is named twice; use --repeat to ask it again")
 
@@ -299,15 +228,15 @@ def _run(
     worlds: Worlds,
 ) -> ConditionPicture:
     scenario = cell.scenario
-    asking = Asking(options.asking.attempts, Sampling(options.asking.temperature, cell.seed))
+    asking = Asking(options.attempts, Sampling(options.temperature, cell.seed))
     started = time.perf_counter()
     with (
         progress_on(cell.title) as on_progress,
         Nest.open(
-            scenario, options.world, place.store, cell.seed, worlds, claims_from=claims_from
+            scenario, options.full_world, place.store, cell.seed, worlds, claims_from=claims_from
         ) as nest,
     ):
-        with visited(nest, options.embody):
+        with visited(nest, options.embody or ()):
             outcome = run_scenario(nest, scenario, model, cell.seed, started, on_progress, asking)
         for number, probe in enumerate(outcome.probes, start=1):
             place.write_probe(number, probe)
