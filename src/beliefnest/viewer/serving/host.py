@@ -11,11 +11,9 @@ from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.viewer.page.reasons import explanation_of, look_of, sight_of
 from beliefnest.viewer.page.run import About, RunData
-from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.paths import BeliefPath, parse_path, path_text
 
 __all__ = ["Host", "OpenRun"]
-
-Path_ = tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +124,7 @@ class Host:
             self._opened.clear()
             self._data.clear()
 
-    def _named(self, run: int, on: int, path: str) -> tuple[Reader, TimelineKey, Path_]:
+    def _named(self, run: int, on: int, path: str) -> tuple[Reader, TimelineKey, BeliefPath]:
         if not 0 <= run < len(self._data):
             raise InputError(f"no run number {run}; there are {len(self._data)}")
         keys = self._data[run].keys()

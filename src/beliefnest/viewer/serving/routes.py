@@ -116,22 +116,12 @@ def page_app(
     routes = [
         Route("/", lambda request: _page(runs)),
         Route("/api/live", live),
-        Route(
-            "/api/explain",
-            _answer(lambda q: runs.explain(*_place(q), *_when(q), _text(q, "thing"))),
-        ),
+        Route("/api/explain", _answer(lambda q: runs.explain(*_moment(q), _text(q, "thing")))),
         Route(
             "/api/look",
-            _answer(
-                lambda q: _told(
-                    runs.look(*_place(q), *_when(q), _text(q, "viewer"), _text(q, "thing"))
-                )
-            ),
+            _answer(lambda q: _told(runs.look(*_moment(q), _text(q, "viewer"), _text(q, "thing")))),
         ),
-        Route(
-            "/api/sight",
-            _answer(lambda q: _told(runs.sight(*_place(q), *_when(q), _text(q, "viewer")))),
-        ),
+        Route("/api/sight", _answer(lambda q: _told(runs.sight(*_moment(q), _text(q, "viewer"))))),
         Route("/api/deepen", _answer(lambda q: _told(runs.deepen(*_place(q))))),
     ]
     guard = Middleware(Guard, hosts=addresses, token=token)
@@ -192,8 +182,8 @@ def _place(query: Mapping[str, str]) -> tuple[int, int, str]:
     return _number(query, "run"), _number(query, "on"), _text(query, "path")
 
 
-def _when(query: Mapping[str, str]) -> tuple[int]:
-    return (_number(query, "tick"),)
+def _moment(query: Mapping[str, str]) -> tuple[int, int, str, int]:
+    return (*_place(query), _number(query, "tick"))
 
 
 def _text(query: Mapping[str, str], name: str) -> str:
