@@ -70,6 +70,16 @@ def test_a_story_is_told_from_the_view_of_the_mind(nest):
     )
 
 
+@pytest.mark.usefixtures("kept_worlds")
+def test_bots_in_minecraft_make_the_same_story(nest, tmp_path):
+    # There the opening of a chest and its first use fall into one tick.
+    (tmp_path / "lie.yaml").write_text(SCENE)
+    with bn.Nest.open(bn.Scenario.load(str(tmp_path / "lie.yaml")), "embedded") as opened:
+        opened.play()
+        for path in ("/", "/lia", "/tom", "/lia/wim"):
+            assert story(opened, path) == story(nest, path)
+
+
 def test_a_mind_is_told_only_what_it_observed(nest):
     wim = story(nest, "/wim", question="Where?")
     assert "Tom opened" not in wim

@@ -142,14 +142,33 @@ class _Observer:
             return
         if told[0].kind is not EventKind.MOVE_TO:
             yield from self._changes(tick - 1, before)
-        for event in told:
+        after = self._scene(forest)
+        for number, event in enumerate(told):
             self._moved(event)
             yield Happened(tick, event)
-        after = self._scene(forest)
+            if event.kind is EventKind.OPEN_CONTAINER and event.actor == self._owner:
+                yield from self._opened(tick, event, told[number + 1 :], after)
         if told[-1].kind is EventKind.MOVE_TO:
             yield from self._changes(tick, after)
         else:
             yield from self._findings(tick, after)
+
+    def _opened(
+        self, tick: int, opening: PerceivedEvent, later: Sequence[PerceivedEvent], after: _Scene
+    ) -> Iterator[Observation]:
+        """Yield the contents at an opening: those of the tick's end, without its later moves."""
+        place = opening.detail["position"]
+        if place not in after.contents:
+            return
+        held = dict(after.contents[place])
+        for event in later:
+            if event.kind.traits.stores and event.detail.get("position") == place:
+                for name, count in event.detail.get("items", {}).items():
+                    held[name] = held.get(name, 0) - event.kind.traits.stores * count
+        held = {name: count for name, count in held.items() if count > 0}
+        if self._contents.get(place) != held:
+            self._contents[place] = held
+            yield Found(tick, place, dict(held))
 
     def _moved(self, event: PerceivedEvent) -> None:
         """Follow the known contents through an event."""
