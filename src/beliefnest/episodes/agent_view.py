@@ -206,6 +206,14 @@ class AgentView:
         ]
 
     @property
+    def spoken(self) -> Mapping[str, frozenset[str]]:
+        """Return all texts that the agent heard so far, its own too, by speaker."""
+        found: dict[str, set[str]] = {}
+        for _, speaker, text in self.state.chat:
+            found.setdefault(speaker, set()).add(text)
+        return {speaker: frozenset(texts) for speaker, texts in found.items()}
+
+    @property
     def claims(self) -> Sequence[tuple[int, str, Claim]]:
         """Claims that others made in its hearing, oldest first: tick, speaker, claim."""
         return [each for each in self._own.heard_claims if each[1] != self.agent]

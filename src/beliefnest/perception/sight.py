@@ -189,6 +189,12 @@ class Geometry:
         seer = self._eye(eye, yaw, pitch)
         return eye_loops.seen_blocks(self._scene, seer, cells, shadows.no_shadows())
 
+    def has_free_line(self, eye: Point, position: Position) -> bool:
+        """Return True if an eye that looks straight at the middle of a block sees the block."""
+        x, y, z = (part + 0.5 - at for part, at in zip(position, eye, strict=True))
+        yaw, pitch = math.atan2(-x, -z), math.atan2(y, math.hypot(x, z))
+        return bool(self.sees_blocks(eye, yaw, pitch, [position])[0])
+
     def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
         """Return a mask of the visible points among `points` (n, 3): bool (n,).
 

@@ -1,6 +1,6 @@
 """Candidate acts of an agent: calls of skills with arguments that it believes to exist."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from beliefnest.belief.conditions import Fact, agrees
 from beliefnest.episodes.policies.distance import MindFacts
@@ -11,6 +11,7 @@ from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_open
 from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.values import Position
+from beliefnest.worlds.scripted.hand import cell_of
 
 __all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
 
@@ -59,10 +60,19 @@ def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> I
                 yield Claim.block(place, registry.text(state))
 
 
-def is_news(mind: Imagination, claim: Claim, speaker: str) -> bool:
-    """Return True if the speaker believes that another agent does not believe a claim yet."""
+def is_news(
+    mind: Imagination, claim: Claim, speaker: str, hearers: Iterable[str] | None = None
+) -> bool:
+    """Return True if the speaker believes that a hearer does not believe a claim yet.
+
+    Args:
+        mind: Belief of the speaker.
+        claim: The claim.
+        speaker: Name of the speaker.
+        hearers: Names of agents; None: all whose places the speaker knows.
+    """
     registry, box = Registry.load(), mind.world.box
-    for other in mind.world.agents:
+    for other in mind.world.agents if hearers is None else hearers:
         if other == speaker or not mind.knows((other,)):
             continue
         view = mind.view((other,))
@@ -95,6 +105,7 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
     wanted = {fact.store for fact in _facts(goals)}
     named, facts = [*items_of(goals), *_materials(mind, agent, goals)], MindFacts(mind)
     removed = {item for fact in _facts(goals) for item in fact.removed(agent, facts)}
+    seen = mind.seen_by(agent) if mine and others else {}
     for item in [*named, *sorted(removed - {*named})]:
         for place, items in near:
             if items.get(item, 0):
@@ -106,7 +117,11 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
             if place in wanted or any(mind.may_reach(other, place) for other in others):
                 yield Call("depositItemIntoChest", (place, {item: 1}))
         for other in others:
-            yield Call("giveItemToOther", (other, item, 1))
+            # Only an agent in sight can be given something; go first to where another one may be.
+            if other in seen:
+                yield Call("giveItemToOther", (other, item, 1))
+            else:
+                yield Call("goToPosition", (cell_of(world.agents[other].position), 2))
 
 
 def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:

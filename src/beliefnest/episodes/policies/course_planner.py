@@ -9,7 +9,7 @@ takes statements about containers by agents with a different goal for lies. It e
 on beliefs down to k levels below its own belief.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from beliefnest.episodes.agent_view import Brief
@@ -128,14 +128,16 @@ class Planner:
 
     Args:
         brief: Common knowledge about the task.
+        spoken: Texts that were said so far, by speaker.
 
     Attributes:
         tried: Number of branches tried so far.
         guesses: Cache of the assumed plans of other agents, by their assumed beliefs.
     """
 
-    def __init__(self, brief: Brief) -> None:
+    def __init__(self, brief: Brief, spoken: Mapping[str, Collection[str]] | None = None) -> None:
         self._brief = brief
+        self.spoken = spoken or {}
         self.tried = 0
         self.guesses: dict[tuple[object, ...], tuple[Call, ...]] = {}
 
@@ -147,6 +149,8 @@ class Planner:
         ticks: int,
         bounds: Bounds,
         before: Sequence[Call] | None = None,
+        *,
+        idle: bool = False,
     ) -> FoundPlan:
         """Return the best plan found; of equal plans, the first and shortest.
 
@@ -158,8 +162,9 @@ class Planner:
             bounds: Bounds of the search.
             before: Calls of another course that the agent has begun, which it goes on with for a
                 round first; None: the plan begins at once.
+            idle: True if the others do nothing until they perceive something new.
         """
-        return self._planning(agent, order, ticks, bounds).best(mind, before)
+        return self._planning(agent, order, ticks, bounds).best(mind, before, idle=idle)
 
     def outcome(
         self,
@@ -199,14 +204,16 @@ class _Planning:
         self._speaks = agent in brief.talk and order > 0
         self._doubted: frozenset[Position] = frozenset()
 
-    def best(self, mind: Imagination, before: Sequence[Call] | None = None) -> FoundPlan:
-        mind, first = self._begun(mind)
+    def best(
+        self, mind: Imagination, before: Sequence[Call] | None = None, *, idle: bool = False
+    ) -> FoundPlan:
+        mind, first = self._begun(mind, idle=idle)
         if before is not None:
             self._spend_round(first, before)
         self._value(first)
         best, beam = first, [first]
         for _ in range(self._bounds.depth):
-            if best.score[0] == REACHED and not best.calls:
+            if best.score[0] == REACHED and not best.calls and not best.others:
                 break
             found = [each for node in beam for each in self._expanded(node)]
             found.sort(key=lambda node: node.score)
@@ -215,9 +222,11 @@ class _Planning:
                 break
             if beam[0].score < best.score:
                 best = beam[0]
-        if not best.calls and best.score[0] == OPEN:
-            return FoundPlan(self._exploring(mind), best.score)
-        return FoundPlan(best.calls, best.score)
+        if best.score[0] != OPEN:
+            return FoundPlan(best.calls, best.score)
+        if told := self._telling(mind):
+            return FoundPlan((told,), best.score)
+        return FoundPlan(best.calls or self._exploring(mind), best.score)
 
     def outcome(self, mind: Imagination, calls: Sequence[Call]) -> Score:
         """Return the score of a course, which ends with the first call that cannot be done."""
@@ -233,14 +242,16 @@ class _Planning:
         self._value(node)
         return node.score
 
-    def _begun(self, mind: Imagination) -> tuple[Imagination, _Node]:
+    def _begun(self, mind: Imagination, *, idle: bool = False) -> tuple[Imagination, _Node]:
         """Return the world that the agent believes in, and the course without actions."""
         if self._order and self._opponents:
             # A planner of order 1 or more does not believe what its opponents claim.
             mind, self._doubted = mind.doubting(self._opponents)
         first = _Node(mind.fork() if self._order else mind.bare(), {})
         first.others = {
-            name: _Course(Performer(self._guess(mind, name, 0)), 0, self._bounds.changes)
+            name: _Course(
+                Performer(() if idle else self._guess(mind, name, 0)), 0, self._bounds.changes
+            )
             for name in self._imagined(mind)
         }
         if self._is_reached(first.mind):
@@ -416,6 +427,23 @@ class _Planning:
             if self._succeeds(mind, call):
                 return (call,)
         return ()
+
+    def _telling(self, mind: Imagination) -> Call | None:
+        """Return something true that agents with the same goal do not know; None: there is nothing.
+
+        No course reaches the goal as far as the agent can imagine the others. But one may plan
+        better that learns where things are, also an agent whose place is unknown.
+        """
+        most = self._goal.messages
+        if not self._speaks or self._opponents or most is not None:
+            return None
+        before = self._planner.spoken.get(self._agent, ())
+        hearers = [name for name in self._brief.agents if name != self._agent]
+        for claim in claims_of_mind(mind, list(self._brief.goals.values()), lies=False):
+            call = said(claim)
+            if call.args[0] not in before and is_news(mind, claim, self._agent, hearers):
+                return call
+        return None
 
     def _succeeds(self, mind: Imagination, call: Call) -> bool:
         """Return True if the agent, left alone in a mind, can do a call."""

@@ -91,7 +91,7 @@ class Expecting:
         for share, names in found:
             goals = {agent: brief.possible_goals[agent][name] for agent, name in names.items()}
             supposed = brief.supposing(goals)
-            planner = Planner(supposed)
+            planner = Planner(supposed, self._view.spoken)
             minds = _completed(mind, supposed, self._view.agent, self._order)
             for each in minds:
                 yield _Supposition(share / total / len(minds), planner, supposed, each)

@@ -27,11 +27,26 @@ class Search:
         if view.brief.hides_goals:
             return Expecting(view, self.order, self.bounds).program(uniform(view.brief))
         mind = view.imagine(self.order)
-        planner = Planner(view.brief)
+        planner = Planner(view.brief, view.spoken)
         # The search imagines a scripted world, in which a block on foot takes one tick.
         ticks = view.ticks_left // view.brief.pace
         plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds)
+        if not plan.calls and self.order and _has_waited_in_vain(view):
+            plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds, idle=True)
         return program_of(plan.calls)
+
+
+def _has_waited_in_vain(view: AgentView) -> bool:
+    """Return True if an agent let others act in its last round, and perceived no act of theirs.
+
+    Agents that each leave the same task to the others would otherwise wait for one another.
+    """
+    since = view.tick - view.brief.whole_round
+    return (
+        bool(view.before)
+        and not any(view.before[-1:])
+        and not any(event.tick > since and event.actor != view.agent for event in view.state.events)
+    )
 
 
 @dataclass(frozen=True)

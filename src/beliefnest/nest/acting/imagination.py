@@ -19,11 +19,12 @@ from beliefnest.belief.initial import forked_forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.nest.past.embodiable import embodiable, with_chests
-from beliefnest.skills.calls import Call
+from beliefnest.perception.sight import Geometry, Sight
+from beliefnest.skills.calls import OPEN_CONTAINER, Call
 from beliefnest.world.frames import BlockGrid, Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Event, Position
+from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
 from beliefnest.worlds.scripted.skills import perform
@@ -85,6 +86,7 @@ class Imagination:
         world: The world with the believed state.
         grounds: Cache of walkable ground by blocks, shared by forks.
         news: Events for the forest.
+        sight: Options of sight.
         speech_ticks: Ticks that an agent needs to say something.
 
     Attributes:
@@ -102,6 +104,7 @@ class Imagination:
         world: ScriptedWorld,
         grounds: dict[bytes, Ground],
         news: _News,
+        sight: Sight,
         speech_ticks: int = 0,
     ) -> None:
         self.root = root
@@ -111,7 +114,9 @@ class Imagination:
         self._unknown = unknown
         self._grounds = grounds
         self._ground: tuple[BlockGrid, Ground] | None = None
+        self._geometry: tuple[BlockGrid, Geometry] | None = None
         self._news = news
+        self._sight = sight
         self._speech_ticks = speech_ticks
         self._columns: Columns | None = None
         self._held = 0
@@ -151,7 +156,8 @@ class Imagination:
         world = ScriptedWorld.from_snapshot(replace(possible, tick=tick))
         known = {} if grounds is None else grounds
         speech = source.context.options.speech_ticks if speech_ticks is None else speech_ticks
-        return cls(forest, root, believed.blocks < 0, world, known, news, speech)
+        sight = source.context.sight
+        return cls(forest, root, believed.blocks < 0, world, known, news, sight, speech)
 
     @property
     def tick(self) -> int:
@@ -174,6 +180,21 @@ class Imagination:
             return False
         x, y, z = (math.floor(value) for value in state.position)
         return self._standing().with_doors_opened.may_lead((x, y, z), InReach(place, REACH))
+
+    def seen_by(self, agent: str) -> Mapping[str, AgentState]:
+        """Return the other agents that an agent of this world sees at the latest tick."""
+        agents = self.world.agents
+        others = {name: state for name, state in agents.items() if name != agent}
+        if agent not in agents or not others:
+            return {}
+        x, y, z = agents[agent].position
+        seen = self._looking().sees_agents(
+            (x, y + EYE_HEIGHT, z),
+            agents[agent].yaw,
+            agents[agent].pitch,
+            [state.position for state in others.values()],
+        )
+        return {name: others[name] for name, is_seen in zip(others, seen, strict=True) if is_seen}
 
     def knows(self, path: BeliefPath) -> bool:
         """Return True if the beliefs of a path below the root are followed."""
@@ -234,6 +255,7 @@ class Imagination:
             self.world.again(),
             self._grounds,
             news,
+            self._sight,
             self._speech_ticks,
         )
         made.happened += self.happened
@@ -314,10 +336,12 @@ class Imagination:
                 name,
                 self.world,
                 known=self._standing,
-                others=lambda: self.world.agents,
+                others=lambda: self.seen_by(name),
                 signs=lambda: self.world.signs,
                 ground=self._standing,
                 speech_ticks=self._speech_ticks,
+                # Other skills walk to where the line is free; their walks need not know the place.
+                has_free_line=self._has_free_line if call.skill == OPEN_CONTAINER.name else None,
             )
             try:
                 doing = perform(hand, call)
@@ -342,6 +366,15 @@ class Imagination:
                 self._grounds[key] = Ground(Registry.load(), self.world.box, grid)
             self._ground = (blocks, self._grounds[key])
         return self._ground[1]
+
+    def _has_free_line(self, eye: Point, block: Position) -> bool:
+        return self._looking().has_free_line(eye, block)
+
+    def _looking(self) -> Geometry:
+        blocks = self.world.blocks
+        if self._geometry is None or self._geometry[0] is not blocks:
+            self._geometry = (blocks, self._sight.geometry(blocks, self.world.box.low))
+        return self._geometry[1]
 
     def _take(self, frame: Frame) -> None:
         if frame.is_empty:

@@ -1,6 +1,5 @@
 """Percepts and memories of an agent, tick by tick, for its program."""
 
-import math
 from collections.abc import Callable
 
 from beliefnest.belief.node_view import NodeView
@@ -103,10 +102,7 @@ class Sensing:
         )
 
         def has_free_line(eye: Point, block: Position) -> bool:
-            away = tuple(part + 0.5 - at for part, at in zip(block, eye, strict=True))
-            yaw = math.atan2(-away[0], -away[2])
-            pitch = math.atan2(away[1], math.hypot(away[0], away[2]))
-            return bool(seen.geometry.sees_blocks(eye, yaw, pitch, [block])[0])
+            return seen.geometry.has_free_line(eye, block)
 
         return Sensed(
             self._blocks(seen, entries), agents, dict(seen.items), heard, seen.signs, has_free_line
