@@ -151,6 +151,7 @@ class Planner:
         before: Sequence[Call] | None = None,
         *,
         idle: bool = False,
+        avoided: Collection[str] = (),
     ) -> FoundPlan:
         """Return the best plan found; of equal plans, the first and shortest.
 
@@ -163,8 +164,10 @@ class Planner:
             before: Calls of another course that the agent has begun, which it goes on with for a
                 round first; None: the plan begins at once.
             idle: True if the others do nothing until they perceive something new.
+            avoided: Programs of calls that the plan does not begin with.
         """
-        return self._planning(agent, order, ticks, bounds).best(mind, before, idle=idle)
+        planning = self._planning(agent, order, ticks, bounds)
+        return planning.best(mind, before, idle=idle, avoided=avoided)
 
     def outcome(
         self,
@@ -203,10 +206,17 @@ class _Planning:
         self._opponents = [n for n, goal in brief.goals.items() if goal.differs(self._goal)]
         self._speaks = agent in brief.talk and order > 0
         self._doubted: frozenset[Position] = frozenset()
+        self._avoided: Collection[str] = ()
 
     def best(
-        self, mind: Imagination, before: Sequence[Call] | None = None, *, idle: bool = False
+        self,
+        mind: Imagination,
+        before: Sequence[Call] | None = None,
+        *,
+        idle: bool = False,
+        avoided: Collection[str] = (),
     ) -> FoundPlan:
+        self._avoided = avoided
         mind, first = self._begun(mind, idle=idle)
         if before is not None:
             self._spend_round(first, before)
@@ -296,6 +306,8 @@ class _Planning:
             return []
         found = []
         for call in self._calls(node.mind):
+            if not node.calls and call.program in self._avoided:
+                continue
             following = node.fork()
             mine = Performer([call])
             self._act(following, mine)

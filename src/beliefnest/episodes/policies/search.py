@@ -9,6 +9,9 @@ from beliefnest.skills.calls import program_of
 
 __all__ = ["Omniscient", "Search"]
 
+_FAILED = ("failed", "no_way")
+"""Ends of programs after which their first call is not repeated at once."""
+
 
 @dataclass(frozen=True)
 class Search:
@@ -30,7 +33,9 @@ class Search:
         planner = Planner(view.brief, view.spoken)
         # The search imagines a scripted world, in which a block on foot takes one tick.
         ticks = view.ticks_left // view.brief.pace
-        plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds)
+        # What has just failed in the same way would fail again.
+        avoided = view.last.program.splitlines()[:1] if view.last.how in _FAILED else ()
+        plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds, avoided=avoided)
         if not plan.calls and self.order and _has_waited_in_vain(view):
             plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds, idle=True)
         return program_of(plan.calls)

@@ -87,6 +87,7 @@ class Imagination:
         grounds: Cache of walkable ground by blocks, shared by forks.
         news: Events for the forest.
         sight: Options of sight.
+        start: Agents that the believer does not see at the start, and all agents' feet then.
         speech_ticks: Ticks that an agent needs to say something.
 
     Attributes:
@@ -105,6 +106,7 @@ class Imagination:
         grounds: dict[bytes, Ground],
         news: _News,
         sight: Sight,
+        start: tuple[frozenset[str], Mapping[str, Point]],
         speech_ticks: int = 0,
     ) -> None:
         self.root = root
@@ -117,6 +119,7 @@ class Imagination:
         self._geometry: tuple[BlockGrid, Geometry] | None = None
         self._news = news
         self._sight = sight
+        self._unseen, self._feet = start
         self._speech_ticks = speech_ticks
         self._columns: Columns | None = None
         self._held = 0
@@ -157,7 +160,9 @@ class Imagination:
         known = {} if grounds is None else grounds
         speech = source.context.options.speech_ticks if speech_ticks is None else speech_ticks
         sight = source.context.sight
-        return cls(forest, root, believed.blocks < 0, world, known, news, sight, speech)
+        unseen = frozenset(name for name, each in believed.agents.items() if not each.current)
+        start = (unseen, {name: state.position for name, state in world.agents.items()})
+        return cls(forest, root, believed.blocks < 0, world, known, news, sight, start, speech)
 
     @property
     def tick(self) -> int:
@@ -187,12 +192,14 @@ class Imagination:
         others = {name: state for name, state in agents.items() if name != agent}
         if agent not in agents or not others:
             return {}
+        if self.root[-1:] == (agent,):
+            others = {name: state for name, state in others.items() if not self._is_lost(name)}
         x, y, z = agents[agent].position
         seen = self._looking().sees_agents(
             (x, y + EYE_HEIGHT, z),
             agents[agent].yaw,
             agents[agent].pitch,
-            [state.position for state in others.values()],
+            np.array([state.position for state in others.values()]).reshape(-1, 3),
         )
         return {name: others[name] for name, is_seen in zip(others, seen, strict=True) if is_seen}
 
@@ -256,6 +263,7 @@ class Imagination:
             self._grounds,
             news,
             self._sight,
+            (self._unseen, self._feet),
             self._speech_ticks,
         )
         made.happened += self.happened
@@ -366,6 +374,13 @@ class Imagination:
                 self._grounds[key] = Ground(Registry.load(), self.world.box, grid)
             self._ground = (blocks, self._grounds[key])
         return self._ground[1]
+
+    def _is_lost(self, name: str) -> bool:
+        """Return True if the believer does not see an agent, and neither of them has moved."""
+        if name not in self._unseen:
+            return False
+        agents = self.world.agents
+        return all(agents[each].position == self._feet.get(each) for each in (name, self.root[-1]))
 
     def _has_free_line(self, eye: Point, block: Position) -> bool:
         return self._looking().has_free_line(eye, block)
