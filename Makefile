@@ -1,13 +1,16 @@
-# Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[dev]"`.
-.PHONY: help test nightly check format schema notices picture notebooks pages baselines docs links bench ci
+# Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[ci]"`.
+.PHONY: help test rest nightly check format schema notices picture notebooks pages baselines docs links bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
 
 NODE = $(shell python -c 'from beliefnest.worlds.minecraft.node_files import node_path; print(node_path())')
 
-test: ## The tests, as CI runs them
+test: ## The tests of a day
 	pytest
+
+rest: ## The tests that CI runs besides: see the marks in CONTRIBUTING.md
+	pytest -m ci
 
 nightly: ## All that CI does, with every Python, Ray, and many more examples, kills and damages; takes hours
 	BELIEFNEST_NIGHTLY=1 .ci/run

@@ -5,12 +5,14 @@ import signal
 
 import pytest
 from hypothesis import HealthCheck, settings
+from tests.browsing import browser, chromium
+from tests.marks import add_ci, require_packages
 from tests.profiles import NIGHTLY
 from tests.shared_worlds import kept_worlds, lent
 from tests.sharing import ByFile, rank
 from xdist.remote import Producer
 
-__all__ = ["kept_worlds", "lent"]
+__all__ = ["browser", "chromium", "kept_worlds", "lent"]
 
 _SLOW_TO_MAKE = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
@@ -41,6 +43,15 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> ByFile 
     return ByFile(config, log) if config.getoption("dist") == "loadfile" else None
 
 
+# First, so that `-m` finds the mark.
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with what takes longest, so that at the end no process waits for another."""
+    for item in items:
+        add_ci(item)
     items.sort(key=lambda item: rank(item.nodeid))
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Find out what a test lacks before its fixtures do."""
+    require_packages(item)

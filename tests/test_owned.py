@@ -277,7 +277,6 @@ def test_imagined_histories_are_refused() -> None:
 
 
 def test_environments_are_refused() -> None:
-    pytest.importorskip("pettingzoo", reason="the extra `pettingzoo` is not installed")
     from beliefnest.adapters.pettingzoo import parallel_env
 
     env = parallel_env("sally-anne", world="scripted")

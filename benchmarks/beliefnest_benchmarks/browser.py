@@ -6,14 +6,13 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
-
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
-from selenium.webdriver.common.by import By
-from selenium.webdriver.remote.webelement import WebElement
+from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import BodyError
+
+if TYPE_CHECKING:  # Selenium is optional, and imported when a browser is opened.
+    from selenium import webdriver
+    from selenium.webdriver.remote.webelement import WebElement
 
 __all__ = ["CHROMIUM", "DRIVER", "Browser", "opened_browser"]
 
@@ -40,7 +39,7 @@ _DRIVER_TALK = "GL Driver Message"
 class Browser:
     """One browser window, with logs of its requests and console messages."""
 
-    def __init__(self, driver: webdriver.Chrome) -> None:
+    def __init__(self, driver: "webdriver.Chrome") -> None:
         self.driver = driver
 
     def open(self, address: str) -> None:
@@ -76,10 +75,10 @@ class Browser:
                 )
             time.sleep(0.02)
 
-    def one(self, selector: str) -> WebElement:
+    def one(self, selector: str) -> "WebElement":
         """Wait for the element of a selector, and return it."""
         found: list[WebElement] = self.until(
-            lambda: self.driver.find_elements(By.CSS_SELECTOR, selector)
+            lambda: self.driver.find_elements("css selector", selector)
         )
         return found[0]
 
@@ -110,6 +109,9 @@ class Browser:
 @contextmanager
 def opened_browser(profile: Path) -> Iterator[Browser]:
     """Open a browser with an empty profile."""
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
     options = webdriver.ChromeOptions()
     options.binary_location = CHROMIUM or ""
     for flag in (*_FLAGS, f"--user-data-dir={profile}"):

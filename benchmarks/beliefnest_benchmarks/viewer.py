@@ -1,5 +1,6 @@
 """Benchmarks of the page: size, loading time, scrubbing rate, and delay of the live page."""
 
+import importlib.util
 import math
 import random
 import subprocess
@@ -10,7 +11,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING
 
 from beliefnest.cli.page import PageOptions, write_page
 from beliefnest.errors import BodyError, InputError
@@ -18,10 +18,8 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.worlds.scripted.world import ScriptedWorld
+from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, Browser, opened_browser
 from beliefnest_benchmarks.figures import Metric
-
-if TYPE_CHECKING:  # Selenium is only in the extra `dev`.
-    from beliefnest_benchmarks.browser import Browser
 
 __all__ = ["measure"]
 
@@ -64,12 +62,10 @@ def measure() -> Sequence[Metric]:
     Raises:
         InputError: There is no browser to measure in.
     """
-    try:
-        from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, opened_browser
-    except ImportError:
+    if importlib.util.find_spec("selenium") is None:
         raise InputError(
             "bench viewer needs selenium to drive a browser: run `pip install selenium`"
-        ) from None
+        )
     if CHROMIUM is None or DRIVER is None:
         raise InputError("bench viewer needs chromium and chromedriver: install them first")
     with tempfile.TemporaryDirectory() as folder:
@@ -140,7 +136,7 @@ class _Walk:
                 self.world.place_agent(name, self._feet[name], self._yaws[name])
 
 
-def _late(place: Path, browser: "Browser") -> float:
+def _late(place: Path, browser: Browser) -> float:
     """Return milliseconds from the end of a call that changes the world until the page shows it."""
     store = place / "live.bn"
     delays: list[float] = []

@@ -1,10 +1,14 @@
 """The notebooks of the docs run from end to end, and show drawings."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import nbclient
-import nbformat
 import pytest
+
+if TYPE_CHECKING:
+    import nbformat
+
+pytestmark = pytest.mark.extra("ipykernel", "nbclient", "nbformat")
 
 DRAWINGS = {"tutorial": 3, "study": 1, "food_trucks": 4}
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs" / "notebooks").glob("*.ipynb"))
@@ -13,6 +17,9 @@ NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs" / "notebooks").glob("*.ip
 @pytest.mark.parametrize("file", NOTEBOOKS, ids=lambda file: file.stem)
 @pytest.mark.filterwarnings("ignore")  # of Jupyter's own libraries
 def test_every_cell_runs_and_shows_what_the_file_shows(file: Path, tmp_path: Path) -> None:
+    import nbclient
+    import nbformat
+
     stored, notebook = (nbformat.read(file, as_version=4) for _ in range(2))
     resources = {"metadata": {"path": str(tmp_path)}}
     nbclient.NotebookClient(notebook, timeout=300, resources=resources).execute()
@@ -24,12 +31,12 @@ def test_every_cell_runs_and_shows_what_the_file_shows(file: Path, tmp_path: Pat
     assert any("<svg" in "".join(data.values()) for data in _shown(stored))
 
 
-def _shown(notebook: nbformat.NotebookNode) -> list[nbformat.NotebookNode]:
+def _shown(notebook: "nbformat.NotebookNode") -> list["nbformat.NotebookNode"]:
     """Return what cells show, of each kind of output that has data."""
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     return [out.data for cell in cells for out in cell.outputs if "data" in out]
 
 
-def _words(notebook: nbformat.NotebookNode) -> list[str]:
+def _words(notebook: "nbformat.NotebookNode") -> list[str]:
     """Return what cells show, without drawings."""
     return [data["text/plain"] for data in _shown(notebook) if "text/plain" in data]

@@ -244,6 +244,7 @@ OTHERS = [
 ]
 
 
+@pytest.mark.extra("anthropic", "google.genai")
 @pytest.mark.parametrize(("name", "url_variable", "key_variable", "path"), OTHERS)
 def test_other_protocols_are_spoken(fake, clock, name, url_variable, key_variable, path):
     fake.will(fake.says_as(name.partition(":")[0], PROGRAM), fake.fails(401))
@@ -270,3 +271,13 @@ def test_the_missing_extra_is_named(fake, clock, monkeypatch):
     monkeypatch.setitem(sys.modules, "pydantic_ai", None)
     with pytest.raises(ModelError, match=r"pip install 'beliefnest\[llm\]'"):
         model(fake, clock).answer(ASK, Sampling())
+
+
+def test_the_extra_is_named_where_the_package_of_one_provider_is_missing(fake, clock, monkeypatch):
+    for name in ("anthropic", "pydantic_ai.models.anthropic", "pydantic_ai.providers.anthropic"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.setitem(sys.modules, "anthropic", None)
+    own = {"ANTHROPIC_BASE_URL": fake.url, "ANTHROPIC_API_KEY": KEY}
+    asked = resolve_model("anthropic:some-claude", own, clock=clock)
+    with pytest.raises(ModelError, match=r"pip install 'beliefnest\[llm\]'"):
+        asked.answer(ASK, Sampling())

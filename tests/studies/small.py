@@ -41,3 +41,11 @@ def study_in(folder: Path, text: str) -> Path:
     file = folder / "study.yaml"
     file.write_text(text, encoding="utf-8")
     return file
+
+
+def tables_of(folder: Path) -> dict[str, bytes]:
+    """Return the tables in a folder of a study; there is a Parquet file only with pyarrow."""
+    names = ("rows.csv", "rows.parquet", "study.html")
+    found = {name: (folder / name).read_bytes() for name in names if (folder / name).exists()}
+    assert len(found) > 1
+    return found

@@ -6,6 +6,8 @@ import pytest
 
 from beliefnest.studies.accuracy_figure import plot_accuracy
 
+pytestmark = pytest.mark.extra("matplotlib")
+
 LONG = "compatible:a-model-with-a-long-name"
 MANY = [f"openai:gpt-{number}" for number in range(14)]
 

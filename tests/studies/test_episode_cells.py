@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.studies.small import tables_of
 
 import beliefnest as bn
 from beliefnest import frames
@@ -56,10 +57,9 @@ def write_into(folder: Path) -> None:
 
 
 def files_of(folder: Path) -> list[bytes]:
-    names = ("rows.csv", "rows.parquet", "study.html")
     cells = sorted(folder.glob("cells/*.json"))
     assert len(cells) == CELLS
-    return [(folder / name).read_bytes() for name in names] + [c.read_bytes() for c in cells]
+    return [*tables_of(folder).values(), *(cell.read_bytes() for cell in cells)]
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +101,7 @@ def test_one_row_for_each_episode(whole: Path) -> None:
     assert set(frames.cells_df(whole)["player"]) == {"search", "program:idle.js", taken}
 
 
+@pytest.mark.extra("matplotlib")
 def test_summaries_have_intervals_and_differences_are_of_pairs(whole: Path) -> None:
     result = bn.StudyResult.read(whole)
     summary = result.summary().set_index("policy")

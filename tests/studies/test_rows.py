@@ -85,10 +85,12 @@ def test_templates_are_compared_within_each_order_and_variation(tmp_path: Path) 
     assert "<th>variations</th><th>pairs</th>" in page and "<td>order 2</td>" in page
 
 
+@pytest.mark.extra("statsmodels")
 @pytest.mark.filterwarnings("ignore::FutureWarning")
 def test_models_of_statsmodels_are_fitted_to_the_frame(result: bn.StudyResult) -> None:
-    models = pytest.importorskip("statsmodels.formula.api", reason="statsmodels is not installed")
-    api = pytest.importorskip("statsmodels.api", reason="statsmodels is not installed")
+    from statsmodels import api
+    from statsmodels.formula import api as models
+
     frame = result.frame()
     # Not every value of a column decides about the result.
     frame["right"] = frame["ok"].astype(float).where(frame.index % 5 > 0, 1 - frame["ok"])
@@ -120,6 +122,7 @@ def test_all_data_frames_have_plain_types(result: bn.StudyResult) -> None:
     assert frame["copy_of"].iloc[0] is None
 
 
+@pytest.mark.extra("pyarrow")
 def test_files_keep_types_and_are_read_as_plain_ones(result: bn.StudyResult) -> None:
     table, parquet = result.write_tables()
     with table.open(encoding="utf-8", newline="") as opened:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 from tests.profiles import at_night
-from tests.studies.small import SMALL, small_in, study_in
+from tests.studies.small import SMALL, small_in, study_in, tables_of
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
@@ -35,10 +35,6 @@ CELLS = 6
 
 def cells_of(folder):
     return {file.name: file.read_bytes() for file in Path(folder, "cells").glob("*.json")}
-
-
-def tables_of(folder):
-    return [Path(folder, name).read_bytes() for name in ("rows.csv", "rows.parquet", "study.html")]
 
 
 @pytest.fixture(scope="module")
@@ -85,11 +81,13 @@ def test_invalid_combinations_are_listed(whole):
     assert all("'spot[0] + spot[2] < 10' does not hold" in each["why"] for each in invalid)
 
 
-@pytest.mark.parametrize("backend", ["loky", "dask", "ray"])
+BACKENDS = [pytest.param("loky"), pytest.param("dask", marks=pytest.mark.extra("distributed"))]
+if importlib.util.find_spec("ray") is not None:  # at night only
+    BACKENDS.append(pytest.param("ray", marks=pytest.mark.extra("ray")))
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
 def test_the_same_bytes_with_two_jobs(whole, backend, tmp_path):
-    module = {"loky": "joblib", "dask": "distributed", "ray": "ray"}[backend]
-    if importlib.util.find_spec(module) is None:
-        pytest.skip(f'{module} is not installed: pip install "beliefnest[{backend}]"')
     out, file = tmp_path / "out", whole[1]
     command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out", str(out)]
     subprocess.run([*command, "--jobs", "2", "--backend", backend], check=True)

@@ -98,7 +98,8 @@ def jsonl(out, table):
 
 
 def parquet(out, table):
-    pq = pytest.importorskip("pyarrow.parquet", reason="the extra parquet is not installed")
+    from pyarrow import parquet as pq
+
     objects = [name for name, kind in TABLES[table].items() if kind == "object"]
     rows = pq.read_table(out / f"{table}.parquet").to_pylist()
     for row in rows:
@@ -106,10 +107,12 @@ def parquet(out, table):
     return rows
 
 
-@pytest.fixture(params=FORMATS)
+def needing(name):
+    return pytest.param(name, marks=pytest.mark.extra("pyarrow") if name == "parquet" else ())
+
+
+@pytest.fixture(params=[needing(name) for name in FORMATS])
 def written(request, journal, registry, first, tmp_path):
-    if request.param == "parquet":
-        pytest.importorskip("pyarrow", reason="the extra parquet is not installed")
     out = tmp_path / "out"
     counts = export(
         journal,

@@ -89,7 +89,8 @@ class RemoteModel:
 
     def _answered(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Ask once; the result and the error may still contain secrets."""
-        _require_library()
+        with _requiring_library():
+            import pydantic_ai  # noqa: F401
         from pydantic_ai.exceptions import AgentRunError, UserError
 
         try:
@@ -150,12 +151,15 @@ class RemoteModel:
             raise UnusableAnswerError(_too_slow(self), _guessed_usage(self, messages, received))
 
 
-def _require_library() -> None:
+@contextmanager
+def _requiring_library() -> Iterator[None]:
     try:
-        import pydantic_ai  # noqa: F401
+        yield
     except ImportError as error:
+        # The library itself tells of packages of single providers without their names.
+        missing = "" if error.name is None else f" ({error.name} is missing)"
         raise ModelError(
-            f"models of providers need the extra 'llm' ({error.name} is missing): "
+            f"models of providers need the extra 'llm'{missing}: "
             "pip install 'beliefnest[llm]', or run with --model offline"
         ) from None
 
@@ -187,6 +191,7 @@ def _run(ask: Callable[[], Coroutine[Any, Any, Answer]]) -> Answer:
         return pool.submit(lambda: asyncio.run(ask())).result()
 
 
+@_requiring_library()
 def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") -> "ChatModel":
     key, url = endpoint.key.value, endpoint.address
     match endpoint.provider.protocol:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("inspect_ai", reason="the extra `inspect` is not installed")
+pytestmark = pytest.mark.extra("inspect_ai")
 
 GUIDE = Path(__file__).parents[3] / "docs" / "inspect.md"
 

@@ -8,12 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pettingzoo.test import parallel_api_test, parallel_seed_test
 
 import beliefnest as bn
 from beliefnest.env import parallel_env
-
-pytest.importorskip("pettingzoo", reason="the extra `pettingzoo` is not installed")
-from pettingzoo.test import parallel_api_test, parallel_seed_test
 
 LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
 

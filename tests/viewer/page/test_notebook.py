@@ -3,16 +3,11 @@
 from pathlib import Path
 from typing import Any
 
-import nbclient
-import nbformat
 import pytest
 
-from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, opened_browser
+from beliefnest_benchmarks.browser import Browser
 
-pytestmark = pytest.mark.skipif(
-    CHROMIUM is None or DRIVER is None,
-    reason="the page is tested in Chromium: apt-get install chromium chromium-driver",
-)
+pytestmark = pytest.mark.extra("ipykernel", "nbclient", "nbformat")
 
 BEFORE = """
 import beliefnest as bn
@@ -36,7 +31,10 @@ AFTER = 'world.withdraw("anne", (3, 1, 3), {"diamond": 1})'
 
 
 @pytest.mark.filterwarnings("ignore")  # of Jupyter's own libraries
-def test_a_cell_shows_the_page_of_the_nest_as_it_was_then(tmp_path: Path) -> None:
+def test_a_cell_shows_the_page_of_the_nest_as_it_was_then(tmp_path: Path, browser: Browser) -> None:
+    import nbclient
+    import nbformat
+
     (tmp_path / "idle.txt").write_text("")
     cells = [BEFORE, "nest.view(height=640)", AFTER, "nest.view()", "print(repr(nest.view(1)))"]
     cells.append(EPISODE)
@@ -47,27 +45,26 @@ def test_a_cell_shows_the_page_of_the_nest_as_it_was_then(tmp_path: Path) -> Non
     assert (
         printed.outputs[0].text == "<page of 'scripted', beliefs to depth 1; a notebook shows it>\n"
     )
-    with opened_browser(tmp_path / "profile") as browser:
 
-        def shown_in(cell: Any) -> None:
-            (shown,) = cell.outputs
-            assert "a notebook shows it" in shown.data["text/plain"]
-            file = tmp_path / "cell.html"
-            file.write_text(f"<!doctype html><body>{shown.data['text/html']}", encoding="utf-8")
-            browser.driver.get(file.as_uri())
-            browser.driver.switch_to.frame(browser.one("iframe"))
-            browser.until_script("return document.documentElement.dataset.ready")
+    def shown_in(cell: Any) -> None:
+        (shown,) = cell.outputs
+        assert "a notebook shows it" in shown.data["text/plain"]
+        file = tmp_path / "cell.html"
+        file.write_text(f"<!doctype html><body>{shown.data['text/html']}", encoding="utf-8")
+        browser.driver.get(file.as_uri())
+        browser.driver.switch_to.frame(browser.one("iframe"))
+        browser.until_script("return document.documentElement.dataset.ready")
 
-        for cell, false in ((first, False), (second, True)):
-            shown_in(cell)
-            browser.click("[data-node='0 /sally']")
-            browser.one("[data-node='0 /sally'].chosen")
-            told = browser.script("return document.body.innerText")
-            assert ("sally puts 1 diamond into (3, 1, 3)" in told, "1 false" in told) == (
-                True,
-                false,
-            )
-            assert browser.complaints() == []
-        shown_in(episode)
-        # Its rounds are listed.
-        assert browser.one(".begins strong").text == "Round 1"
+    for cell, false in ((first, False), (second, True)):
+        shown_in(cell)
+        browser.click("[data-node='0 /sally']")
+        browser.one("[data-node='0 /sally'].chosen")
+        told = browser.script("return document.body.innerText")
+        assert ("sally puts 1 diamond into (3, 1, 3)" in told, "1 false" in told) == (
+            True,
+            false,
+        )
+        assert browser.complaints() == []
+    shown_in(episode)
+    # Its rounds are listed.
+    assert browser.one(".begins strong").text == "Round 1"

@@ -12,12 +12,7 @@ import pytest
 from beliefnest.cli.page import PageOptions, write_page
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, Browser, opened_browser
-
-pytestmark = pytest.mark.skipif(
-    CHROMIUM is None or DRIVER is None,
-    reason="the page is tested in Chromium: apt-get install chromium chromium-driver",
-)
+from beliefnest_benchmarks.browser import Browser
 
 ROOT = Path(__file__).parents[3]
 AXE = ROOT / "src/beliefnest/viewer/page/web/node_modules/axe-core/axe.min.js"
@@ -27,12 +22,6 @@ STORIES = {
     "help-sally": (None, "/anne/sally", "anne puts 1 diamond into the right chest"),
     "ice-cream-van": (1, "/observer/john/mary", None),
 }
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    with opened_browser(tmp_path_factory.mktemp("profile")) as opened:
-        yield opened
 
 
 @pytest.fixture(scope="module")

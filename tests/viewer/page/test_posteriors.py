@@ -12,7 +12,7 @@ import beliefnest as bn
 from beliefnest.cli.page import about_run
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.page.posteriors import told_inference
-from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, opened_browser
+from beliefnest_benchmarks.browser import Browser
 
 CLICK = """
 const chart = document.querySelector('.posterior figure > svg')
@@ -52,32 +52,27 @@ def test_the_page_is_told_what_the_inference_answers(court: tuple[bn.Nest, bn.In
     assert text.startswith("moves from (4, 1, 0)")
 
 
-@pytest.mark.skipif(
-    CHROMIUM is None or DRIVER is None,
-    reason="the page is tested in Chromium: apt-get install chromium chromium-driver",
-)
 def test_a_click_on_a_moment_shows_what_changed(
-    court: tuple[bn.Nest, bn.Inference], tmp_path: Path
+    court: tuple[bn.Nest, bn.Inference], tmp_path: Path, browser: Browser
 ) -> None:
     nest, inference = court
     file = tmp_path / "page.html"
     file.write_text(nest.view(inference=inference, steps=2).page, encoding="utf-8")
-    with opened_browser(tmp_path / "profile") as browser:
-        browser.open(file.as_uri())
-        assert texts(browser, ".posterior h3") == ["wants: mean utility, in steps"]
-        browser.script(CLICK, 0.6)  # within the third of four ticks
-        browser.until(lambda: "up to tick 2" in browser.one(".posterior .about").text)
-        (change,) = texts(browser, ".changes li")
-        assert change.startswith("bob moves from (4, 1, 0) to (3, 1, 0): utility.left ")
-        shown = [word for word in texts(browser, ".posterior .legend li") if "left" in word]
-        assert shown == [f" left {inference.mean('utility.left', 2):.1f}"]
-        expected = inference.predict(2, 2)[-1]
-        heats = [share for share in expected.values() if share >= 0.005]
-        assert len(texts(browser, ".heat")) == len(heats)
-        browser.click("[data-view=space]")
-        browser.until(lambda: not texts(browser, ".heat"))
-        assert_accessible(browser)
-        assert_clean(browser, file.as_uri())
+    browser.open(file.as_uri())
+    assert texts(browser, ".posterior h3") == ["wants: mean utility, in steps"]
+    browser.script(CLICK, 0.6)  # within the third of four ticks
+    browser.until(lambda: "up to tick 2" in browser.one(".posterior .about").text)
+    (change,) = texts(browser, ".changes li")
+    assert change.startswith("bob moves from (4, 1, 0) to (3, 1, 0): utility.left ")
+    shown = [word for word in texts(browser, ".posterior .legend li") if "left" in word]
+    assert shown == [f" left {inference.mean('utility.left', 2):.1f}"]
+    expected = inference.predict(2, 2)[-1]
+    heats = [share for share in expected.values() if share >= 0.005]
+    assert len(texts(browser, ".heat")) == len(heats)
+    browser.click("[data-view=space]")
+    browser.until(lambda: not texts(browser, ".heat"))
+    assert_accessible(browser)
+    assert_clean(browser, file.as_uri())
 
 
 def test_the_page_of_a_run_has_the_inferences_of_its_probes(tmp_path: Path) -> None:

@@ -1,6 +1,5 @@
 """The page of an episode in a real browser: rounds, who did what, the goal, branches at a round."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import beliefnest as bn
 from beliefnest.cli.page import PageOptions, write_page
 from beliefnest.episodes.policies import Scripted
 from beliefnest.episodes.telling import told_episode
-from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, Browser, opened_browser
+from beliefnest_benchmarks.browser import Browser
 
 TASK: dict[str, Any] = {
     "name": "fetch",
@@ -58,14 +57,6 @@ def test_a_run_without_rounds_tells_of_none(tmp_path: Path) -> None:
     scenario = bn.Scenario.from_mapping(TASK["scenario"])
     with bn.Nest.open(scenario, world="scripted", store=tmp_path / "run.bn") as nest:
         assert told_episode(nest) is None
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    if CHROMIUM is None or DRIVER is None:
-        pytest.skip("the page is tested in Chromium: apt-get install chromium chromium-driver")
-    with opened_browser(tmp_path_factory.mktemp("profile")) as opened:
-        yield opened
 
 
 def texts(browser: Browser, selector: str) -> list[str]:

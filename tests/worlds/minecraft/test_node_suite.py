@@ -14,6 +14,9 @@ FILES = sorted(path.relative_to(NODE_ROOM) for path in (NODE_ROOM / "test").rglo
 TOGETHER = () if NIGHTLY else ("places", "plugins", "sandbox", "skills")
 """Folders whose files run in one process by day: most of what a file takes is Node's beginning."""
 
+LONG = ("fuzz", "people", "tcp")
+"""Folders whose tests wait for real time or vary at random what the others try."""
+
 
 def runs() -> dict[str, list[Path]]:
     """Name of each run of Node to the files in it."""
@@ -24,6 +27,11 @@ def runs() -> dict[str, list[Path]]:
     return found
 
 
+def is_long(name: str) -> bool:
+    """Return whether the files wait for real time or vary what others try."""
+    return name.split("/")[1] in LONG
+
+
 SECONDS = at_night(7200, 300)
 
 
@@ -32,7 +40,13 @@ def test_there_are_javascript_tests() -> None:
     assert (NODE_ROOM / "node_modules").is_dir(), "install them with `pip install -e '.[dev]'`"
 
 
-@pytest.mark.parametrize(("name", "files"), runs().items(), ids=list(runs()))
+@pytest.mark.parametrize(
+    ("name", "files"),
+    [
+        pytest.param(name, files, id=name, marks=pytest.mark.long if is_long(name) else ())
+        for name, files in runs().items()
+    ],
+)
 def test_javascript(name: str, files: list[Path]) -> None:
     apart = "none" if len(files) > 1 else "process"
     ended = subprocess.run(

@@ -109,7 +109,7 @@ def acted_by_a_person(scenario, world, **options):
         return contents(nest), {e.kind for e in nest["/"].state.events if e.actor == "anne"}
 
 
-@pytest.mark.parametrize("condition", [1, 3])
+@pytest.mark.parametrize("condition", [1, pytest.param(3, marks=pytest.mark.long)])
 def test_a_person_moves_the_diamond_and_all_believe_as_if_a_bot_had(condition, scenario, server):
     with Nest.open(Scenario.load("sally-anne", condition), "embedded") as nest:
         nest.play()
@@ -122,6 +122,7 @@ def test_a_person_moves_the_diamond_and_all_believe_as_if_a_bot_had(condition, s
         assert hosted == as_with_bots
 
 
+@pytest.mark.long
 def test_what_a_person_does_on_a_server_becomes_the_same_actions(server, tmp_path):
     path = tmp_path / "workshop.yaml"
     path.write_text(WORKSHOP, encoding="utf-8")
@@ -157,6 +158,7 @@ def test_what_a_person_does_on_a_server_becomes_the_same_actions(server, tmp_pat
             assert nest.people == {"anne"}
 
 
+@pytest.mark.long
 def test_who_leaves_stands_there_until_they_come_back(scenario, tmp_path):
     heard = []
     with Nest.open(scenario(1), realtime=True, listen=0, store=tmp_path / "run.bn") as nest:
@@ -185,6 +187,7 @@ def test_who_leaves_stands_there_until_they_come_back(scenario, tmp_path):
         assert nest["/observer/sally"].state.containers[LEFT].items == {"diamond": 1}
 
 
+@pytest.mark.long
 def test_only_who_is_awaited_comes_in_and_acts(scenario):
     act = "await goToPosition(bot, new Vec3(0, -51, 0))"
     with Nest.open(scenario(1), realtime=True, listen=0) as nest:
@@ -213,6 +216,7 @@ def test_only_who_is_awaited_comes_in_and_acts(scenario):
             assert anne.left() == "The run is over"
 
 
+@pytest.mark.long
 def test_nothing_is_done_while_time_stands_still(scenario):
     with Nest.open(scenario(1), realtime=True, listen=0) as nest:
         with (
@@ -327,7 +331,10 @@ OUT_OF_SIGHT = "bot.chat('A secret.'); bot.whisper('anne', 'For you.'); await bo
 IN_SIGHT = "await goToPosition(bot, new Vec3(9, 1, 3), 0); bot.chat('Here I am.')"
 
 
-@pytest.mark.parametrize("hearing", ["sight", {"radius": 8}, "global"])
+LATER = [pytest.param(each, marks=pytest.mark.long) for each in ("global", "sight")]
+
+
+@pytest.mark.parametrize("hearing", [{"radius": 8}, *LATER])
 def test_a_person_hears_what_their_agent_hears_and_nothing_else(hearing, tmp_path):
     path = tmp_path / "wall.yaml"
     path.write_text(f"{BEHIND_A_WALL}perception: {{hearing: {hearing}}}\n", encoding="utf-8")

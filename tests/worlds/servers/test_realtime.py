@@ -96,6 +96,7 @@ def same_place(one: list[float] | None, other: list[float] | None) -> bool:
     return max(abs(a - b) for a, b in zip(one, other, strict=True)) <= NEAR
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "conditions"),
     [("sally-anne", (1, 2, 3)), ("ice-cream-van", (1, 2, 3) if NIGHTLY else (1,))],
@@ -137,6 +138,7 @@ def worked(scenario: Scenario, world: str) -> list[Any]:
     return told
 
 
+@pytest.mark.long
 def test_skills_do_and_are_told_as_in_the_embedded_world(tmp_path):
     """Also on a server of another version, whose blocks and windows have other numbers."""
     path = tmp_path / "workshop.yaml"
@@ -226,6 +228,7 @@ def test_a_bot_that_is_sent_away_comes_back(console):
         assert nest.wait(lambda: nest["/"].state.blocks[(4, -51, 4)] == "stone", LONG_S)
 
 
+@pytest.mark.long
 def test_a_program_whose_bot_is_sent_away_fails_and_the_next_one_runs(console):
     with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
         console.type("after 60 kick sally")
@@ -237,6 +240,7 @@ def test_a_program_whose_bot_is_sent_away_fails_and_the_next_one_runs(console):
         assert nest["/"].run("sally", PUT).ok
 
 
+@pytest.mark.long
 def test_a_server_that_is_stopped_under_a_program_is_the_cause_that_is_told():
     with GameServer() as server:
         nest = Nest.open(Scenario.load("sally-anne", 1), server.address(patience=3))
@@ -248,6 +252,7 @@ def test_a_server_that_is_stopped_under_a_program_is_the_cause_that_is_told():
         nest.close()
 
 
+@pytest.mark.long
 def test_a_bot_that_does_nothing_loses_its_connection_and_others_go_on(console):
     with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
         console.type("after 20 drop anne")
@@ -255,6 +260,7 @@ def test_a_bot_that_does_nothing_loses_its_connection_and_others_go_on(console):
         assert result.ok, result.error
 
 
+@pytest.mark.long
 def test_a_step_whose_bot_is_sent_away_is_the_worlds_failure(console):
     with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
         console.type("after 10 kick sally")
@@ -262,6 +268,7 @@ def test_a_step_whose_bot_is_sent_away_is_the_worlds_failure(console):
             nest.play()
 
 
+@pytest.mark.long
 def test_a_server_that_stands_still_for_a_moment_is_waited_for(console):
     with Nest.open(Scenario.load("sally-anne", 1), console.address(patience=PATIENCE)) as nest:
         console.type("stall 1500")
@@ -271,6 +278,7 @@ def test_a_server_that_stands_still_for_a_moment_is_waited_for(console):
         assert nest["/"].state.containers[LEFT].items == {"diamond": 1}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("fault", "said"), [("kill", "was lost"), ("freeze", "has not answered")])
 def test_a_server_that_ends_leaves_a_run_that_can_be_resumed(fault, said, tmp_path):
     store = tmp_path / "run.bn"
@@ -295,6 +303,7 @@ def test_a_server_that_ends_leaves_a_run_that_can_be_resumed(fault, said, tmp_pa
         assert nest.tick > tick
 
 
+@pytest.mark.long
 def test_a_slow_server_corrupts_neither_order_nor_stamps():
     with (
         GameServer(tickMs=100) as slow,

@@ -77,6 +77,7 @@ def test_what_the_operator_lacks_is_said(server, lines, query, said):
         open_world(server.address(**query), 0)
 
 
+@pytest.mark.long
 def test_commands_that_are_told_late_are_waited_for(capsys):
     with GameServer(commandsLate=80) as server:
         open_world(server.address(), 0).close()
@@ -85,7 +86,10 @@ def test_commands_that_are_told_late_are_waited_for(capsys):
     assert said.count("\n") == 1
 
 
-@pytest.mark.parametrize("packet", [4, 5, 8, 20, 60])
+LATER = [pytest.param(packet, marks=pytest.mark.long) for packet in (4, 5, 20, 60)]
+
+
+@pytest.mark.parametrize("packet", [8, *LATER])
 def test_a_server_that_dies_during_the_set_up_is_the_cause_that_is_told(packet):
     """The packets are those of the operator's login and of its first commands."""
     with GameServer(diesAt=packet) as server:
@@ -108,6 +112,7 @@ def test_what_a_server_lacks_and_can_do_without_is_named_at_the_start(server, ca
     assert said.count("\n") == 1
 
 
+@pytest.mark.long
 def test_a_server_that_answers_no_completions_is_waited_for(capsys):
     with GameServer(tickMs=10) as server:
         server.type("lack completions")
@@ -151,6 +156,7 @@ def test_what_agents_lack_is_said(server, lines, said):
         world.close()
 
 
+@pytest.mark.long
 def test_what_stands_in_the_box_is_not_touched_unless_asked_and_put_back(server):
     server.type("setblock 5 2 5 minecraft:barrel[facing=up]")
     server.type("item replace block 5 2 5 container.4 with minecraft:bread 3")
