@@ -51,7 +51,7 @@ def test_trapdoors_and_gates_are_used_as_doors_are():
     ("place", "opens", "fault"),
     [
         (DOOR, False, "the oak_door at .* is shut already"),
-        (IRON, True, "iron_door at .* cannot be moved by hand"),
+        (IRON, True, "iron_door at .* is not moved by hand"),
         ((0, 1, 5), True, "no door, trapdoor or gate at .*, but stone"),
         ((99, 1, 5), True, "outside the box"),
     ],

@@ -64,7 +64,10 @@ def used_door(
     if stands_open is None:
         raise WorldError(f"there is no door, trapdoor or gate at {place}, but {text}")
     if not moves_by_hand(name):
-        raise WorldError(f"the {name} at {place} cannot be moved by hand; use set_block()")
+        raise WorldError(
+            f"the {name} at {place} is not moved by hand; use the lever, button or plate that "
+            "powers it"
+        )
     if stands_open is opens:
         raise WorldError(f"the {name} at {place} is {'open' if opens else 'shut'} already")
     parts = [place]

@@ -2,8 +2,7 @@
 
 Drops and times are the same as in the embedded world: `worlds/minecraft/node/handling.js` writes
 its rules into a file when the package is built. The functions refuse acts whose result is random or
-depends on the pose of the agent in the embedded world. They also refuse acts that would move
-other blocks.
+depends on the pose of the agent in the embedded world, and to break what holds another block.
 """
 
 import functools
@@ -14,7 +13,6 @@ import msgspec
 
 from beliefnest.errors import WorldError
 from beliefnest.world.bundled import Bundled, read_bundled
-from beliefnest.world.doors import is_door
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
@@ -25,13 +23,23 @@ __all__ = [
     "pressed_button",
     "put_block",
     "switched_lever",
+    "with_power",
 ]
 
 _FORMAT = 1
 _SIDES = ((0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0), (1, 0, 0))
 _HALF_WIDTH, _HEIGHT = 0.3, 1.8
-_LAMP = "redstone_lamp"
-_NEEDS_HOLDER = ("lever", "torch", "ladder", "_button", "_carpet", "_sign", "_plate", "rail")
+_NEEDS_HOLDER = (
+    "lever",
+    "torch",
+    "ladder",
+    "_button",
+    "_carpet",
+    "_sign",
+    "_plate",
+    "_wire",
+    "rail",
+)
 
 StateAt = Callable[[Position], int]
 """Function that returns the block state at a position; air outside the world."""
@@ -95,15 +103,14 @@ def switched_lever(registry: Registry, state_at: StateAt, place: Position, *, po
     """Return the state of a lever after it was switched.
 
     Raises:
-        WorldError: There is no lever, it has this state already, or it would move something.
+        WorldError: There is no lever, or it has this state already.
     """
     text = registry.text(state_at(place))
     if registry.name(state_at(place)) != "lever":
         raise WorldError(f"there is no lever at {place}, but {text}")
     if (registry.properties(state_at(place))["powered"] == "true") is powered:
         raise WorldError(f"the lever at {place} is {'on' if powered else 'off'} already")
-    _check_moves_nothing(registry, state_at, place)
-    return _with(registry, state_at(place), powered=powered)
+    return with_power(registry, state_at(place), powered=powered)
 
 
 def pressed_button(
@@ -112,15 +119,14 @@ def pressed_button(
     """Return the state of a button after it was pressed or came out again.
 
     Raises:
-        WorldError: There is no button, it has this state already, or it would move something.
+        WorldError: There is no button, or it has this state already.
     """
     state = state_at(place)
     if not registry.name(state).endswith("_button"):
         raise WorldError(f"there is no button at {place}, but {registry.text(state)}")
     if (registry.properties(state)["powered"] == "true") is powered:
         raise WorldError(f"the button at {place} is {'in' if powered else 'out'} already")
-    _check_moves_nothing(registry, state_at, place)
-    return _with(registry, state, powered=powered)
+    return with_power(registry, state, powered=powered)
 
 
 def put_block(
@@ -174,23 +180,8 @@ def check_holds_nothing(registry: Registry, state_at: StateAt, place: Position) 
             )
 
 
-def _check_moves_nothing(registry: Registry, state_at: StateAt, place: Position) -> None:
-    """Raise WorldError if a switch could move something.
-
-    A switch acts on its neighbours and on the neighbours of the block that it is fixed to.
-    """
-    near = [_beside(place, side) for side in _SIDES]
-    near += [_beside(other, side) for other in near for side in _SIDES]
-    for other in near:
-        name = registry.name(state_at(other))
-        if is_door(name) or name == _LAMP:
-            raise WorldError(
-                f"the switch at {place} may move the {name} at {other}; nothing is powered in the "
-                'scripted world; open the nest with world="embedded" for that'
-            )
-
-
-def _with(registry: Registry, state: int, *, powered: bool) -> int:
+def with_power(registry: Registry, state: int, *, powered: bool) -> int:
+    """Return the state of a block after its property `powered` was set."""
     properties = {**registry.properties(state), "powered": str(powered).lower()}
     inner = ",".join(f"{name}={value}" for name, value in properties.items())
     return registry.state_id(f"{registry.name(state)}[{inner}]")

@@ -118,6 +118,51 @@ def test_signs_are_written_and_read_where_there_are_some():
     without.close()
 
 
+def test_levers_and_buttons_are_used_and_move_iron_doors():
+    door = [
+        {"block": f"iron_door[facing=east,half={half}]", "at": [6, y, 4]}
+        for half, y in (("lower", 1), ("upper", 2))
+    ]
+    scenario = bn.Scenario.from_mapping(
+        {
+            "name": "gate",
+            "box": [[0, 0, 0], [8, 3, 8]],
+            "blocks": [
+                {"block": "stone", "fill": [[0, 0, 0], [8, 0, 8]]},
+                *door,
+                {"block": "lever[face=floor]", "at": [6, 1, 3]},
+                {"block": "oak_button[face=floor]", "at": [6, 1, 5]},
+            ],
+            "agents": {"ann": {"position": [4.5, 1, 4.5]}},
+        }
+    )
+    env = parallel_env(scenario, max_steps=90, step_ticks=1)
+    seen, _ = env.reset()
+    assert (seen["ann"]["levers"].tolist(), seen["ann"]["buttons"].tolist()) == ([0], [0])
+
+    def is_open():
+        return "open=true" in env.nest["/ann"].state.blocks[(6, 2, 4)]
+
+    for skill, place, ticks in (
+        ("pressButton", {"button": (6, 1, 5)}, 29),
+        ("turnOnLever", {"lever": (6, 1, 3)}, 50),
+    ):
+        seen, *_ = act(env, "ann", skill, **place)
+        held = 0
+        while is_open() and held < 50:
+            assert env.observation_space("ann").contains(seen["ann"])
+            assert seen["ann"]["buttons" if "button" in place else "levers"].tolist() == [1]
+            seen, *_ = env.step({})
+            held += 1
+        assert held == ticks
+    act(env, "ann", "turnOffLever", lever=(6, 1, 3))
+    assert not is_open()
+    env.close()
+    without = make()
+    assert not {"turnOnLever", "pressButton"} & set(without.skills)
+    without.close()
+
+
 def test_with_ticks_for_steps_a_skill_goes_on_until_another_takes_its_place():
     env = make(step_ticks=1)
     env.reset(seed=0)

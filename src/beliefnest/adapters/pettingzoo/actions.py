@@ -22,6 +22,8 @@ MOST_ITEMS = 64
 _KINDS = {
     "container": "containers",
     "door": "doors",
+    "lever": "levers",
+    "button": "buttons",
     "sign": "signs",
     "item": "items",
     "agent": "agents",
@@ -62,8 +64,8 @@ class Calls:
 
         Args:
             skill: Name of the skill.
-            given: `position`, `container`, `door` and `sign` as block positions; `item`, `agent`
-                and `phrase` as names or texts; `count` (default 1).
+            given: `position`, `container`, `door`, `lever`, `button` and `sign` as block
+                positions; `item`, `agent` and `phrase` as names or texts; `count` (default 1).
 
         Raises:
             UnknownNameError: There is no such skill, or no such thing.

@@ -1,6 +1,6 @@
 """Layout of the arrays of observations and actions: the order of everything in a scenario."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,8 +11,8 @@ from beliefnest.belief.view import State
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.claims import Claim
-from beliefnest.world.doors import is_door
-from beliefnest.world.registry import Registry
+from beliefnest.world.doors import is_door, is_switch
+from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Box, Position
 
@@ -35,6 +35,8 @@ class ObservationLayout:
         items: Names of items, sorted.
         containers: Positions, in order.
         doors: Positions of doors (lower half), trapdoors and gates, in order.
+        levers: Positions of levers, in order.
+        buttons: Positions of buttons, in order.
         signs: Positions of signs, in order.
         phrases: Texts that can be said and written on signs.
     """
@@ -44,6 +46,8 @@ class ObservationLayout:
     items: tuple[str, ...]
     containers: tuple[Position, ...]
     doors: tuple[Position, ...]
+    levers: tuple[Position, ...]
+    buttons: tuple[Position, ...]
     signs: tuple[Position, ...]
     phrases: tuple[str, ...]
 
@@ -79,7 +83,9 @@ class ObservationLayout:
             items=tuple(sorted({*items, *worn, *(name for each in held for name in each)})),
             containers=tuple(sorted(snapshot.containers)),
             doors=tuple(_doors(setting, registry)),
-            signs=tuple(_signs(setting, registry)),
+            levers=tuple(_blocks(setting, lambda name: name == "lever")),
+            buttons=tuple(_blocks(setting, lambda name: is_switch(name) and name != "lever")),
+            signs=tuple(_blocks(setting, is_sign)),
             phrases=tuple(phrases),
         )
 
@@ -87,7 +93,8 @@ class ObservationLayout:
         """Return the index of a thing in its order.
 
         Args:
-            kind: `agents`, `items`, `containers`, `doors`, `signs` or `phrases`.
+            kind: `agents`, `items`, `containers`, `doors`, `levers`, `buttons`, `signs` or
+                `phrases`.
             value: The thing.
 
         Raises:
@@ -119,6 +126,9 @@ class ObservationLayout:
             "blocks": (self.box.shape, np.int32, -1, most),
             "heard": ((agents, len(self.phrases) + 1), np.int32, 0, most),
         }
+        for name in ("levers", "buttons"):
+            if places := getattr(self, name):
+                shapes[name] = ((len(places),), np.int8, -1, 1)
         if self.signs:
             shapes["signs"] = ((len(self.signs),), np.int32, -1, len(self.phrases) + 1)
         return shapes
@@ -138,6 +148,9 @@ class ObservationLayout:
         self._tell_agents(found, state)
         self._tell_containers(found, state)
         found["blocks"] = state.blocks.grid.astype(np.int32)
+        for name in ("levers", "buttons"):
+            for row, place in enumerate(getattr(self, name)):
+                found[name][row] = _power(state, place)
         for row, place in enumerate(self.signs):
             found["signs"][row] = self._written(state.signs.get(place))
         for _, speaker, text in lines:
@@ -196,9 +209,17 @@ def _doors(setting: Setting, registry: Registry) -> list[Position]:
     return _places(setting, lower)
 
 
-def _signs(setting: Setting, registry: Registry) -> list[Position]:
-    states = np.unique(setting.snapshot.blocks).tolist()
-    return _places(setting, [s for s in states if s >= 0 and is_sign(registry.name(s))])
+def _blocks(setting: Setting, wanted: Callable[[str], bool]) -> list[Position]:
+    """Return the positions of blocks with wanted names, in order."""
+    registry, states = Registry.load(), np.unique(setting.snapshot.blocks).tolist()
+    return _places(setting, [s for s in states if s >= 0 and wanted(registry.name(s))])
+
+
+def _power(state: State, place: Position) -> int:
+    """Return 1 for a switch that is believed to be on, 0 for off; -1: unknown or no switch."""
+    text = state.blocks[place]
+    powered = None if text is None else parse_state(text)[1].get("powered")
+    return -1 if powered is None else int(powered == "true")
 
 
 def _places(setting: Setting, states: Sequence[int]) -> list[Position]:

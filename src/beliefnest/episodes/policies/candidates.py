@@ -8,10 +8,11 @@ from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call
 from beliefnest.world.claims import Claim
-from beliefnest.world.doors import is_door, is_open
-from beliefnest.world.registry import Registry, block_name
+from beliefnest.world.doors import is_door, is_open, is_switch
+from beliefnest.world.registry import Registry, block_name, parse_state
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.hand import cell_of
+from beliefnest.worlds.scripted.powered import switches_in
 
 __all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
 
@@ -29,7 +30,8 @@ def calls_of(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[Call]
     """Return calls that are relevant to goals, without utterances, in a deterministic order."""
     places = _places(mind, agent, goals)
     blocks = _building(mind, agent, goals)
-    return [*_moving_items(mind, agent, goals), *places, *blocks, *_doors(mind, goals)]
+    by_hand = [*_moving_items(mind, agent, goals), *places, *blocks, *_doors(mind, goals)]
+    return [*by_hand, *(each for each in _switches(mind, agent, goals) if each not in by_hand)]
 
 
 def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> Iterator[Claim]:
@@ -178,6 +180,28 @@ def _doors(mind: Imagination, goals: Sequence[Goal]) -> Iterator[Call]:
         if is_door(registry.name(state)):
             skill = "closeDoor" if is_open(registry, state) else "openDoor"
             yield Call(skill, (place,))
+
+
+def _switches(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
+    """Yield calls that give power to doors or to blocks in goals, or take it from them."""
+    world, wanted = mind.world, set(_block_places(goals))
+    for place in switches_in(world.box, world.blocks):
+        if not mind.may_reach(agent, place):
+            continue
+        moved = world.moved_by(place)
+        if any(is_door(Registry.load().name(state)) for state in moved.values()) or (
+            wanted & moved.keys()
+        ):
+            yield _used(world.block_text(place), place)
+
+
+def _used(switch: str, place: Position) -> Call:
+    """Return the call that uses a lever, button or pressure plate."""
+    name, properties = parse_state(switch)
+    if name == "lever":
+        is_on = properties["powered"] == "true"
+        return Call("turnOffLever" if is_on else "turnOnLever", (place,))
+    return Call("pressButton", (place,)) if is_switch(name) else Call("goToPosition", (place, 0))
 
 
 def _block_places(goals: Sequence[Goal]) -> list[Position]:

@@ -24,7 +24,9 @@ from beliefnest.episodes.policies.distance import distance, held, is_visible
 from beliefnest.nest.acting.imagination import Imagination, Performer
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call
-from beliefnest.world.values import Position
+from beliefnest.world.doors import is_door
+from beliefnest.world.registry import parse_state
+from beliefnest.world.values import Event, EventKind, Position
 
 __all__ = ["OPEN", "REACHED", "USUAL", "VIOLATED", "Bounds", "FoundPlan", "Planner", "Score"]
 
@@ -408,7 +410,7 @@ class _Planning:
     def _may_change(self, node: _Node, name: str) -> bool:
         course = node.others[name]
         since = node.mind.happened[course.read :]
-        news = any(event.actor != name and event.kind.is_public_deed for _, event in since)
+        news = any(event.actor != name and _is_notable(event) for _, event in since)
         done = course.performer.is_done and bool(since)
         return course.changes > 0 and (news or done or course.performer.failed)
 
@@ -462,6 +464,15 @@ class _Planning:
         trial, mine = mind.bare(), Performer([call])
         trial.play({self._agent: mine}, self._horizon, lambda: mine.is_done)
         return not mine.failed
+
+
+def _is_notable(event: Event) -> bool:
+    """Return True if others may decide anew because of an event."""
+    if event.kind is EventKind.BLOCK_UPDATE:
+        # Doors that are moved by hand have an event of their own.
+        name, properties = parse_state(event.detail["block"])
+        return is_door(name) and properties["powered"] == "true"
+    return event.kind.is_public_deed
 
 
 def _apart(feet: Sequence[float], place: Sequence[int]) -> float:

@@ -7,7 +7,7 @@ module.exports = {
   description: 'Go to the button and press it; it comes out again by itself.',
   fails: 'there is no path on foot; there is no button; it stays pressed, or did not move',
   parameters: [
-    { name: 'position', type: 'Vec3', description: 'position of the button', aim: 'uses' }
+    { name: 'position', type: 'Vec3', description: 'position of the button', aim: 'uses', action: ['button'] }
   ],
   example: 'await pressButton(bot, new Vec3(3, -50, 0))',
   run: pressButton

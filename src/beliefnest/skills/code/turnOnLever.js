@@ -7,7 +7,7 @@ module.exports = {
   description: 'Go to the lever and switch it on; does nothing if it is on already.',
   fails: 'there is no path on foot; there is no lever; it did not move',
   parameters: [
-    { name: 'position', type: 'Vec3', description: 'position of the lever', aim: 'uses' }
+    { name: 'position', type: 'Vec3', description: 'position of the lever', aim: 'uses', action: ['lever'] }
   ],
   example: 'await turnOnLever(bot, new Vec3(3, -50, 0))',
   run: (context, position) => switchLever(context, position, true)

@@ -28,7 +28,7 @@ __all__ = [
     "checked_equipment",
     "checked_name",
     "checked_utterance",
-    "pressed_from",
+    "due_from",
     "rest_of",
     "sum_of",
     "whole_position",
@@ -45,8 +45,10 @@ class WorldFacts:
     items: dict[int, DroppedItem]
     signs: dict[Position, str] = field(default_factory=dict)
     sign_claims: dict[Position, PlainClaims] = field(default_factory=dict)
-    pressed: dict[Position, int] = field(default_factory=dict)
-    """Pressed buttons, each with the tick at which it comes out again."""
+    due: dict[Position, int] = field(default_factory=dict)
+    """Blocks that wait for a tick: buttons, plates and lamps that are on."""
+    plates: frozenset[Position] = frozenset()
+    """Pressure plates."""
 
     def copied(self) -> "WorldFacts":
         """Return a copy; the grid of blocks is shared, because ticks replace it before a change."""
@@ -57,20 +59,21 @@ class WorldFacts:
             dict(self.items),
             dict(self.signs),
             dict(self.sign_claims),
-            dict(self.pressed),
+            dict(self.due),
+            self.plates,
         )
 
     def under_way(self, tick: int) -> bytes:
-        """Encode the internal state at a tick: the ticks left of pressed buttons.
+        """Encode the internal state at a tick: the ticks left for blocks that wait.
 
-        Nobody can perceive this state. `pressed_from` decodes it.
+        Nobody can perceive this state. `due_from` decodes it.
         """
-        left = [(*place, due - tick) for place, due in sorted(self.pressed.items())]
+        left = [(*place, due - tick) for place, due in self.due.items()]
         return msgspec.msgpack.encode(left) if left else b""
 
 
-def pressed_from(state: bytes, tick: int) -> dict[Position, int]:
-    """Decode pressed buttons, with the ticks at which they come out again."""
+def due_from(state: bytes, tick: int) -> dict[Position, int]:
+    """Decode blocks that wait, with the ticks for which they wait."""
     if not state:
         return {}
     left = msgspec.msgpack.decode(state, type=list[tuple[int, int, int, int]])
@@ -78,11 +81,18 @@ def pressed_from(state: bytes, tick: int) -> dict[Position, int]:
 
 
 class Pending:
-    """Changes of the current tick."""
+    """Changes of the current tick.
+
+    Attributes:
+        saved: Facts before the tick.
+        changed: True if the grid of blocks was copied in this tick.
+        is_late: True at the end of the tick, when all agents have acted.
+    """
 
     def __init__(self, facts: WorldFacts) -> None:
         self.saved = facts.copied()
         self.changed = False
+        self.is_late = False
         self.blocks: dict[Position, Block] = {}
         self.containers: set[Position] = set()
         self.agents: set[str] = set()

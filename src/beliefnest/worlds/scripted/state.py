@@ -9,6 +9,7 @@ import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.owned import Barred
+from beliefnest.world.circuits import Circuits
 from beliefnest.world.frames import BlockGrid, PlainClaims
 from beliefnest.world.limits import items_fault
 from beliefnest.world.registry import AIR, Registry
@@ -49,6 +50,7 @@ class ScriptedState(Barred):
 
     def __init__(self, box: tuple[Position, Position]) -> None:
         self._registry = Registry.load()
+        self._plates = Circuits.load().plates
         self._box = checked_box(box)
         self._handed_out = False
         self._facts = WorldFacts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
@@ -79,6 +81,10 @@ class ScriptedState(Barred):
             WorldError: There is no container at the position.
         """
         return dict(self._facts.containers[self._container(position)])
+
+    def block_text(self, place: Position) -> str:
+        """Return the block state at a position as text; air outside the box."""
+        return self._registry.text(self._state_at(place))
 
     @property
     def blocks(self) -> BlockGrid:
@@ -143,6 +149,8 @@ class ScriptedState(Barred):
         if before != name:
             self._wipe(place)
         self._facts.blocks[self._box.index(place)] = state
+        if (state in self._plates) is not (place in self._facts.plates):
+            self._facts.plates ^= {place}
         if self._registry.is_container(name):
             if before != name or place not in self._facts.containers:
                 self._facts.containers[place] = {}

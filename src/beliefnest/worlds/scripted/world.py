@@ -44,11 +44,11 @@ from beliefnest.worlds.scripted.facts import (
     checked_equipment,
     checked_name,
     checked_utterance,
-    pressed_from,
+    due_from,
     rest_of,
     whole_position,
 )
-from beliefnest.worlds.scripted.state import ScriptedState
+from beliefnest.worlds.scripted.powered import PoweredState, plates_in
 
 __all__ = ["Listener", "ScriptedWorld"]
 
@@ -56,7 +56,7 @@ Listener = Callable[[Frame], None]
 """Callback that receives a frame for every tick, empty frames included."""
 
 
-class ScriptedWorld(ScriptedState):
+class ScriptedWorld(PoweredState):
     """World whose moves are calls of its methods.
 
     Args:
@@ -133,7 +133,7 @@ class ScriptedWorld(ScriptedState):
 
     @property
     def under_way(self) -> bytes:
-        """Internal state for snapshots, which nobody can perceive: pressed buttons."""
+        """Internal state for snapshots, which nobody can perceive: buttons and others that wait."""
         return self._facts.under_way(self._tick)
 
     def listen(self, listener: Listener) -> None:
@@ -171,7 +171,8 @@ class ScriptedWorld(ScriptedState):
             dict(snapshot.items),
             dict(snapshot.signs),
             dict(snapshot.sign_claims),
-            pressed_from(snapshot.internal_state, snapshot.tick),
+            due_from(snapshot.internal_state, snapshot.tick),
+            plates_in(self._box, snapshot.blocks),
         )
 
     def tick(self) -> AbstractContextManager[object]:
@@ -225,24 +226,23 @@ class ScriptedWorld(ScriptedState):
             pending.events.append(Event(EventKind.USE_DOOR, name, detail))
 
     def use_lever(self, name: str, position: Position, *, powered: bool) -> None:
-        """Let an agent switch a lever on or off; levers power nothing here."""
+        """Let an agent switch a lever on or off, and with it what the lever powers."""
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
             moved = switched_lever(self._registry, self._state_at, place, powered=powered)
-            self._change(pending, place, moved, None)
+            self._alter(pending, place, moved)
             detail = {"position": place, "powered": powered}
             pending.events.append(Event(EventKind.USE_LEVER, name, detail))
 
     def press_button(self, name: str, position: Position) -> None:
-        """Let an agent press a button, which comes out again later; buttons power nothing here."""
+        """Let an agent press a button, which comes out again later."""
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
             moved = pressed_button(self._registry, self._state_at, place)
-            ticks = Handling.load().pressed_ticks(self._registry.name(moved))
-            self._change(pending, place, moved, None)
-            self._facts.pressed[place] = self._tick + 1 + ticks
+            self._alter(pending, place, moved)
+            self._wait(pending, place, Handling.load().pressed_ticks(self._registry.name(moved)))
             pending.events.append(Event(EventKind.PRESS_BUTTON, name, {"position": place}))
 
     def mine(self, name: str, position: Position) -> None:
@@ -254,7 +254,7 @@ class ScriptedWorld(ScriptedState):
             drops = Handling.load().drops(self._registry.name(state), agent.inventory)
             check_holds_nothing(self._registry, self._state_at, place)
             held = self._fitting(name, agent.inventory, drops, AGENT_SLOTS + WORN_SLOTS)
-            self._change(pending, place, AIR, None)
+            self._alter(pending, place, AIR)
             self._set_agent(name, inventory=held)
             pending.agents.add(name)
             detail = {"position": place, "block": self._registry.text(state)}
@@ -269,7 +269,7 @@ class ScriptedWorld(ScriptedState):
             held = rest_of(agent.inventory, moved, f"{name} cannot put {item}: it")
             bodies = [each.position for each in self._facts.agents.values()]
             state = put_block(self._registry, self._state_at, place, item, bodies)
-            self._change(pending, place, state, None)
+            self._alter(pending, place, state)
             self._set_agent(name, inventory=held)
             pending.agents.add(name)
             detail = {"position": place, "block": self._registry.text(state)}
@@ -411,9 +411,9 @@ class ScriptedWorld(ScriptedState):
         pending = self._pending = Pending(self._facts)
         before = self._tick
         try:
-            if self._facts.pressed:
-                self._release(pending)
             yield pending
+            if self._facts.due or self._facts.plates:
+                self._let_time_pass(pending)
             self._pending = None
             self._finish(pending)
         except BaseException:
@@ -422,16 +422,6 @@ class ScriptedWorld(ScriptedState):
             raise
         finally:
             self._pending = None
-
-    def _release(self, pending: Pending) -> None:
-        """Release the buttons that are due in the current tick."""
-        pressed = self._facts.pressed
-        for place in sorted(at for at, due in pressed.items() if due <= self._tick + 1):
-            del pressed[place]
-            state = self._state_at(place)
-            if Handling.load().is_pressed(self._registry, state):
-                out = pressed_button(self._registry, self._state_at, place, powered=False)
-                self._change(pending, place, out, None)
 
     def _finish(self, pending: Pending) -> None:
         self._tick += 1

@@ -48,7 +48,7 @@ async function useDoor (context, doorPosition, open) {
   const name = known?.name ?? 'door'
   if (name.startsWith('iron_') && DOOR.is(name)) {
     if (known.getProperties().open === open) return
-    fail(`the ${name} at ${show(position)} is not moved by hand. Use the lever or button that powers it.`)
+    fail(`the ${name} at ${show(position)} is not moved by hand. Use the lever, button or plate that powers it.`)
   }
   const { block } = await goTo(context, position, DOOR)
   if (block().getProperties().open === open) return

@@ -9,6 +9,7 @@ const esbuild = require('esbuild')
 const { encode } = require('@msgpack/msgpack')
 const { MINECRAFT_VERSION, buildRegistry } = require('./registry')
 const { buildHandling } = require('./handling')
+const { buildCircuits } = require('./circuits')
 const { interpreterBytes } = require('./src/sandbox/interpreter')
 const { INTERPRETER, replacements } = require('./bundling/replacements')
 const { FURTHER, writeVersions } = require('./bundling/versions')
@@ -31,6 +32,8 @@ async function build (outdir) {
     path.join(outdir, `registry-${MINECRAFT_VERSION}.msgpack`), encode(buildRegistry(MINECRAFT_VERSION)))
   fs.writeFileSync(
     path.join(outdir, `handling-${MINECRAFT_VERSION}.msgpack`), encode(buildHandling(MINECRAFT_VERSION)))
+  fs.writeFileSync(
+    path.join(outdir, `circuits-${MINECRAFT_VERSION}.msgpack`), encode(buildCircuits(MINECRAFT_VERSION)))
   writeVersions(outdir, FURTHER)
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
   for (const file of SHARED) await share(path.join(SOURCE, file), outdir)

@@ -17,7 +17,7 @@ module.exports.server = (serv) => {
   const blocks = new EventEmitter()
   blocks.setMaxListeners(0)
 
-  /** Return `{stateId, type, name, shapes, solid, transparent, properties}` of the block at a position. */
+  /** Return `{stateId, type, name, shapes, solid, full, transparent, properties}` of the block at a position. */
   blocks.at = (position) => describe(serv.overworld.sync.getBlockStateId(position))
   blocks.describe = describe
   blocks.text = text

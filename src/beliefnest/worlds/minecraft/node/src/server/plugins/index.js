@@ -28,6 +28,7 @@ module.exports = [
   named('doors', require('./doors')),
   named('signs', require('./signs')),
   named('power', require('./power')),
+  named('plates', require('./plates')),
   named('placement', require('./placement')),
   named('digging', require('./digging')),
   named('beds', require('./beds')),

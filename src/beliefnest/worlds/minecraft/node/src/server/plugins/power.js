@@ -1,51 +1,65 @@
 'use strict'
 
-const { FACES } = require('./lib/directions')
-const { holderOf } = require('./lib/holders')
-
-const SOURCE = /^lever$|_button$/
-const OPENS = /_door$|_trapdoor$|_fence_gate$/
-const LAMP = 'redstone_lamp'
+const { FACTS, LAMP, WIRE, answerOf, conducts, otherHalfOf, sourceOf } = require('./lib/circuits')
+const { Circuit, around } = require('./lib/circuit')
 
 /**
- * Add power: levers and buttons power the blocks beside them and beside the block they are attached to. Doors,
- * trapdoors and gates (iron ones too) open, lamps light. There is no other redstone.
+ * Add power: levers, buttons, plates and blocks of redstone power the blocks beside them and beside the block they
+ * are attached to. Wires carry power over 15 blocks. Doors, trapdoors and gates (iron ones too) open, lamps light.
+ * There is no other redstone.
  */
 module.exports.server = (serv) => {
-  const around = (position) => FACES.map((face) => position.plus(face))
+  const at = (position) => serv.blocks.at(position)
+  const answer = (block, powered) => answerOf(serv.registry, block, powered)
+  const circuit = new Circuit(at)
 
-  function isOn (position) {
-    const { name, properties } = serv.blocks.at(position)
-    return SOURCE.test(name) && properties.powered
-  }
-
-  /** Return true if a lever or button that is on is attached to the block at a position. */
-  const holdsPower = (position) => serv.blocks.at(position).solid && around(position).some((place) =>
-    isOn(place) && place.plus(holderOf(serv.blocks.at(place))).equals(position))
-
-  const isPowered = (position) => around(position).some((place) => isOn(place) || holdsPower(place))
-
+  /** Return the positions of a block and of the other half of a door. */
   function partsOf (position, block) {
-    if (!block.name.endsWith('_door')) return [position]
-    return [position, position.offset(0, block.properties.half === 'lower' ? 1 : -1, 0)]
-      .filter((part) => serv.blocks.at(part).name === block.name)
+    const step = otherHalfOf(block)
+    const other = position.offset(0, step, 0)
+    return step !== 0 && at(other).name === block.name ? [position, other] : [position]
   }
 
-  function update (position, player) {
-    const block = serv.blocks.at(position)
-    if (!OPENS.test(block.name) && block.name !== LAMP) return
+  function respond (position, player) {
+    const block = at(position)
     const parts = partsOf(position, block)
-    const powered = parts.some(isPowered)
-    const change = block.name === LAMP ? { lit: powered } : { powered, open: powered }
-    const [key] = Object.keys(change)
-    if (block.properties[key] === powered) return
-    for (const part of parts) serv.blocks.set(part, serv.blocks.stateWith(serv.blocks.at(part), change), player)
+    const powered = parts.some((part) => circuit.isPowered(part))
+    if (answer(block, powered) === null) return
+    if (block.name === LAMP && !powered) {
+      if (!serv.isDueAt(position, 'dim')) serv.after(FACTS.dims, position, 'dim')
+      return
+    }
+    for (const part of parts) {
+      const state = answer(at(part), powered)
+      if (state !== null) serv.blocks.set(part, state, player)
+    }
   }
+
+  serv.onDue('dim', (position) => {
+    const block = at(position)
+    if (block.name === LAMP && block.properties.lit && !circuit.isPowered(position)) {
+      serv.blocks.set(position, answer(block, false))
+    }
+  })
+
+  /** Let wires and other blocks react to a change at a position. */
+  function settle (position, player) {
+    const wires = circuit.network(position)
+    const levels = circuit.levels(wires)
+    const changed = wires.filter((place) => at(place).properties.power !== levels.get(`${place}`))
+    for (const place of changed) {
+      const state = serv.blocks.state(WIRE, { ...circuit.connections(place), power: levels.get(`${place}`) })
+      serv.blocks.put(place, state, player)
+    }
+    for (const place of around([position, ...changed])) respond(place, player)
+  }
+
+  const isPart = (block) => block.name === WIRE || sourceOf(block) !== null
+  const responds = (block) => [true, false].some((powered) => answer(block, powered) !== null)
 
   serv.blocks.on('update', ({ position, before, after, player }) => {
-    const source = [before, after].map(serv.blocks.describe).find(({ name }) => SOURCE.test(name))
-    if (!source) return
-    const places = [...around(position), ...around(position.plus(holderOf(source)))]
-    places.forEach((place) => update(place, player))
+    const [old, block] = [before, after].map(serv.blocks.describe)
+    const isNew = old.name !== block.name && responds(block)
+    if (isPart(old) || isPart(block) || isNew || conducts(old) !== conducts(block)) settle(position, player)
   })
 }

@@ -19,6 +19,9 @@ module.exports.server = (serv) => {
   /** Begin a countdown of `ticks` ticks at `position`. */
   serv.after = (ticks, position, kind) => countdowns.push({ left: ticks, position: position.clone(), kind })
 
+  /** Return true if a countdown of a kind is running at a position. */
+  serv.isDueAt = (position, kind) => countdowns.some((each) => each.kind === kind && each.position.equals(position))
+
   function runCountdowns (within) {
     const due = []
     for (const countdown of countdowns) {

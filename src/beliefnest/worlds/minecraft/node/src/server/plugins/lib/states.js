@@ -1,6 +1,8 @@
 'use strict'
 /** Block states as names and properties, from minecraft-data's `states` lists. */
 
+const FULL_CUBE = '[[0,0,0,1,1,1]]'
+
 function valueAt (state, index) {
   if (state.type === 'bool') return index === 0
   if (state.type === 'int') return state.values ? Number(state.values[index]) : index
@@ -44,7 +46,7 @@ function blockStates (registry) {
   const Block = require('prismarine-block')(registry)
   const known = new Map()
 
-  /** Return `{stateId, type, name, shapes, solid, transparent, properties}`. */
+  /** Return `{stateId, type, name, shapes, solid, full, transparent, properties}`. */
   function describe (stateId) {
     if (!known.has(stateId)) {
       const block = Block.fromStateId(stateId, 0)
@@ -54,6 +56,7 @@ function blockStates (registry) {
         name: block.name,
         shapes: block.shapes,
         solid: block.boundingBox === 'block',
+        full: JSON.stringify(block.shapes) === FULL_CUBE,
         transparent: block.transparent,
         properties: Object.freeze(decode(registry, stateId)),
       }))
