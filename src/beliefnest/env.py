@@ -1,5 +1,5 @@
-"""Scenarios as multi-agent environments of PettingZoo (extra `pettingzoo`)."""
+"""Scenarios and tasks as environments of PettingZoo and Gymnasium (extra `pettingzoo`)."""
 
-from beliefnest.adapters.pettingzoo import parallel_env
+from beliefnest.adapters.pettingzoo import aec_env, parallel_env, vector_env
 
-__all__ = ["parallel_env"]
+__all__ = ["aec_env", "parallel_env", "vector_env"]

@@ -14,6 +14,7 @@ from beliefnest.world.values import Box
 __all__ = [
     "EpisodeEntry",
     "GoalEntry",
+    "RewardEntry",
     "check_rules",
     "goal_of",
     "rule_faults",
@@ -41,6 +42,15 @@ class GoalEntry(_Entry, frozen=True):
     ] = None
 
 
+class RewardEntry(_Entry, frozen=True):
+    """Rewards of an agent that learns in an environment; costs are below 0."""
+
+    reached: Annotated[float, note("When the agent's goal is reached.")] = 1.0
+    violated: Annotated[float, note("When it can no longer be reached.")] = 0.0
+    round: Annotated[float, note("For each round.")] = 0.0
+    message: Annotated[float, note("For each utterance of the agent.")] = 0.0
+
+
 class EpisodeEntry(_Entry, frozen=True, kw_only=True):
     """Goals of agents, and the rules of play."""
 
@@ -61,6 +71,9 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
     play: Annotated[
         Literal["together", "turns"], note("Order in which the programs of a round run.")
     ] = "together"
+    rewards: Annotated[
+        RewardEntry, note("Rewards in environments; other policies do not know them.")
+    ] = RewardEntry()
     rounds: Annotated[int, msgspec.Meta(ge=1, description="Greatest number of rounds.")] = 10
     round_ticks: Annotated[
         int, msgspec.Meta(ge=1, le=12_000, description="Ticks after which programs are cut.")

@@ -211,7 +211,7 @@ def test_programs_and_calls_do_the_same_in_both_worlds(world):
 
 
 def test_options_that_make_no_sense_are_refused():
-    with pytest.raises(bn.InputError, match="step_ticks is for calls of skills"):
+    with pytest.raises(bn.InputError, match="step_ticks is for tasks, and for calls of skills"):
         make(step_ticks=1, actions="programs")
     with pytest.raises(bn.PathError, match="not a belief of an acting agent"):
         make(nested=["/anne"])

@@ -1,23 +1,29 @@
 """Scenarios as multi-agent environments of PettingZoo (extra `pettingzoo`)."""
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
-from beliefnest.errors import MissingExtraError
+from beliefnest.errors import InputError, MissingExtraError
 
 if TYPE_CHECKING:  # Imported when an environment is made.
+    from pettingzoo import AECEnv
+
     from beliefnest.adapters.pettingzoo.environment import BeliefEnv, Options
     from beliefnest.adapters.pettingzoo.layout import Phrases
+    from beliefnest.adapters.pettingzoo.playing import Instances
+    from beliefnest.adapters.pettingzoo.vector import BeliefVectorEnv
+    from beliefnest.episodes.task import Task
     from beliefnest.nest.face.nest import Nest
     from beliefnest.nest.past.setting import Senses
     from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["parallel_env"]
+__all__ = ["aec_env", "parallel_env", "vector_env"]
 
 
 def parallel_env(
-    scenario: "str | Scenario",
+    scenario: "str | Scenario | Task",
     *,
+    parameters: "Mapping[str, Any] | None" = None,
     condition: int | None = None,
     world: str = "scripted",
     actions: Literal["skills", "programs"] = "skills",
@@ -28,42 +34,48 @@ def parallel_env(
     items: Sequence[str] = (),
     reward: "Callable[[Nest, str], float] | None" = None,
     ends: "Callable[[Nest], bool] | None" = None,
-    max_steps: int = 100,
+    max_steps: int | None = None,
     step_ticks: int | None = None,
-    timeout_ticks: int = 1200,
+    timeout_ticks: int | None = None,
     plays_script: bool = False,
-    senses: "Senses" = "world",
+    senses: "Senses | None" = None,
     seed: int = 0,
 ) -> "BeliefEnv":
-    """Return a scenario as a PettingZoo parallel environment.
+    """Return a scenario or a task as a PettingZoo parallel environment.
 
     The observation of an agent is its own belief. See docs/pettingzoo.md for the layout of the
-    arrays.
+    arrays. A task, or a scenario with a goal under `episode`, is played by its own rules: they give
+    the agents, rewards and ends, and a joint step is a round.
 
     Args:
-        scenario: Name of a built-in scenario, path of a scenario file, or a scenario.
+        scenario: Name of a built-in task or scenario, path of a file of either, a scenario, or a
+            task. A built-in task has an instance for each seed.
+        parameters: Parameters of a built-in task, such as `{"far": 20}`.
         condition: Number of a condition, if `scenario` is a name or a path; None for the
             scenario as written.
         world: `scripted`, without physics, or `embedded`, Minecraft.
         actions: `skills`, calls of skills in a structured space, or `programs`, JavaScript.
         observations: `arrays` of a fixed layout, or a `dict` of plain data.
-        agents: Agents that act; None for all.
+        agents: Agents that act; None for all, in tasks for the players.
         nested: Beliefs about beliefs, which the infos hold under `beliefs`: paths such as
             `/anne/sally`, or the greatest depth of all such paths.
         phrases: Utterances to choose from; a mapping gives the claims of each.
         items: Names of items that may appear later but that no agent or container has at the
             start.
         reward: Function of the nest and an agent that returns its reward after a step; None for
-            0.
-        ends: Function of the nest that returns True if the episode is over; None: it never is.
-        max_steps: Number of joint steps after which an episode is truncated.
-        step_ticks: Ticks of a joint step; skills then continue in later steps. None: a step
-            lasts until all actions have ended. Only for skills in the scripted world.
-        timeout_ticks: Ticks after which an unfinished action is stopped, if `step_ticks` is
-            None.
+            the task's rewards, or 0.
+        ends: Function of the nest that returns True if the episode is over; None: only tasks end.
+        max_steps: Number of joint steps after which an episode is truncated; None: 100, or the
+            task's `rounds`.
+        step_ticks: Ticks of a joint step; actions then continue in later steps. None: in tasks
+            `round_ticks`, otherwise a step lasts until all actions have ended. Without a task only
+            for skills in the scripted world.
+        timeout_ticks: Ticks after which an unfinished action is stopped, if a step lasts until
+            all actions have ended; None: 1200.
         plays_script: True to begin episodes after the scenario's script, False before it.
         senses: `percepts`: skills plan and programs read with the knowledge of their agent only;
-            `world`: with the actual world. See docs/programs.md.
+            `world`: with the actual world. None: `percepts` in tasks, otherwise `world`. See
+            docs/programs.md.
         seed: Seed of the first episode, if `reset` gets none.
 
     Raises:
@@ -73,7 +85,7 @@ def parallel_env(
         PathError: There is no such agent or belief.
         InputError: Another argument is invalid.
     """
-    made, described = _classes()
+    made, described, _ = _classes()
     options = described(
         world=world,
         actions=actions,
@@ -91,21 +103,76 @@ def parallel_env(
         senses=senses,
         seed=seed,
     )
-    return made(_loaded(scenario, condition), options)
+    source = _loaded(scenario, condition, parameters or {}, max_steps, step_ticks)
+    return made(source, options)
 
 
-def _classes() -> "tuple[type[BeliefEnv], type[Options]]":
+def aec_env(scenario: "str | Scenario | Task", **options: Any) -> "AECEnv[str, Any, Any]":
+    """Return a scenario or a task as a PettingZoo environment in which agents act in turn.
+
+    The world moves when all agents have chosen.
+
+    Args:
+        scenario: As for `parallel_env`.
+        options: Arguments of `parallel_env`.
+    """
+    env = parallel_env(scenario, **options)
+    from pettingzoo.utils.conversions import parallel_to_aec
+
+    return parallel_to_aec(env)
+
+
+def vector_env(scenario: "str | Scenario | Task", copies: int, **options: Any) -> "BeliefVectorEnv":
+    """Return copies of an environment as a vector environment of Gymnasium, in this process.
+
+    Args:
+        scenario: As for `parallel_env`.
+        copies: Number of copies; each counts once for each of its agents.
+        options: Arguments of `parallel_env`.
+
+    Raises:
+        InputError: `copies` is below 1, or the observations are no arrays.
+    """
+    *_, vector = _classes()
+    return vector(lambda: parallel_env(scenario, **options), copies)
+
+
+def _classes() -> "tuple[type[BeliefEnv], type[Options], type[BeliefVectorEnv]]":
     """Import the classes that need PettingZoo."""
     try:
         from beliefnest.adapters.pettingzoo.environment import BeliefEnv, Options
+        from beliefnest.adapters.pettingzoo.vector import BeliefVectorEnv
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("pettingzoo", "gymnasium"):
             raise
         raise MissingExtraError(f"environments need {error.name}", "pettingzoo") from None
-    return BeliefEnv, Options
+    return BeliefEnv, Options, BeliefVectorEnv
 
 
-def _loaded(scenario: "str | Scenario", condition: int | None) -> "Scenario":
+def _loaded(
+    scenario: "str | Scenario | Task",
+    condition: int | None,
+    parameters: "Mapping[str, Any]",
+    rounds: int | None,
+    round_ticks: int | None,
+) -> "Scenario | Instances":
+    """Return a scenario without a goal, or else the instances of a task."""
+    from beliefnest.adapters.pettingzoo.playing import Instances
+    from beliefnest.episodes.task import Task
+    from beliefnest.scenarios.rules import GoalEntry
     from beliefnest.scenarios.scenario import Scenario
 
-    return Scenario.load(scenario, condition) if isinstance(scenario, str) else scenario
+    if isinstance(scenario, str) and scenario in Task.names():
+        if condition is not None:
+            raise InputError(f"{scenario} is a task and has no conditions; leave the condition out")
+        return Instances(None, scenario, parameters, rounds, round_ticks)
+    if parameters:
+        raise InputError("parameters are for built-in tasks; leave them out")
+    if isinstance(scenario, str):
+        is_task = Task.scenario_document(scenario) is None
+        scenario = Task.load(scenario) if is_task else Scenario.load(scenario, condition)
+    if isinstance(scenario, Scenario):
+        if scenario.rules is None or scenario.rules.goal == GoalEntry():
+            return scenario
+        scenario = Task.of(scenario)
+    return Instances(scenario, "", {}, rounds, round_ticks)

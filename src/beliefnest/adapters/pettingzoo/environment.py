@@ -13,11 +13,14 @@ from pettingzoo import ParallelEnv
 from beliefnest.adapters.pettingzoo.acting import Acting, Deed, ProgramActing, SkillActing
 from beliefnest.adapters.pettingzoo.actions import MOST_ITEMS, Call, Calls
 from beliefnest.adapters.pettingzoo.layout import ObservationLayout, Phrases
+from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
 from beliefnest.belief.plain import belief_json
 from beliefnest.belief.view import State
+from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import Senses
+from beliefnest.owned import Owned
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.seeds import checked_seed
@@ -26,6 +29,8 @@ from beliefnest.worlds.names import check_world
 
 __all__ = ["BeliefEnv", "BeliefSpace", "Options"]
 
+_MAX_STEPS = 100
+_TIMEOUT_TICKS = 1200
 _LONGEST_PROGRAM = 10_000
 _LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
 
@@ -46,34 +51,54 @@ class Options:
     items: tuple[str, ...] = ()
     reward: Callable[[Nest, str], float] | None = None
     ends: Callable[[Nest], bool] | None = None
-    max_steps: int = 100
+    max_steps: int | None = None
     step_ticks: int | None = None
-    timeout_ticks: int = 1200
+    timeout_ticks: int | None = None
     plays_script: bool = False
-    senses: Senses = "world"
+    senses: Senses | None = None
     seed: int = 0
 
     def __post_init__(self) -> None:
         check_world(self.world, servers=False)
-        if self.senses not in ("world", "percepts"):
+        if self.senses not in (None, "world", "percepts"):
             raise InputError(f"senses is {self.senses!r}; it is 'world' or 'percepts'")
         if self.actions not in ("skills", "programs"):
             raise InputError(f"actions is {self.actions!r}; it is 'skills' or 'programs'")
         if self.observations not in ("arrays", "dict"):
             raise InputError(f"observations is {self.observations!r}; it is 'arrays' or 'dict'")
         checked_seed(self.seed)
-        for name, number in (("max_steps", self.max_steps), ("timeout_ticks", self.timeout_ticks)):
-            _check_count(name, number, "at least 1")
+        counts = ("max_steps", "step_ticks", "timeout_ticks")
+        for name in counts:
+            number = getattr(self, name)
+            if number is not None and (not isinstance(number, int) or number < 1):
+                raise InputError(f"{name} is {number!r}; it must be at least 1, or None")
         for name, function in (("reward", self.reward), ("ends", self.ends)):
             if function is not None and not callable(function):
                 raise InputError(f"{name} is {function!r}; give a function, or None")
-        if self.step_ticks is not None:
-            _check_count("step_ticks", self.step_ticks, "at least 1, or None")
-            if self.actions == "programs" or self.world != "scripted":
-                raise InputError(
-                    "step_ticks is for calls of skills in the scripted world; elsewhere a step "
-                    "ends with the last program: leave it out"
-                )
+
+    def check_scenario(self) -> None:
+        """Check options that only tasks can have.
+
+        Raises:
+            InputError: Steps with a fixed number of ticks are not possible.
+        """
+        if self.step_ticks and (self.actions == "programs" or self.world != "scripted"):
+            raise InputError(
+                "step_ticks is for tasks, and for calls of skills in the scripted world; elsewhere "
+                "a step ends with the last program: leave it out"
+            )
+
+    def check_task(self) -> None:
+        """Check that no option is given that tasks do not have.
+
+        Raises:
+            InputError: An option has no effect in tasks.
+        """
+        if self.senses == "world" or self.timeout_ticks is not None:
+            raise InputError(
+                "a task is played with the knowledge of each agent, in rounds of step_ticks: leave "
+                "senses and timeout_ticks out"
+            )
 
     @property
     def said(self) -> Phrases:
@@ -81,11 +106,6 @@ class Options:
         if isinstance(self.phrases, Mapping):
             return self.phrases
         return dict.fromkeys(self.phrases, ())
-
-
-def _check_count(name: str, number: object, wanted: str) -> None:
-    if not isinstance(number, int) or number < 1:
-        raise InputError(f"{name} is {number!r}; it must be {wanted}")
 
 
 class BeliefSpace(spaces.Space[dict[str, Any]]):
@@ -106,7 +126,7 @@ class BeliefSpace(spaces.Space[dict[str, Any]]):
 
 
 class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no type information
-    """A scenario in which agents act and get their own beliefs as observations.
+    """A scenario or task in which agents act and get their own beliefs as observations.
 
     Create one with `beliefnest.adapters.pettingzoo.parallel_env`, which explains the arguments.
 
@@ -121,12 +141,18 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
     metadata = {"name": "beliefnest_v0", "render_modes": [], "is_parallelizable": True}  # noqa: RUF012 - as PettingZoo declares it
     render_mode = None
 
-    def __init__(self, scenario: Scenario, options: Options) -> None:
-        self._scenario, self._options = scenario, options
-        self.layout = ObservationLayout.of(scenario.setting, options.said, options.items)
-        self._calls = Calls(self.layout, options.said)
-        self.skills = self._calls.skills
-        self.possible_agents = sorted(options.agents or self.layout.agents)
+    def __init__(self, source: Scenario | Instances, options: Options) -> None:
+        self._source, self._options = source, options
+        players: Sequence[str] = ()
+        if isinstance(source, Instances):
+            options.check_task()
+            task = source.of(options.seed)
+            scenario, players = task.scenario, task.players
+        else:
+            options.check_scenario()
+            scenario = source
+        self._arrange(scenario)
+        self.possible_agents = sorted(options.agents or players or self.layout.agents)
         for name in self.possible_agents:
             if name not in scenario.setting.snapshot.agents:
                 there = ", ".join(sorted(scenario.setting.snapshot.agents))
@@ -134,11 +160,20 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
         self.agents: list[str] = []
         self._seed = options.seed - 1
+        self._own = Owned()
         self._worlds: Worlds | None = None
         self._nest: Nest | None = None
         self._acting: Acting | None = None
         self._steps = 0
         self._heard: dict[str, int] = {}
+
+    def _arrange(self, scenario: Scenario) -> None:
+        """Set the order of everything that arrays and actions describe."""
+        self.layout = ObservationLayout.of(
+            scenario.setting, self._options.said, self._options.items
+        )
+        self._calls = Calls(self.layout, self._options.said)
+        self.skills = self._calls.skills
 
     @property
     def nest(self) -> Nest:
@@ -150,6 +185,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if self._nest is None:
             raise InputError("no episode has begun; call reset() first")
         return self._nest
+
+    @property
+    def first_seed(self) -> int:
+        """Seed of the first episode, if `reset` gets none."""
+        return self._options.seed
 
     @property
     def unwrapped(self) -> "BeliefEnv":
@@ -208,26 +248,52 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
         Raises:
             InputError: The seed is not a whole number of 64 bits; the current episode continues.
+            ForkedError: The world was opened by another process.
             BodyError: The world could not be started.
             ProgramError: The script cannot be played.
         """
+        if self._worlds is not None:
+            self._own.check_own("the environment")
         self._seed = self._seed + 1 if seed is None else checked_seed(seed)
         self._end_episode()
         if self._worlds is None:
             self._worlds = Worlds(0)
-        chosen = self._options
-        nest = Nest.open(self._scenario, chosen.world, None, self._seed, self._worlds)
-        self._nest = nest
-        if chosen.plays_script:
-            nest.play()
-        if chosen.actions == "skills" and chosen.world == "scripted":
-            self._acting = SkillActing(nest, chosen.step_ticks, chosen.timeout_ticks, chosen.senses)
-        else:
-            self._acting = ProgramActing(nest, chosen.timeout_ticks, chosen.senses)
+        self._acting = self._begun(self._worlds)
         self.agents = list(self.possible_agents)
         self._steps = 0
         self._heard = {}
         return self._told({agent: Deed() for agent in self.agents}, spoken=True)
+
+    def _begun(self, worlds: Worlds) -> Acting:
+        """Open the nest of an episode; return the executor of its actions."""
+        chosen, source = self._options, self._source
+        if isinstance(source, Instances):
+            task = source.of(self._seed)
+            self._rearrange(task)
+            playing = TaskActing(task, self.possible_agents, chosen.world, self._seed, worlds)
+            self._nest = playing.nest
+            return playing
+        nest = self._nest = Nest.open(source, chosen.world, None, self._seed, worlds)
+        if chosen.plays_script:
+            nest.play()
+        senses, timeout = chosen.senses or "world", chosen.timeout_ticks or _TIMEOUT_TICKS
+        if chosen.actions == "skills" and chosen.world == "scripted":
+            return SkillActing(nest, chosen.step_ticks, timeout, senses)
+        return ProgramActing(nest, timeout, senses)
+
+    def _rearrange(self, task: Task) -> None:
+        """Take over the layout of another instance.
+
+        Raises:
+            InputError: Its arrays or actions have other shapes.
+        """
+        shapes, sizes = self.layout.shapes(), (self.skills, self._calls.parts)
+        self._arrange(task.scenario)
+        if (self.layout.shapes(), (self.skills, self._calls.parts)) != (shapes, sizes):
+            raise InputError(
+                f"instance {self._seed} of {task.name} has other numbers of things than the first "
+                "one, so that its arrays do not fit; make an environment of its own for it"
+            )
 
     def step(
         self, actions: Mapping[str, Any]
@@ -255,16 +321,31 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         step = self._acting.act(read)
         self._steps += 1
         observations, infos = self._told(step.deeds, spoken=step.spoken)
-        nest, reward, ends = self.nest, self._options.reward, self._options.ends
-        rewards = {
-            agent: 0.0 if reward is None else float(reward(nest, agent)) for agent in self.agents
-        }
-        ended = ends is not None and bool(ends(nest))
+        rewards = {agent: self._reward(agent) for agent in self.agents}
+        ended, cut = self._ends()
+        if isinstance(self._acting, TaskActing):
+            for told in infos.values():
+                told["success"] = self._acting.success
         terminations = dict.fromkeys(self.agents, ended)
-        truncations = dict.fromkeys(self.agents, self._steps >= self._options.max_steps)
-        if ended or self._steps >= self._options.max_steps:
+        truncations = dict.fromkeys(self.agents, cut)
+        if ended or cut:
             self.agents = []
         return observations, rewards, terminations, truncations, infos
+
+    def _reward(self, agent: str) -> float:
+        reward = self._options.reward
+        if reward is not None:
+            return float(reward(self.nest, agent))
+        return self._acting.reward(agent) if isinstance(self._acting, TaskActing) else 0.0
+
+    def _ends(self) -> tuple[bool, bool]:
+        """Return True if the episode has ended, and True if it was cut."""
+        ends = self._options.ends
+        ended = ends is not None and bool(ends(self.nest))
+        if isinstance(self._acting, TaskActing):
+            is_cut = self._acting.is_cut
+            return ended or (self._acting.is_over and not is_cut), is_cut
+        return ended, self._steps >= (self._options.max_steps or _MAX_STEPS)
 
     def render(self) -> None:
         """Do nothing; `nest.figure()` draws any belief."""

@@ -1,0 +1,172 @@
+"""Tasks as environments: their rules are those of episodes; copies; turns."""
+
+import os
+import warnings
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beliefnest as bn
+from beliefnest.env import aec_env, parallel_env, vector_env
+from beliefnest.episodes.episode import Episode
+from beliefnest.episodes.policies.simple import Scripted
+from beliefnest.episodes.task import Task
+
+pytest.importorskip("pettingzoo", reason="the extra `pettingzoo` is not installed")
+from gymnasium.vector import AutoresetMode
+from pettingzoo.test import api_test, parallel_api_test
+
+pytestmark = pytest.mark.usefixtures("kept_worlds")
+
+CHEST = [4, 1, 2]
+HALL = {
+    "name": "hall",
+    "box": [[0, 0, 0], [8, 3, 8]],
+    "blocks": [{"block": "stone", "fill": [[0, 0, 0], [8, 0, 8]]}],
+    "containers": [{"at": CHEST, "items": {"diamond": 1}}],
+    "agents": {"ann": {"position": [1.5, 1, 1.5]}, "bob": {"position": [6.5, 1, 6.5]}},
+    "episode": {
+        "goal": {"reach": [{"agent": "ann", "items": {"diamond": 1}}]},
+        "goals": {"bob": {"never": [{"agent": "ann", "items": {"diamond": 1}}]}},
+        "talk": ["ann"],
+        "rewards": {"reached": 5, "violated": -3, "round": -1, "message": -0.25},
+        "rounds": 4,
+        "round_ticks": 2,
+    },
+}
+
+
+def known_to_bob(env: Any, infos: Any) -> list[tuple[int, int, int]]:
+    levers = infos["anne"]["beliefs"]["/anne/bob"]["levers"]
+    return [place for place, on in zip(env.layout.levers, levers, strict=True) if on >= 0]
+
+
+def lift(env: Any, seed: int) -> tuple[tuple[int, int, int], list[float]]:
+    """Let Anne go to a lever that she believes Bob to know; return it and the rewards."""
+    _, infos = env.reset(seed=seed)
+    lever = known_to_bob(env, infos)[0]
+    earned = []
+    while env.agents:
+        _, rewards, ended, cut, infos = env.step({"anne": env.action("turnOnLever", lever=lever)})
+        earned.append(rewards["anne"])
+        assert ended["anne"] is infos["anne"]["success"]
+        assert not (ended["anne"] and cut["anne"])
+    return lever, earned
+
+
+def test_a_task_gives_players_goal_rewards_and_limits() -> None:
+    env = parallel_env("joint-lift", nested=["/anne/bob"])
+    assert env.possible_agents == ["anne"]
+    for seed in (0, 1):
+        lever, earned = lift(env, seed)
+        assert earned == [0.0] * (len(earned) - 1) + [1.0]
+        # The same programs in an episode have the same result, in the same round.
+        task = Task.load("joint-lift", seed)
+        assert env.layout.box == task.scenario.setting.snapshot.box
+        going = Scripted([f"await turnOnLever(bot, new Vec3{lever})"] * len(earned))
+        with Episode(task, {"anne": going}, seed=seed) as episode:
+            episode.play()
+            assert (episode.success, episode.rounds) == (True, len(earned))
+    env.reset(seed=0)
+    for _ in range(Task.load("joint-lift").form.rounds):
+        _, _, ended, cut, _ = env.step({})
+    assert (ended, cut, env.agents) == ({"anne": False}, {"anne": True}, [])
+    env.close()
+
+
+def test_the_episode_of_a_scenario_gives_rewards_and_costs() -> None:
+    env = parallel_env(bn.Scenario.from_mapping(HALL), phrases=["hello"])
+    env.reset(seed=0)
+    say = env.action("say", phrase="hello")
+    _, rewards, *_, infos = env.step({"ann": say, "bob": say})
+    # Bob may not speak: nobody hears him, and it costs him nothing.
+    assert rewards == {"ann": -1.25, "bob": -1.0}
+    assert "may not speak" in infos["bob"]["error"]
+    take = env.action("getItemFromChest", container=tuple(CHEST), item="diamond")
+    total = {"ann": 0.0, "bob": 0.0}
+    while env.agents:
+        _, rewards, ended, _, infos = env.step({"ann": take if not infos["ann"]["busy"] else say})
+        total = {agent: total[agent] + each for agent, each in rewards.items()}
+    assert ended == {"ann": True, "bob": True}
+    assert total["ann"] > total["bob"]
+    assert infos["ann"]["success"]
+    env.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"senses": "world"}, "leave senses and timeout_ticks out"),
+        ({"timeout_ticks": 9}, "leave senses and timeout_ticks out"),
+        ({"condition": 1}, "has no conditions"),
+        ({"parameters": {"far": 3}}, "far"),
+        ({"parameters": {"near": 3}}, "near"),
+        ({"max_steps": 0}, "max_steps is 0"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(bn.BeliefNestError, match=message):
+        parallel_env("joint-lift", **options)
+    with pytest.raises(bn.InputError, match="parameters are for built-in tasks"):
+        parallel_env("sally-anne", parameters={"far": 3})
+
+
+def test_the_conformance_tests_of_the_library_pass() -> None:
+    hall = bn.Scenario.from_mapping(HALL)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = parallel_env(hall, phrases=["yes"])
+        parallel_api_test(env, num_cycles=8)
+        env.close()
+    with warnings.catch_warnings():
+        # The library recommends boxes as spaces, and names such as player_0.
+        warnings.simplefilter("ignore")
+        turns = aec_env(hall, phrases=["yes"])
+        api_test(turns, num_cycles=8)
+        turns.close()
+
+
+def test_copies_are_stepped_together_and_begin_again() -> None:
+    env = vector_env(bn.Scenario.from_mapping(HALL), 2, max_steps=3)
+    assert env.rows == [(0, "ann"), (0, "bob"), (1, "ann"), (1, "bob")]
+    assert env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    observations, _ = env.reset(seed=7)
+    assert env.observation_space.contains(observations)
+    assert observations["me"].tolist() == [0, 1, 0, 1]
+    env.action_space.seed(0)
+    ticks = []
+    for step in range(5):
+        observations, rewards, ended, cut, infos = env.step(env.action_space.sample())
+        assert env.observation_space.contains(observations)
+        assert rewards.shape == ended.shape == (4,)
+        assert cut.all() if step == 2 else not cut.any()
+        assert infos["success"].tolist() == [False] * 4 if step != 3 else "success" not in infos
+        ticks.append(int(observations["tick"][0]))
+    assert ticks[3] < ticks[2]
+    assert ticks[3] < ticks[4]
+    env.close()
+    for copies in (0, "2"):
+        with pytest.raises(bn.InputError, match="at least 1"):
+            vector_env("joint-lift", copies)  # type: ignore[arg-type]  # this is the mistake
+    with pytest.raises(bn.InputError, match="arrays"):
+        vector_env("sally-anne", 2, observations="dict")
+
+
+def test_an_environment_is_refused_in_a_forked_child() -> None:
+    env = parallel_env("sally-anne")
+    env.reset(seed=0)
+    child = os.fork()
+    if not child:
+        code = 1
+        try:
+            env.reset(seed=1)
+        except bn.ForkedError:
+            code = 0
+        finally:
+            os._exit(code)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    # The parent's episode goes on.
+    observations, *_ = env.step({})
+    assert np.all(observations["anne"]["tick"] > 0)
+    env.close()
