@@ -11,7 +11,7 @@ from gymnasium.vector.utils import batch_space, concatenate, create_empty_array,
 
 from beliefnest.adapters.pettingzoo.environment import BeliefEnv, BeliefSpace
 from beliefnest.errors import InputError
-from beliefnest.world.limits import checked_seed
+from beliefnest.world.seeds import checked_seed
 
 __all__ = ["BeliefVectorEnv"]
 
