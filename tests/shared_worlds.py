@@ -50,8 +50,8 @@ def kept_worlds(lent: Lent) -> Iterator[None]:
         return nullcontext()
 
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("beliefnest.cli.ahead.ahead", nothing_ahead)
+        patched.setattr("beliefnest.worlds.minecraft.launching.ahead", nothing_ahead)
         patched.setattr("beliefnest.cli.run.Worlds", shared)
-        patched.setattr("beliefnest.studies.worker.Worlds", lent)
+        patched.setattr("beliefnest.studies.worker.Worlds", shared)
         patched.setattr("beliefnest.nest.face.nest.open_world", lent_world)
         yield

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from joblib.externals.loky.process_executor import TerminatedWorkerError
+from tests.children import children
 from tests.profiles import at_night
 from tests.studies.small import SMALL, small_in, study_in, tables_of
 
@@ -86,10 +87,22 @@ if importlib.util.find_spec("ray") is not None:  # at night only
     BACKENDS.append(pytest.param("ray", marks=pytest.mark.extra("ray")))
 
 
+# One process would play as few cells as these.
+IN_PROCESSES = """
+import sys
+from beliefnest.cli import main
+from beliefnest.studies import jobs
+jobs._FEW = {}
+sys.argv[0] = "beliefnest"
+main()
+"""
+COMMAND = [sys.executable, "-c", IN_PROCESSES]
+
+
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_the_same_bytes_with_two_jobs(whole, backend, tmp_path):
     out, file = tmp_path / "out", whole[1]
-    command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out", str(out)]
+    command = [*COMMAND, "study", str(file), "--out", str(out)]
     subprocess.run([*command, "--jobs", "2", "--backend", backend], check=True)
     assert cells_of(out) == cells_of(whole[0])
     assert tables_of(out) == tables_of(whole[0])
@@ -120,7 +133,7 @@ def test_different_results_of_one_cell_do_not_merge(whole, tmp_path):
 def test_a_killed_study_goes_on_to_the_same_rows(whole, tmp_path):
     chance = random.Random(0)
     out, file = tmp_path / "out", whole[1]
-    command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out", str(out)]
+    command = [*COMMAND, "study", str(file), "--out", str(out)]
     for _ in range(at_night(50, 2)):
         process = subprocess.Popen(
             [*command, "--jobs", "2"], stderr=subprocess.PIPE, text=True, start_new_session=True
@@ -341,6 +354,37 @@ def test_a_line_that_was_cut_off_spoils_no_other(tmp_path):
     folder.note_seconds("one", 1.5)
     assert spent_in(folder.ledger) == Usage(1, 10, 5, 0.5)
     assert folder.seconds() == {"one": 1.5}
+
+
+def test_a_few_quick_cells_are_played_by_one_process(whole, tmp_path, monkeypatch):
+    def no_processes(*arguments):
+        raise AssertionError("a process was started")
+
+    monkeypatch.setattr("beliefnest.studies.jobs.processes", no_processes)
+    bn.Study.load(whole[1]).run(tmp_path / "one", jobs=2)
+    assert cells_of(tmp_path / "one") == cells_of(whole[0])
+    monkeypatch.setattr("beliefnest.studies.jobs._FEW", {"embedded": CELLS - 1})
+    with pytest.raises(AssertionError, match="a process was started"):
+        bn.Study.load(whole[1]).run(tmp_path / "two", jobs=2)
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="needs /proc")
+def test_cells_of_a_process_that_is_killed_are_played_later(whole, tmp_path, monkeypatch):
+    monkeypatch.setattr("beliefnest.studies.jobs._FEW", {})
+    before = children()
+
+    def kill(progress):
+        # As the operating system does if memory runs out: the worker is killed, not its helpers.
+        for pid in children() - before:
+            if b"loky.backend.popen_loky_posix" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                os.kill(pid, signal.SIGKILL)
+
+    study = bn.Study.load(whole[1])
+    with pytest.raises(bn.BodyError, match="finished cells are kept"):
+        study.run(tmp_path / "out", jobs=2, on_progress=kill)
+    monkeypatch.undo()
+    study.run(tmp_path / "out", jobs=1)
+    assert cells_of(tmp_path / "out") == cells_of(whole[0])
 
 
 def test_a_process_that_is_ended_is_told_of():

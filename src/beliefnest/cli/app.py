@@ -124,11 +124,13 @@ def run(options: RunOptions) -> int:
     """Play a scenario, track the beliefs, ask the model, and judge the results."""
     from contextlib import nullcontext
 
-    from beliefnest.cli.ahead import ahead
+    from beliefnest.world.seeds import checked_seed
+    from beliefnest.worlds.minecraft import launching
 
+    checked_seed(options.seed, "--seed")
     # A folder may have all results already; then no world is needed.
     begun = options.out is not None and options.out.exists()
-    with nullcontext() if begun else ahead(options.full_world, options.seed) as launch:
+    with nullcontext() if begun else launching.ahead(options.full_world, options.seed) as launch:
         from beliefnest.cli.run import run_scenarios
 
         return run_scenarios(options, launch)

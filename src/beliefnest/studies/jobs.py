@@ -1,20 +1,22 @@
-"""Playing of the open cells of a plan, one by one or in parallel with joblib."""
+"""Playing of the open cells of a plan, one by one, in processes, or on a cluster with joblib."""
 
 import contextlib
-import os
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from beliefnest.errors import BodyError, MissingExtraError, UnknownNameError
 from beliefnest.llm.messages import Usage
-from beliefnest.studies.cells import Keyed
+from beliefnest.llm.resolve import is_of_provider
+from beliefnest.studies.cells import Cell, Keyed
 from beliefnest.studies.checking import check_count
+from beliefnest.studies.processes import Supply, processes
 from beliefnest.studies.spending import spent_in
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.terms import Terms
 from beliefnest.studies.worker import CellResult, Worker, play_in_process
+from beliefnest.worlds.minecraft.launching import ahead
 
 __all__ = ["BACKENDS", "OnStudyProgress", "StudyProgress", "run_cells"]
 
@@ -25,6 +27,8 @@ BACKENDS = ("loky", "dask", "ray")
 _Results = Generator[CellResult, None, None]
 _ROUND = 8
 """Cells per job in a batch on Ray; results are written after each batch."""
+_FEW = {"embedded": 8, "scripted": 80}
+"""Most quick cells, by world, that one process has played before another one has started."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,23 +125,67 @@ class _Counting:
 def _results(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _Results:
     if not cells:
         return
-    if jobs == 1 and backend == "loky":
+    if backend == "loky" and (jobs == 1 or _are_few(cells)):
         with ExitStack() as stack:
             worker = Worker(stack)
             for cell in cells:
                 yield worker.play(cell, terms)
         return
-    yield from _parallel(cells, terms, jobs, backend)
+    with _engine(backend, jobs):
+        if backend == "loky":
+            yield from _in_processes(cells, terms, jobs)
+        else:
+            yield from _on_cluster(cells, terms, jobs, backend)
 
 
-def _parallel(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _Results:
+def _are_few(cells: Sequence[Keyed]) -> bool:
+    """Return True if one process plays cells sooner than several, which have to start."""
+    most = _FEW.get(_world_of(cells), 0) if all(map(_is_quick, cells)) else 0
+    return len(cells) <= max(1, most)
+
+
+def _is_quick(cell: Keyed) -> bool:
+    """Return True if a cell is played in a fraction of a second: it asks nobody far away."""
+    if not isinstance(cell, Cell):
+        return False
+    models = (cell.key.model, cell.key.setting.get("claims_from"))
+    return not any(name is not None and is_of_provider(name) for name in models)
+
+
+def _in_processes(cells: Sequence[Keyed], terms: Terms, jobs: int) -> _Results:
+    """Play cells in processes of this machine.
+
+    This process plays quick cells, too: so cells are played while the others start, and one process
+    less has to start. It hands on the results of the others between its own cells. If a cell may
+    take long, it plays none, and hands on each result at once.
+    """
+    plays = all(map(_is_quick, cells))
+    world = _world_of(cells)
+    with ExitStack() as stack:
+        # Before the pool, whose library takes a moment to import.
+        launch = stack.enter_context(ahead(world, 0)) if plays else None
+        supply = Supply(cells, terms)
+        stack.enter_context(processes(supply, min(jobs, len(cells)) - plays, world))
+        if plays:
+            worker = Worker(stack, launch)
+            while (cell := supply.take()) is not None:
+                yield worker.play(cell, terms)
+                yield from supply.results(wait=False)
+        yield from supply.results(wait=True)
+
+
+def _world_of(cells: Sequence[Keyed]) -> str:
+    """Return the name of the world in which all cells are played; empty: each has its own."""
+    worlds = {cell.key.setting["world"] if isinstance(cell, Cell) else "" for cell in cells}
+    return worlds.pop() if len(worlds) == 1 else ""
+
+
+def _on_cluster(cells: Sequence[Keyed], terms: Terms, jobs: int, backend: str) -> _Results:
     from joblib import Parallel, delayed, parallel_config
 
-    if backend == "loky":
-        terms = replace(terms, owner=os.getpid())
     # Cells take long, so dispatching them one by one costs little.
     form = "list" if backend == "ray" else "generator_unordered"
-    with _engine(backend, jobs), parallel_config(backend=backend, n_jobs=jobs):
+    with parallel_config(backend=backend, n_jobs=jobs):
         pool = Parallel(return_as=form, batch_size="auto", pre_dispatch="2*n_jobs")
         # Ray's backend returns no result before all cells of a call are done: use batches.
         some = _ROUND * jobs if backend == "ray" else len(cells)
@@ -151,11 +199,9 @@ def _engine(backend: str, jobs: int) -> Iterator[None]:
     """Set up the backend that runs the cells, and end what was started for it."""
     try:
         with ExitStack() as stack:
-            if backend == "loky":
-                stack.callback(_end_processes)
-            elif backend == "dask":
+            if backend == "dask":
                 _enter_dask(stack, jobs)
-            else:
+            elif backend == "ray":
                 from ray.util.joblib import register_ray
 
                 register_ray()
@@ -185,10 +231,3 @@ def _enter_dask(stack: ExitStack, jobs: int) -> None:
             # A process has one world, and plays one cell at a time in it: one thread each.
             client = Client(n_workers=jobs, threads_per_worker=1, dashboard_address=None)
             stack.enter_context(client)
-
-
-def _end_processes() -> None:
-    """End the worker processes of this machine and the worlds that they keep open."""
-    from joblib.externals.loky import get_reusable_executor
-
-    get_reusable_executor().shutdown(wait=True, kill_workers=True)

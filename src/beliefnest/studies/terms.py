@@ -21,7 +21,6 @@ class Terms:
         ledger: File with the usage of each answer.
         runs: Folder of recorded runs; None: no recording.
         limits: Limits of tokens and cost of the whole study.
-        owner: Id of the process with which workers end; None: workers end by themselves.
         environment: Variables with addresses and keys of models; None: the worker's environment.
     """
 
@@ -29,7 +28,6 @@ class Terms:
     ledger: Path
     runs: Path | None
     limits: RunLimits
-    owner: int | None = None
     environment: Mapping[str, str] | None = None
 
     @property

@@ -16,13 +16,13 @@ from beliefnest.prompts import Renderer
 from beliefnest.scenarios.records import expectation_json, probe_json
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.studies.cells import Cell, Keyed
-from beliefnest.studies.ending import end_with
 from beliefnest.studies.episode_cells import EpisodeCell
 from beliefnest.studies.episode_playing import play_episode
 from beliefnest.studies.terms import Terms
 from beliefnest.worlds.by_name import Worlds
+from beliefnest.worlds.minecraft.launching import Launch
 
-__all__ = ["CellResult", "Worker", "play_in_process"]
+__all__ = ["CellResult", "Worker", "keep_worker", "play_in_process"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +45,11 @@ class Worker:
 
     Args:
         stack: Stack that closes the worlds.
+        launch: Node of the embedded world, started earlier with seed 0.
     """
 
-    def __init__(self, stack: ExitStack) -> None:
-        self._worlds = stack.enter_context(Worlds(0))
+    def __init__(self, stack: ExitStack, launch: Launch | None = None) -> None:
+        self._worlds = stack.enter_context(Worlds(0, launch=launch))
         self._renderer = Renderer()
 
     def play(self, cell: Keyed, terms: Terms) -> CellResult:
@@ -109,17 +110,21 @@ def _say_nothing(what: str, done: int, total: int) -> None:
 class _Kept(threading.local):
     """Worker of a thread. A process pool has no other place to keep a world open."""
 
+    stack: ExitStack | None = None
     worker: Worker | None = None
 
 
 _kept = _Kept()
 
 
+def keep_worker(stack: ExitStack, launch: Launch | None = None) -> Worker:
+    """Return a worker that this thread keeps, with the stack, until its process ends."""
+    _kept.stack, _kept.worker = stack, Worker(stack, launch)
+    return _kept.worker
+
+
 def play_in_process(cell: Keyed, terms: Terms) -> CellResult:
-    """Play a cell with the worker that this thread keeps until its process ends."""
-    if _kept.worker is None:
-        if terms.owner is not None:
-            end_with(terms.owner)
-        # The process of a world ends with the process that started it.
-        _kept.worker = Worker(ExitStack())
-    return _kept.worker.play(cell, terms)
+    """Play a cell with the worker that this thread keeps."""
+    # The process of a world ends with the process that started it.
+    worker = _kept.worker or keep_worker(ExitStack())
+    return worker.play(cell, terms)

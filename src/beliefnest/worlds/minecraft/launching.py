@@ -5,17 +5,17 @@ everything else while Node loads the world.
 """
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Self
 
 from beliefnest.errors import BodyError, BodyLostError
+from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.minecraft.channel import PROTOCOL, Channel
 from beliefnest.worlds.minecraft.node_files import EMBEDDED, node_command
 from beliefnest.worlds.process_limits import ProcessLimits
 
-__all__ = ["MINECRAFT", "Launch", "started"]
+__all__ = ["MINECRAFT", "Launch", "ahead", "started"]
 
 MINECRAFT = "1.20.4"
 """Minecraft version of the embedded world."""
@@ -24,7 +24,7 @@ MINECRAFT = "1.20.4"
 class Launch:
     """Node process that was asked for an empty world; made by `Launch.begin`.
 
-    In a `with` block, it is killed at the end unless a world has taken it.
+    Either a world takes it, or the owner kills it.
     """
 
     def __init__(self, channel: Channel) -> None:
@@ -60,17 +60,6 @@ class Launch:
             launch.kill()
             raise
         return launch
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.kill()
 
     def take(self) -> tuple[Channel, Mapping[str, str]]:
         """Wait for the world; return the channel to it, and the running versions.
@@ -115,6 +104,31 @@ def started(
         BodyError: Node or the bundle is missing, or the start failed.
     """
     return Launch.begin(seed, limits, program, writable, **more).take()
+
+
+@contextmanager
+def ahead(world: str, seed: int) -> Iterator[Launch | None]:
+    """Launch Node with the usual limits if a world is the embedded one; kill it if it is not used.
+
+    A failure is not told here: a world that gets no launch starts Node again and tells it.
+
+    Args:
+        world: Name of the world.
+        seed: Seed of the world's own random numbers.
+
+    Raises:
+        InputError: The seed is not a whole number of 64 bits.
+    """
+    checked_seed(seed)
+    launch = None
+    if world == "embedded":
+        with suppress(BodyError):
+            launch = Launch.begin(seed, ProcessLimits())
+    try:
+        yield launch
+    finally:
+        if launch is not None:
+            launch.kill()
 
 
 @contextmanager

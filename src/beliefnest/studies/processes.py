@@ -1,0 +1,143 @@
+"""Worker processes of this machine, which take the cells of a study from a common supply.
+
+This module imports little, because a worker process imports it first: it launches Node, and then
+imports everything else while Node loads the world.
+"""
+
+import os
+import threading
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
+from contextlib import ExitStack, contextmanager
+from queue import SimpleQueue
+from typing import TYPE_CHECKING
+
+from beliefnest.studies.ending import end_with
+from beliefnest.worlds.minecraft.launching import ahead
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from beliefnest.studies.cells import Keyed
+    from beliefnest.studies.terms import Terms
+    from beliefnest.studies.worker import CellResult
+
+__all__ = ["Supply", "processes"]
+
+_AHEAD = 2
+"""Cells that a process has: the one that it plays, and the next one."""
+
+
+class Supply:
+    """Cells that are left to play, and the results that worker processes have sent.
+
+    Args:
+        cells: The cells.
+        terms: Terms of the study for the processes.
+    """
+
+    def __init__(self, cells: "Sequence[Keyed]", terms: "Terms") -> None:
+        self._left = deque(cells)
+        self._terms = terms
+        self._lock = threading.Lock()
+        self._ended: SimpleQueue[Future[CellResult]] = SimpleQueue()
+        self._sent = 0
+        self._received = 0
+
+    def take(self) -> "Keyed | None":
+        """Take a cell to play it in this process; None: none is left."""
+        with self._lock:
+            return self._left.popleft() if self._left else None
+
+    def results(self, *, wait: bool) -> "Iterator[CellResult]":
+        """Yield the results that have come, or, with `wait`, those of all cells that are left.
+
+        Raises:
+            BrokenProcessPool: A process ended unexpectedly.
+        """
+        while not self._ended.empty() or (wait and self._is_open):
+            self._received += 1
+            yield self._ended.get().result()
+
+    def feed(self, pool: "Executor", ready: "Future[None]") -> None:
+        """Send the first cells to a process that is ready for them."""
+        if ready.cancelled():
+            return
+        if (error := ready.exception()) is not None:
+            self._ended.put(_failed(error))
+            return
+        for _ in range(_AHEAD):
+            self._send(pool)
+
+    def close(self) -> None:
+        """Send no more cells."""
+        with self._lock:
+            self._left.clear()
+
+    @property
+    def _is_open(self) -> bool:
+        with self._lock:
+            return bool(self._left) or self._sent > self._received
+
+    def _send(self, pool: "Executor") -> None:
+        from beliefnest.studies.worker import play_in_process
+
+        with self._lock:
+            if not self._left:
+                return
+            cell = self._left.popleft()
+            self._sent += 1
+        try:
+            future = pool.submit(play_in_process, cell, self._terms)
+        except Exception as error:  # noqa: BLE001 - raised again where results are read
+            self._ended.put(_failed(error))
+            return
+        future.add_done_callback(lambda ended: self._receive(pool, ended))
+
+    def _receive(self, pool: "Executor", ended: "Future[CellResult]") -> None:
+        if ended.cancelled():
+            return
+        self._ended.put(ended)
+        if ended.exception() is None:
+            self._send(pool)
+
+
+@contextmanager
+def processes(supply: Supply, count: int, world: str) -> Iterator[None]:
+    """Start worker processes, which play cells of a supply; kill them at the end.
+
+    Args:
+        supply: The cells.
+        count: Number of processes.
+        world: Name of the world that each of them needs; empty: it depends on the cell.
+    """
+    from joblib.externals.loky import ProcessPoolExecutor
+
+    pool = ProcessPoolExecutor(max_workers=count)
+    try:
+        for _ in range(count):
+            ready = pool.submit(_prepare, os.getpid(), world)
+            ready.add_done_callback(lambda ended: supply.feed(pool, ended))
+        yield
+    finally:
+        supply.close()
+        # A worker may be in the middle of a long cell, and its worlds are open.
+        pool.shutdown(wait=True, kill_workers=True)
+
+
+def _prepare(owner: int, world: str) -> None:
+    """Prepare this worker process: start its world, and import what it needs."""
+    end_with(owner)
+    # The worker ends with its process, which takes its worlds along.
+    stack = ExitStack()
+    launch = stack.enter_context(ahead(world, 0))
+    from beliefnest.studies.worker import keep_worker
+
+    keep_worker(stack, launch)
+
+
+def _failed(error: BaseException) -> "Future[CellResult]":
+    future: Future[CellResult] = Future()
+    future.set_exception(error)
+    return future
