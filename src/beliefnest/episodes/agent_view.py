@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
 from beliefnest.belief.view import State
+from beliefnest.episodes.considered import SearchTrace
 from beliefnest.episodes.decided import Ended
 from beliefnest.errors import PathError
 from beliefnest.nest.acting.imagination import Imagination
@@ -142,6 +143,7 @@ class AgentView:
         round: Number of the round that begins, from 0.
         last: End of the agent's latest program.
         before: The agent's programs of earlier rounds, of any policy; an empty text: no program.
+        considered: Courses that the policy noted for the record of the run; None: none.
     """
 
     def __init__(
@@ -163,6 +165,7 @@ class AgentView:
         self._imagine = imagine
         self._noting = noting
         self.before = before
+        self.considered: SearchTrace | None = None
 
     @property
     def tick(self) -> int:
@@ -284,6 +287,10 @@ class AgentView:
             ]
             about |= {"/".join(path): simulator for path, simulator in level}
         return self._own.render(template, view=RoundFacts.of(self), about=about, **variables)
+
+    def note_considered(self, trace: SearchTrace) -> None:
+        """Record the courses that the policy considered for this round, for readers of the run."""
+        self.considered = trace
 
     def noting(self, model: "Model") -> "Model":
         """Return a model whose conversation the run records."""

@@ -6,6 +6,7 @@ from typing import Literal
 
 import msgspec
 
+from beliefnest.episodes.considered import SearchTrace
 from beliefnest.worlds.protocol import ProgramPast
 
 __all__ = [
@@ -57,12 +58,14 @@ class Decision(msgspec.Struct, frozen=True):
         fault: Reason why the policy gave no program; empty: there was no error.
         spent: Spending of the decision.
         goes_on: True if the program is the previous one, which was cut, and continues.
+        considered: Courses that the policy tried first; None: it recorded none.
     """
 
     program: str = ""
     fault: str = ""
     spent: Spent = Spent()
     goes_on: bool = False
+    considered: SearchTrace | None = None
 
 
 @dataclass(frozen=True, slots=True)

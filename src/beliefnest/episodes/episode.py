@@ -8,6 +8,7 @@ from typing import Self
 
 from beliefnest.episodes.agent_view import AgentView, Brief, Policy
 from beliefnest.episodes.choosing import check_resumable, chosen, name_of
+from beliefnest.episodes.considered import SearchTrace
 from beliefnest.episodes.decided import (
     Failure,
     Part,
@@ -351,6 +352,38 @@ class Episode:
     def failures(self) -> Sequence[Failure]:
         """Programs that failed, and rounds in which a policy gave none, with the reasons."""
         return failures_in(self._parts, len(self._slots))
+
+    def search_trace(self, agent: str, round: int) -> SearchTrace:
+        """Return the courses that an agent's policy considered before a round.
+
+        `search` and `infer` record the best courses with their scores, and what they reckoned the
+        others would do. Other policies record what they give to `AgentView.note_considered`.
+
+        Args:
+            agent: Name of the agent.
+            round: Number of the round, from 0.
+
+        Raises:
+            InputError: The round was not played, there is no such agent, or its policy recorded
+                nothing.
+        """
+        if agent not in self.task.agents:
+            known = ", ".join(self.task.agents)
+            raise InputError(f"there is no agent {agent!r}; agents are {known}")
+        width = len(self._slots)
+        decided = [
+            part.decisions[agent]
+            for part in self._parts[max(0, round) * width : (round + 1) * width]
+            if agent in part.decisions
+        ]
+        if not decided:
+            raise InputError(f"round {round!r} was not played; there are {self.rounds}")
+        if decided[0].considered is None:
+            raise InputError(
+                f"the policy of {agent} recorded no courses for round {round}: "
+                f"{self.policies[agent]}; search and infer record them"
+            )
+        return decided[0].considered
 
     @property
     def start(self) -> int:

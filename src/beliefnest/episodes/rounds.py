@@ -118,8 +118,8 @@ def _decided(policy: Policy, view: AgentView) -> Decision:
     if program.strip() == GO_ON:
         if view.last.how != "cut":
             return Decision(fault="it has no interrupted program to continue")
-        return Decision(program=view.last.program, spent=spent, goes_on=True)
-    return Decision(program=program if program.strip() else "", spent=spent)
+        return Decision(view.last.program, spent=spent, goes_on=True, considered=view.considered)
+    return Decision(program if program.strip() else "", spent=spent, considered=view.considered)
 
 
 def _spent(policy: Policy) -> Spent:

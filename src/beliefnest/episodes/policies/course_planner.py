@@ -69,10 +69,16 @@ class FoundPlan:
     Attributes:
         calls: Calls in order.
         score: Score of the plan.
+        considered: All courses that were tried, with their scores.
+        others: Calls that the planner assumed of the other agents, by name.
+        reason: Reason for calls that are none of the courses; empty: they are the best course.
     """
 
     calls: tuple[Call, ...]
     score: Score
+    considered: Sequence[tuple[tuple[Call, ...], Score]] = ()
+    others: Mapping[str, tuple[Call, ...]] = field(default_factory=dict)
+    reason: str = ""
 
 
 @dataclass
@@ -223,22 +229,27 @@ class _Planning:
         if before is not None:
             self._spend_round(first, before)
         self._value(first)
-        best, beam = first, [first]
+        best, beam, tried = first, [first], [first]
         for _ in range(self._bounds.depth):
             if best.score[0] == REACHED and not best.calls and not best.others:
                 break
             found = [each for node in beam for each in self._expanded(node)]
             found.sort(key=lambda node: node.score)
+            tried += found
             beam = found[: self._bounds.beam]
             if not beam:
                 break
             if beam[0].score < best.score:
                 best = beam[0]
-        if best.score[0] != OPEN:
-            return FoundPlan(best.calls, best.score)
-        if told := self._telling(mind):
-            return FoundPlan((told,), best.score)
-        return FoundPlan(best.calls or self._exploring(mind), best.score)
+        calls, reason = best.calls, ""
+        if best.score[0] == OPEN:
+            if told := self._telling(mind):
+                calls, reason = (told,), "somebody does not know this, and may plan better with it"
+            elif not calls and (look := self._exploring(mind)):
+                calls, reason = look, "a wanted item may be there"
+        others = {name: tuple(each.performer.calls) for name, each in first.others.items()}
+        considered = [(node.calls, node.score) for node in tried]
+        return FoundPlan(calls, best.score, considered, others, reason)
 
     def outcome(self, mind: Imagination, calls: Sequence[Call]) -> Score:
         """Return the score of a course, which ends with the first call that cannot be done."""

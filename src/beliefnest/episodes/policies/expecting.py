@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from beliefnest.episodes.agent_view import AgentView, Brief
+from beliefnest.episodes.considered import SearchTrace, TriedCourse
 from beliefnest.episodes.policies.candidates import items_of
 from beliefnest.episodes.policies.course_planner import (
     OPEN,
@@ -81,7 +82,15 @@ class Expecting:
             courses.setdefault(program_of(calls), calls)
         worth = self._learning if learns else self._expected
         values = {text: worth(supposed, calls) for text, calls in courses.items()}
-        return min(values, key=lambda text: values[text])
+        ranked = sorted(values.items(), key=lambda each: each[1])
+        tried = sum(each.planner.tried for each in supposed)
+        self._view.note_considered(
+            SearchTrace(
+                tuple(TriedCourse(text, "expected", tuple(score)) for text, score in ranked),
+                tried=tried,
+            )
+        )
+        return ranked[0][0]
 
     def _suppositions(self, shares: GoalShares) -> Iterator[_Supposition]:
         brief, mind = self._view.brief, self._view.imagine(self._order)

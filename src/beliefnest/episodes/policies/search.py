@@ -1,14 +1,26 @@
 """Policies that plan without a language model: `search:ORDER` and its upper bound."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from beliefnest.episodes.agent_view import AgentView
-from beliefnest.episodes.policies.course_planner import USUAL, Bounds, Planner
+from beliefnest.episodes.considered import CourseOutcome, SearchTrace, TriedCourse
+from beliefnest.episodes.policies.course_planner import (
+    OPEN,
+    REACHED,
+    USUAL,
+    VIOLATED,
+    Bounds,
+    FoundPlan,
+    Planner,
+)
 from beliefnest.episodes.policies.expecting import Expecting, uniform
 from beliefnest.skills.calls import program_of
 
 __all__ = ["Omniscient", "Search"]
 
+_MOST_COURSES = 10
+_OUTCOMES: Mapping[float, CourseOutcome] = {REACHED: "reached", OPEN: "open", VIOLATED: "violated"}
 _FAILED = ("failed", "no_way")
 """Ends of programs after which their first call is not repeated at once."""
 
@@ -38,7 +50,24 @@ class Search:
         plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds, avoided=avoided)
         if not plan.calls and self.order and _has_waited_in_vain(view):
             plan = planner.plan(mind, view.agent, self.order, ticks, self.bounds, idle=True)
+        view.note_considered(_trace(plan, planner.tried))
         return program_of(plan.calls)
+
+
+def _trace(plan: FoundPlan, tried: int) -> SearchTrace:
+    """Return the record of a search: the best courses, and the one of doing nothing."""
+    ranked = sorted(plan.considered, key=lambda each: each[1])
+    kept = ranked[:_MOST_COURSES]
+    kept += [each for each in ranked[_MOST_COURSES:] if not each[0]]
+    return SearchTrace(
+        tuple(
+            TriedCourse(program_of(calls), _OUTCOMES[score[0]], tuple(score))
+            for calls, score in kept
+        ),
+        {name: program_of(calls) for name, calls in plan.others.items()},
+        tried,
+        plan.reason,
+    )
 
 
 def _has_waited_in_vain(view: AgentView) -> bool:
