@@ -403,6 +403,9 @@ class PlayOptions:
     measure_help: Annotated[
         bool, typer.Option("--measure-help", help="Print the help needed, given and superfluous.")
     ] = False
+    explain: Annotated[
+        bool, typer.Option("--explain", help="Print the courses that policies considered.")
+    ] = False
     listen: Annotated[
         str | None,
         typer.Option(help="Address for people to join: PORT of this machine, or HOST:PORT."),

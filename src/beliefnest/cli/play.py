@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from rich.text import Text
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.options import PlayOptions, joining_address
 from beliefnest.cli.terminal_text import printable
+from beliefnest.episodes.considered import considered_lines
 from beliefnest.episodes.episode import Budget, Episode
 from beliefnest.episodes.helping import Help
 from beliefnest.episodes.task import Task
@@ -53,7 +54,7 @@ def play_task(options: PlayOptions) -> int:
             on_progress("playing branches without help", limit, limit)
             episode.help()
         on_progress("over", limit, limit)
-        report = _report(episode, measures_help=options.measure_help)
+        report = _report(episode, options)
     if options.json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")
     else:
@@ -152,7 +153,7 @@ def _told(policies: Mapping[str, str]) -> str:
     return ", ".join(f"{agent}={policy}" for agent, policy in policies.items())
 
 
-def _report(episode: Episode, *, measures_help: bool) -> dict[str, Any]:
+def _report(episode: Episode, options: PlayOptions) -> dict[str, Any]:
     told = told_episode(episode.nest)
     assert told is not None
     branch = told["branches"][episode.branch]
@@ -176,6 +177,7 @@ def _report(episode: Episode, *, measures_help: bool) -> dict[str, Any]:
                         "fault": done["fault"],
                         "ended": done["ended"] or "none",
                         "reason": done["reason"],
+                        **({"considered": done["considered"]} if options.explain else {}),
                     }
                     for done in part["agents"]
                 },
@@ -183,7 +185,7 @@ def _report(episode: Episode, *, measures_help: bool) -> dict[str, Any]:
             for part in branch["parts"]
         ],
     }
-    if measures_help:
+    if options.measure_help:
         report["help"] = _help(episode.help())
     return report
 
@@ -215,7 +217,8 @@ def _print(report: Mapping[str, Any]) -> None:
             table.add_row(*(Text(printable(cell)) for cell in cells))
     console = stdout()
     print_table(console, table)
-    lines = [f"failed in {failure}" for failure in report["measures"]["failures"]]
+    lines = list(_considered_lines(report["rounds"]))
+    lines += [f"failed in {failure}" for failure in report["measures"]["failures"]]
     lines += [_goal_line(each) for each in report["goal"]]
     if "help" in report:
         lines += _help_lines(report["help"], report["measures"])
@@ -229,6 +232,17 @@ def _print(report: Mapping[str, Any]) -> None:
     )
     for line in lines:
         console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
+
+
+def _considered_lines(rounds: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield the courses that policies considered, round by round, as far as they are reported."""
+    for part in rounds:
+        for agent, told in part["agents"].items():
+            considered = told.get("considered")
+            if considered is None:
+                continue
+            yield f"round {part['round']}, {agent} tried {counted(considered['tried'], 'course')}"
+            yield from (f"  {line}" for line in considered_lines(considered))
 
 
 def _goal_line(condition: Mapping[str, Any]) -> str:

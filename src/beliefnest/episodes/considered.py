@@ -1,11 +1,11 @@
 """Courses that a policy considered before it decided, as a run records them."""
 
 from collections.abc import Mapping, Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import msgspec
 
-__all__ = ["CourseOutcome", "SearchTrace", "TriedCourse", "trace_lines"]
+__all__ = ["CourseOutcome", "SearchTrace", "TriedCourse", "considered_lines", "told_trace"]
 
 CourseOutcome = Literal["reached", "open", "violated", "expected"]
 """Imagined end of a course; `expected`: the mean over possible goals of others."""
@@ -59,18 +59,33 @@ class SearchTrace(msgspec.Struct, frozen=True):
     reason: str = ""
 
 
-def trace_lines(trace: SearchTrace, most: int = 5) -> Sequence[str]:
-    """Return a trace as lines of text: the reckoned acts of others, then the best courses."""
+def told_trace(trace: SearchTrace) -> dict[str, Any]:
+    """Return a trace as plain values: courses as pairs of program and end in words."""
+    return {
+        "courses": [[course.program, course.words] for course in trace.courses],
+        "others": dict(trace.others),
+        "tried": trace.tried,
+        "reason": trace.reason,
+    }
+
+
+def considered_lines(told: Mapping[str, Any], most: int = 5) -> Sequence[str]:
+    """Return a trace in lines of text: the reckoned acts of others, then the best courses.
+
+    Args:
+        told: Trace, as `told_trace` returns it.
+        most: Greatest number of courses.
+    """
     lines = [
-        f"reckoned that {name} does: {_flat(program) or 'nothing'}"
-        for name, program in trace.others.items()
+        f"expects that {name} does: {_flat(program) or 'nothing'}"
+        for name, program in told["others"].items()
     ]
     lines += [
-        f"{number}. {course.words}: {_flat(course.program) or 'nothing'}"
-        for number, course in enumerate(trace.courses[:most], 1)
+        f"{number}. {words}: {_flat(program) or 'nothing'}"
+        for number, (program, words) in enumerate(told["courses"][:most], 1)
     ]
-    if trace.reason:
-        lines.append(f"decided otherwise: {trace.reason}")
+    if told["reason"]:
+        lines.append(f"decided otherwise: {told['reason']}")
     return lines
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import msgspec
 
-from beliefnest.episodes.considered import SearchTrace
+from beliefnest.episodes.considered import told_trace
 from beliefnest.episodes.decided import Part
 from beliefnest.episodes.record import Branch, EpisodeStart, Keeps, holds_episode, kept_in
 from beliefnest.episodes.task_form import TaskForm
@@ -115,14 +115,5 @@ def _done(part: Part, agent: str) -> dict[str, Any]:
         "ended": "" if ended is None else ended.how,
         "message": "" if ended is None else ended.message,
         "reason": part.reason(agent),
-        **({} if decision.considered is None else {"considered": _told(decision.considered)}),
-    }
-
-
-def _told(trace: SearchTrace) -> dict[str, Any]:
-    return {
-        "courses": [[course.program, course.words] for course in trace.courses],
-        "others": dict(trace.others),
-        "tried": trace.tried,
-        "reason": trace.reason,
+        "considered": None if decision.considered is None else told_trace(decision.considered),
     }

@@ -62,7 +62,7 @@ export class Rounds {
     return element('li', { class: isNow ? 'round now' : 'round', 'aria-current': isNow ? 'step' : null },
       element('button', { type: 'button', class: 'begins', 'data-round': `${line.number} ${part.t}`, title: `ticks ${part.t} to ${part.end}`, onclick: () => this.seek(line, part.t) },
         element('strong', {}, `Round ${name}`), element('span', { class: 'when' }, `tick ${part.t}`)),
-      ...part.agents.map(each => this.deed(run, line, part, each, choice)),
+      ...part.agents.flatMap(each => [this.deed(run, line, part, each, choice), this.considered(each)]),
       ...forksAt(run, line, part).map(other => this.fork(run, line, other, part)),
       isNow ? element('p', { class: 'what-if' }, 'What if? ', element('code', {}, `episode.at(${part.round}).fork(${part.agents[0].agent}="…")`)) : null)
   }
@@ -80,6 +80,17 @@ export class Rounds {
     return element('button', {
       type: 'button', class: `deed${choice.note === note ? ' chosen' : ''}`, title, onclick: () => this.choose({ ...this.place(line, part.t), note })
     }, ...parts)
+  }
+
+  /** Return the courses that a policy considered, folded up; null: it recorded none. @returns {Element|null} */
+  considered ({ agent, considered }) {
+    if (!considered) return null
+    const { courses, others, tried, reason } = considered
+    return element('details', { class: 'considered' },
+      element('summary', {}, `${agent} tried ${tried} ${tried === 1 ? 'course' : 'courses'}`),
+      ...Object.entries(others).map(([name, program]) => element('p', {}, `expects that ${name} does: ${program ? shortened(program) : 'nothing'}`)),
+      element('ol', {}, ...courses.map(([program, words]) => element('li', { title: program }, element('span', { class: 'when' }, `${words}: `), program ? shortened(program) : 'nothing'))),
+      reason ? element('p', {}, `decided otherwise: ${reason}`) : null)
   }
 
   fork (run, line, other, part) {
