@@ -138,7 +138,7 @@ def _recorded(path: Path, walk: Sequence[Frame]) -> _Recorded:
     alone = followed = 0.0
     with SqliteJournal.open(path) as journal:
         history = History(journal, setting)
-        history.reading(_MAIN, parse_path(_DEEP, tuple(agents)))
+        history.state(_MAIN, parse_path(_DEEP, tuple(agents)))
         for start in range(1, _TICKS + 1, _BATCH):
             frames = [_later(walk, tick) for tick in range(start, start + _BATCH)]
             started = time.perf_counter()

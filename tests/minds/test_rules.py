@@ -83,7 +83,7 @@ def test_a_gap_is_the_sum_over_all_courses():
 
 def sees(nest, cell):
     """Return whether Ann would see Bob in the middle of a cell."""
-    view = nest._recording.reading(("ann",))
+    view = nest._recording.state(("ann",))
     ann = view.agents["ann"].position
     eye = (ann[0], ann[1] + 1.62, ann[2])
     feet = [(cell[0] + 0.5, 1.0, cell[1] + 0.5)]

@@ -8,7 +8,7 @@ from bisect import bisect_left
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
-from weakref import WeakSet
+from weakref import ref
 
 import numpy as np
 import numpy.typing as npt
@@ -116,7 +116,8 @@ class Forest:
         tracked = frozenset(table.tracked.tolist())
         self.since = tracked if since is None else tracked & since
         self.verdicts: Mapping[tuple[int, int], Sequence[Verdict]] = {}
-        self._readers: WeakSet[StateReader] = WeakSet()
+        # A WeakSet would need readers with a hash. States are compared by value, and have none.
+        self._readers: dict[int, ref[StateReader]] = {}
 
     def saved(self) -> tuple[ForestState, Iterator[NodeState]]:
         """Return the forest as plain data: all that folding the next entries depends on.
@@ -296,7 +297,8 @@ class Forest:
 
     def read_by(self, reader: StateReader) -> None:
         """Call `reader.keep` before the forest changes the next time."""
-        self._readers.add(reader)
+        known = ref(reader, self._forget)
+        self._readers[id(known)] = known
 
     def adopt(self, other: "Forest", paths: Sequence[BeliefPath]) -> None:
         """Copy nodes of another forest of this timeline that has folded the same entries."""
@@ -338,9 +340,14 @@ class Forest:
         self._perceive(self.table.below(node))
 
     def _let_read(self) -> None:
-        readers, self._readers = list(self._readers), WeakSet()
-        for reader in readers:
-            reader.keep()
+        readers, self._readers = self._readers, {}
+        for known in readers.values():
+            reader = known()
+            if reader is not None:
+                reader.keep()
+
+    def _forget(self, gone: "ref[StateReader]") -> None:
+        self._readers.pop(id(gone), None)
 
     def _batch_end(self, stop: int) -> int:
         """Return the number of the entry before which the next pass of the kernel must end.

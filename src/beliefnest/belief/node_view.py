@@ -1,8 +1,9 @@
 """View of one node at one entry of a timeline, read from its forest on demand."""
 
 from collections import Counter
-from collections.abc import Mapping
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,16 +15,41 @@ from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, Perce
 from beliefnest.perception.sight import Geometry
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, Position
+from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, EventKind, Position
 
-__all__ = ["NodeView"]
+__all__ = ["NodeView", "Part"]
+
+T = TypeVar("T")
 
 FULL = 20.0
 """Health and food assumed for an agent if they are unknown."""
 
 
+class Part(Generic[T]):
+    """Attribute of a view that is read once, in the reader's turn, and then kept.
+
+    `functools.cached_property` of Python 3.11 locks each attribute before the reader can take its
+    turn. A thread that folds the forest has its turn and reads all parts: both would wait forever.
+    """
+
+    def __init__(self, read: Callable[[Any], T]) -> None:
+        self._read, self.__doc__ = read, read.__doc__
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, view: Any, owner: type | None = None) -> T:
+        kept: dict[str, T] = vars(view)
+        with view.turn:
+            if self._name not in kept:
+                kept[self._name] = self._read(view)
+            return kept[self._name]
+
+
 class NodeView:
     """State of a node. It stays as it is when the forest folds further entries.
+
+    Attributes that are not described here are those of `State`.
 
     Args:
         forest: The forest, which is at the wanted entry.
@@ -31,13 +57,14 @@ class NodeView:
         tick: Tick of the view, at or after that of the last entry; None: the tick of that entry.
 
     Attributes:
-        path: Path of the node.
-        tick: Tick of the view.
+        turn: Lock of the thread that reads the forest.
         count_of_events: Number of events of the timeline before it.
     """
 
+    turn: AbstractContextManager[object] = nullcontext()
+
     def __init__(self, forest: Forest, path: BeliefPath, tick: int | None = None) -> None:
-        self.path = path
+        self.path, self.box = path, forest.context.box
         self.tick = forest.tick if tick is None else tick
         self._forest = forest
         self._node = forest.node(path)
@@ -46,14 +73,19 @@ class NodeView:
 
     def keep(self) -> None:
         """Read all parts that the forest will overwrite; called before it folds further."""
-        self.numbers, self.agents, self.containers, self.items  # noqa: B018 - cached when read
+        self.numbers, self.agents, self.containers, self.items  # noqa: B018 - kept when read
 
-    @cached_property
-    def blocks(self) -> BlockGrid:
+    @property
+    def owner(self) -> str | None:
+        """The agent whose belief this is; None in the real world."""
+        return self.path[-1] if self.path else None
+
+    @Part
+    def grid(self) -> BlockGrid:
         """The believed block states, shape of the box, -1 unknown."""
         return self._forest.context.states(self.numbers)
 
-    @cached_property
+    @Part
     def numbers(self) -> BlockGrid:
         """The numbers of the believed blocks; signs with different texts have different numbers.
 
@@ -61,43 +93,71 @@ class NodeView:
         """
         return self._forest.table.blocks(self._node)
 
-    @cached_property
-    def signs(self) -> Mapping[Position, str]:
+    @Part
+    def texts(self) -> Mapping[Position, str]:
         """The believed texts of signs that carry text, in order of position."""
         return self._forest.context.texts(self.numbers)
 
-    @cached_property
+    @Part
+    def signs(self) -> Mapping[Position, str]:
+        """The texts of known signs, in order of position; empty for a blank sign."""
+        x, y, z = self.box.low
+        found = np.argwhere(np.isin(self.grid, self._forest.context.sign_states)).tolist()
+        places = ((x + i, y + j, z + k) for i, j, k in found)
+        return {place: self.texts.get(place, "") for place in places}
+
+    @Part
     def geometry(self) -> Geometry:
         """The believed blocks prepared for lines of sight."""
-        context = self._forest.context
-        return context.sight.geometry(self.blocks, context.box.low)
+        return self._forest.context.sight.geometry(self.grid, self.box.low)
 
-    @cached_property
+    @Part
     def containers(self) -> Mapping[Position, ContainerBelief]:
         """The known contents, in order of position."""
         forest = self._forest
         found = {}
         for cell in sorted(forest.holdings.of(self._node).containers):
             content = forest.holdings.content(self._node, cell).at(self.tick)
-            found[place_of(forest.context.box, cell)] = ContainerBelief(
+            found[place_of(self.box, cell)] = ContainerBelief(
                 content.items, content.complete, content.basis, content.current
             )
         return found
 
-    @cached_property
+    @Part
     def agents(self) -> Mapping[str, AgentBelief]:
         """The beliefs about every agent, by name."""
         names = self._forest.context.agents
         return {name: self._agent(number) for number, name in enumerate(names)}
 
-    @cached_property
+    @Part
     def items(self) -> Mapping[int, DroppedItem]:
         """The dropped items last seen, by number."""
         return dict(self._forest.holdings.of(self._node).items)
 
-    def events(self) -> tuple[PerceivedEvent, ...]:
-        """Return all perceived events, oldest first."""
+    @Part
+    def perceived(self) -> tuple[PerceivedEvent, ...]:
+        """All perceived events, oldest first."""
         return tuple(self._forest.heard(self._node, self.count_of_events))
+
+    @property
+    def events(self) -> tuple[PerceivedEvent, ...]:
+        """The perceived events other than speech and thought, in order."""
+        return tuple(event for event in self.perceived if not event.kind.is_speech)
+
+    @property
+    def chat(self) -> Sequence[tuple[int, str, str]]:
+        """The utterances heard: (tick, speaker, text)."""
+        return self._said(EventKind.CHAT)
+
+    @property
+    def addressees(self) -> Sequence[str | None]:
+        """The addressee of each line of `chat` that was whispered; None: it was said aloud."""
+        return [e.detail.get("to") for e in self.perceived if e.kind is EventKind.CHAT]
+
+    @property
+    def thoughts(self) -> Sequence[tuple[int, str, str]]:
+        """The owner's thoughts: (tick, thinker, text)."""
+        return self._said(EventKind.THINK)
 
     def events_since(self, count: int) -> tuple[PerceivedEvent, ...]:
         """Return perceived events except those among the timeline's first `count`, oldest first."""
@@ -114,7 +174,7 @@ class NodeView:
         """
         viewer = self.agents[agent]
         if viewer.position is None:
-            return np.zeros(self.blocks.shape, dtype=np.bool_)
+            return np.zeros(self.grid.shape, dtype=np.bool_)
         x, y, z = viewer.position
         return self.geometry.visible_blocks((x, y + EYE_HEIGHT, z), viewer.yaw, viewer.pitch)
 
@@ -140,13 +200,17 @@ class NodeView:
         }
         return Snapshot(
             tick=self.tick,
-            box=self._forest.context.box,
-            blocks=np.maximum(self.blocks, 0),
+            box=self.box,
+            blocks=np.maximum(self.grid, 0),
             containers={place: dict(c.items) for place, c in self.containers.items()},
             agents=agents,
             items=dict(self.items),
-            signs=dict(self.signs),
+            signs=dict(self.texts),
         )
+
+    def _said(self, kind: EventKind) -> list[tuple[int, str, str]]:
+        events = (event for event in self.perceived if event.kind is kind)
+        return [(e.tick, e.actor or "", e.detail["text"]) for e in events]
 
     def _agent(self, number: int) -> AgentBelief:
         forest, node = self._forest, self._node

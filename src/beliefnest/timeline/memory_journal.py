@@ -109,21 +109,12 @@ class MemoryJournal:
         timeline = self._timelines.get(key)
         return self._timeline(key).info if timeline is None else timeline.info
 
-    def has(self, key: TimelineKey) -> bool:
-        """Return True if there is a timeline of that key."""
-        return key in self._timelines
-
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
         """Begin an empty timeline; BranchError if it exists or its base does not."""
-        length = 0 if base is None else self.info(base.timeline).entries
-        self.create_on(key, base, start, length)
-
-    def create_on(self, key: TimelineKey, base: ForkPoint | None, start: int, length: int) -> None:
-        """Begin an empty timeline on a base with `length` entries, in this or another journal."""
         if key in self._timelines:
             raise branch_taken(key)
         if base is not None:
-            check_base(key, base, length)
+            check_base(key, base, self.info(base.timeline).entries)
         self._timelines[key] = _Timeline(TimelineInfo(key, base, start, start))
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:

@@ -1,7 +1,6 @@
 """Journal in memory on top of another journal, which it only reads."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
 
 from beliefnest.timeline.journal import (
     Entry,
@@ -18,103 +17,81 @@ from beliefnest.world.values import AgentState
 __all__ = ["SideJournal"]
 
 
-class SideJournal:
+class SideJournal(MemoryJournal):
     """Timelines in memory whose bases may be in another journal.
+
+    Timelines of the other journal can be read. Changes of them raise BranchError, except
+    checkpoints, which are ignored.
 
     Args:
         other: The other journal, which is only read and must stay open.
-
-    Attributes:
-        records: Records of the timelines in memory.
     """
 
     def __init__(self, other: Journal) -> None:
-        self._other, self._own = other, MemoryJournal()
-        self.records = self._own.records
-
-    @property
-    def writable(self) -> bool:
-        """Always True: changes go to the timelines in memory."""
-        return True
+        super().__init__()
+        self._other = other
 
     def timelines(self) -> Sequence[TimelineInfo]:
         """Return all timelines, those of the other journal first."""
-        return (*self._other.timelines(), *self._own.timelines())
+        return (*self._other.timelines(), *super().timelines())
 
     def info(self, key: TimelineKey) -> TimelineInfo:
         """Return the metadata of a timeline of either journal; BranchError if there is none."""
-        return self._of(key).info(key)
+        return super().info(key) if key in self._timelines else self._other.info(key)
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
         """Begin an empty timeline; BranchError if it exists or its base does not."""
         if any(info.key == key for info in self._other.timelines()):
             raise branch_taken(key)
-        length = 0 if base is None else self.info(base.timeline).entries
-        self._own.create_on(key, base, start, length)
-
-    def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
-        """Add entries to a timeline in memory and move its head."""
-        self._own.append(key, entries, head)
+        super().create(key, base, start)
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
         """Yield the entries with indexes start to stop - 1, oldest first."""
-        return self._of(key).entries(key, start, stop)
+        if key in self._timelines:
+            return super().entries(key, start, stop)
+        return self._other.entries(key, start, stop)
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
         """Return the number of entries at `tick` or earlier."""
-        return self._of(key).entries_until(key, tick)
+        if key in self._timelines:
+            return super().entries_until(key, tick)
+        return self._other.entries_until(key, tick)
 
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
         """Yield the entries from start to stop - 1 that match a filter, with their indexes."""
-        return self._of(key).filtered(key, start, stop, what)
+        if key in self._timelines:
+            return super().filtered(key, start, stop, what)
+        return self._other.filtered(key, start, stop, what)
 
     def events_until(self, key: TimelineKey, entries: int) -> int:
         """Return the number of events in the first `entries` entries."""
-        return self._of(key).events_until(key, entries)
+        if key in self._timelines:
+            return super().events_until(key, entries)
+        return self._other.events_until(key, entries)
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
         """Return the last state of each agent that the first `entries` entries name."""
-        return self._of(key).agents_after(key, entries)
-
-    def rename(self, key: TimelineKey, name: str) -> None:
-        """Rename the branch of a timeline in memory."""
-        self._own.rename(key, name)
-
-    def delete(self, key: TimelineKey) -> None:
-        """Remove a timeline in memory; BranchError if another is based on it."""
-        self._own.delete(key)
-
-    def describe(self, key: TimelineKey, description: str) -> None:
-        """Set the description of a timeline in memory."""
-        self._own.describe(key, description)
+        if key in self._timelines:
+            return super().agents_after(key, entries)
+        return self._other.agents_after(key, entries)
 
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
         """Store a checkpoint of a timeline in memory; ignore those of the other journal."""
-        if self._own.has(key):
-            self._own.put_checkpoint(key, name, entries, body)
+        if key in self._timelines:
+            super().put_checkpoint(key, name, entries, body)
 
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
         """Return the last checkpoint of that name at or before entry `entries`, and its place."""
-        return self._of(key).nearest_checkpoint(key, name, entries)
-
-    def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
-        """Store the internal state of the body of a timeline in memory."""
-        self._own.put_body_state(key, entries, tick, state)
+        if key in self._timelines:
+            return super().nearest_checkpoint(key, name, entries)
+        return self._other.nearest_checkpoint(key, name, entries)
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
         """Return the internal state stored for exactly this moment; None if there is none."""
-        return self._of(key).body_state(key, entries, tick)
-
-    def together(self) -> AbstractContextManager[None]:
-        """Make the calls inside the block atomic; only timelines in memory can change."""
-        return self._own.together()
-
-    def close(self) -> None:
-        """Do nothing: the other journal belongs to the caller."""
-
-    def _of(self, key: TimelineKey) -> Journal:
-        return self._own if self._own.has(key) else self._other
+        if key in self._timelines:
+            return super().body_state(key, entries, tick)
+        return self._other.body_state(key, entries, tick)

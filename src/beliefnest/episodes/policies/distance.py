@@ -56,7 +56,7 @@ class BeliefFacts(ViewFacts):
     def __init__(self, mind: Imagination, path: BeliefPath) -> None:
         view = mind.view(path)
         super().__init__(view)
-        self._box, self._blocks = mind.world.box, view.blocks
+        self._box, self._blocks = mind.world.box, view.grid
 
     def block(self, place: Position) -> str | None:
         """Return the text of a block state; None: unknown."""

@@ -78,7 +78,7 @@ class _Found:
     def __init__(self, state: State, start: Imagination) -> None:
         self._state, known = state, start.view()
         self._known = known.containers
-        self.first = _Moment(start.tick, known.blocks, _items(known.containers))
+        self.first = _Moment(start.tick, known.grid, _items(known.containers))
         self.now = _Moment(state.tick, state.blocks.grid, _items(state.containers))
         self._watched = {
             event.detail.get("position")

@@ -48,7 +48,7 @@ class Earshot:
         """
         heard: list[list[str]] = [[] for event in frame.events if _is_aloud(event)]
         for name in self._people:
-            reading = self._history.reading(key, (name,), entries)
+            reading = self._history.state(key, (name,), entries)
             perceived = reading.perceived_since(reading.count_of_events - len(frame.events))
             spoken = [p for p, e in zip(perceived, frame.events, strict=True) if _is_aloud(e)]
             for names, hears in zip(heard, spoken, strict=True):

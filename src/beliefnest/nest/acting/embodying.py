@@ -151,7 +151,7 @@ class Embodying:
     def _plot(self, path: BeliefPath, number: int, world: RealtimeWorld) -> Plot:
         box = self._recording.box
         x, z = origin = origin_of(number, box, world.origin)
-        stand = self._stand(self._recording.reading(path))
+        stand = self._stand(self._recording.state(path))
         return Plot(box, origin, (stand[0] + x, stand[1], stand[2] + z))
 
     def _stand(self, reading: NodeView) -> Position:
@@ -160,7 +160,7 @@ class Embodying:
         If no agent's position is known, it is the one nearest to the middle of the box.
         """
         box = self._recording.box
-        space = BodySpace(self._recording.context.registry, box, reading.blocks)
+        space = BodySpace(self._recording.context.registry, box, reading.grid)
         places = [each.position for each in reading.agents.values() if each.position is not None]
         taken = {tuple(map(math.floor, place)) for place in places}
         middle = np.array(places or [box.low, box.high], dtype=float).mean(axis=0)
@@ -175,9 +175,9 @@ class Embodying:
 
     def _shown(self, path: BeliefPath, standing: _Embodied) -> tuple[Shown, int]:
         """Return the contents of a simulator's exhibit, and the tick of its latest change."""
-        reading, registry = self._recording.reading(path), self._recording.context.registry
+        reading, registry = self._recording.state(path), self._recording.context.registry
         contents = {place: held.items for place, held in reading.containers.items()}
-        blocks = with_chests(registry, self._recording.box, reading.blocks, contents)
+        blocks = with_chests(registry, self._recording.box, reading.grid, contents)
         agents = {
             standing.names[name]: AgentState(
                 position=agent.position,
@@ -192,7 +192,7 @@ class Embodying:
         shown = Shown(
             np.where(blocks < 0, np.int32(standing.unknown), blocks),
             {p: (dict(held.items), held.complete) for p, held in reading.containers.items()},
-            {place: text for place, text in reading.signs.items() if place not in contents},
+            {place: text for place, text in reading.texts.items() if place not in contents},
             agents,
         )
         return shown, reading.tick

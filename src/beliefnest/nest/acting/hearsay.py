@@ -54,7 +54,7 @@ class Hearsay:
         Raises:
             InputError: The reader returned something that is not a claim or does not fit the world.
         """
-        seen = self._history.reading(key, key.path)
+        seen = self._history.state(key, key.path)
         nameable = _nameable(self._setting, self._history, seen)
         events = tuple(
             self._read(event, frame.tick, key, nameable) if _is_unread(event) else event
@@ -125,7 +125,7 @@ def _nameable(setting: Setting, history: History, seen: NodeView) -> Nameable:
 
 def _fittings(history: History, seen: NodeView) -> dict[Position, int]:
     """Return the containers, doors and switches of a simulator, as block states."""
-    registry, blocks = history.context.registry, seen.blocks
+    registry, blocks = history.context.registry, seen.grid
     states = []
     for state in np.unique(blocks):
         name = registry.name(int(state)) if state >= 0 else ""

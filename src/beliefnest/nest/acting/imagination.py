@@ -154,7 +154,7 @@ class Imagination:
         forest = forked_forest(source, news, root, root, tick, further=wanted[1:])
         believed = NodeView(forest, root, tick)
         snapshot, registry = believed.snapshot(), source.context.registry
-        blocks = with_chests(registry, snapshot.box, believed.blocks, snapshot.containers)
+        blocks = with_chests(registry, snapshot.box, believed.grid, snapshot.containers)
         possible = embodiable(registry, snapshot, blocks)
         world = ScriptedWorld.from_snapshot(replace(possible, tick=tick))
         known = {} if grounds is None else grounds
@@ -162,7 +162,7 @@ class Imagination:
         sight = source.context.sight
         unseen = frozenset(name for name, each in believed.agents.items() if not each.current)
         start = (unseen, {name: state.position for name, state in world.agents.items()})
-        return cls(forest, root, believed.blocks < 0, world, known, news, sight, start, speech)
+        return cls(forest, root, believed.grid < 0, world, known, news, sight, start, speech)
 
     @property
     def tick(self) -> int:

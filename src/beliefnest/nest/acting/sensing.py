@@ -61,7 +61,7 @@ class Sensing:
     def _reading(self, entries: int) -> NodeView:
         """Return the agent's belief after a number of entries."""
         believer = believer_of(self._key.path, self._agent)
-        return self._history.reading(self._key, believer, entries)
+        return self._history.state(self._key, believer, entries)
 
     def _blocks(self, seen: NodeView, entries: int) -> BlockGrid:
         """Return the blocks that the agent knows.
@@ -70,20 +70,20 @@ class Sensing:
         body has put there. Otherwise its program could not open it.
         """
         if not self._key.path or not seen.containers:
-            return seen.blocks
+            return seen.grid
         context = self._history.context
-        acted_in = self._history.reading(self._key, self._key.path, entries)
+        acted_in = self._history.state(self._key, self._key.path, entries)
         put, missing = (
             chest_places(
                 context.registry,
                 context.box,
-                each.blocks,
+                each.grid,
                 {place: held.items for place, held in each.containers.items()},
             )
             for each in (acted_in, seen)
         )
         places = [place for place in missing if place in put]
-        return with_chests_at(context.registry, context.box, seen.blocks, places)
+        return with_chests_at(context.registry, context.box, seen.grid, places)
 
     def _sensed(self, seen: NodeView, entries: int) -> Sensed:
         agents = {
@@ -105,5 +105,5 @@ class Sensing:
             return seen.geometry.has_free_line(eye, block)
 
         return Sensed(
-            self._blocks(seen, entries), agents, dict(seen.items), heard, seen.signs, has_free_line
+            self._blocks(seen, entries), agents, dict(seen.items), heard, seen.texts, has_free_line
         )

@@ -50,7 +50,7 @@ def start_of(
             forked from it.
         has_physics: True if agents in the body stand, fall and are stopped by blocks.
     """
-    reading = history.reading(moment.timeline, path, moment.entries, moment.tick)
+    reading = history.state(moment.timeline, path, moment.entries, moment.tick)
     is_own = moment.timeline.path == path
     state = internal_state_at(journal, moment) if is_own else b""
     snapshot, blocks = _filled(reading, history)
@@ -67,7 +67,7 @@ def start_of(
     if not (blocks < 0).any():
         return BodyStart(snapshot)
     _, base = fork
-    believed = history.reading(base.timeline, path, base.entries, base.tick)
+    believed = history.state(base.timeline, path, base.entries, base.tick)
     before, known = _filled(believed, history)
     begun = _begun(before, known, believed, history).snapshot.agents
     space = BodySpace(history.context.registry, snapshot.box, known)
@@ -76,7 +76,7 @@ def start_of(
 
 def _filled(reading: NodeView, history: History) -> tuple[Snapshot, BlockGrid]:
     """Return the snapshot with which a body can be filled, and its blocks, -1 unknown."""
-    snapshot, blocks = reading.snapshot(), reading.blocks
+    snapshot, blocks = reading.snapshot(), reading.grid
     if not reading.path:
         return snapshot, blocks
     registry = history.context.registry

@@ -184,7 +184,7 @@ def _held_now(
             context = recording.context
             is_container = isinstance(value, Contents)
             block = context.container_name(number) if is_container else context.block_name(number)
-        events = NodeView(forest, node).events()
+        events = NodeView(forest, node).perceived
         if current and basis is not None:
             basis = replace(basis, observed_at=moment.tick)
         held[node] = _HeldNow(value, block, basis, current, events)
@@ -204,7 +204,7 @@ def _ground_of(
         return (None, False) if content is None else (content.basis, content.current)
     cell = cell_of(recording.box, element.where)
     basis = forest.bases(node, [cell])[cell]
-    current = recording.history.current_blocks(moment.timeline, node, moment.entries, (cell,))
+    current = recording.history.current_blocks(moment, node, (cell,))
     return basis, cell in current
 
 
@@ -266,7 +266,7 @@ def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element
         trace.stood = forest.feet(trace.path[:-1], trace.path[-1])
     elif trace.missed is None and outside != trace.parent and trace.observed_at is not None:
         edited = isinstance(step.entry, Edit) and step.entry.path == trace.path[:-1]
-        events = NodeView(forest, trace.path[:-1]).events()
+        events = NodeView(forest, trace.path[:-1]).perceived
         acts = () if edited else _acts(events, forest.tick, element)
         missed = _missed(recording, trace.path, step, element, trace.parent, acts)
         trace.missed = replace(missed, edited=edited)
@@ -296,7 +296,7 @@ def _missed(
 ) -> Missed:
     """Return why a change or a value in the parent of a node did not reach the node."""
     forest = step.forest
-    mine = NodeView(forest, path).events() if acts else ()
+    mine = NodeView(forest, path).perceived if acts else ()
     present = forest.is_present(path)
     parent = NodeView(forest, path[:-1])
     return Missed(

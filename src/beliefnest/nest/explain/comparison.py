@@ -142,7 +142,7 @@ def compare(
 
     Blocks come first, then containers, agents and inventories, each in order.
     """
-    one, other = recording.reading(a, tick), recording.reading(b, tick)
+    one, other = recording.state(a, tick), recording.state(b, tick)
     blocks = _different_blocks(one, other, recording.context)
     found = itertools.chain(blocks, _different_things(one, other))
     known = (each for each in found if each.a is not None and each.b is not None)
@@ -167,8 +167,8 @@ def false_beliefs(
         against: Path of the node that is taken for true.
         against_tick: Tick of that node; None: `tick`.
     """
-    belief = recording.reading(path, tick)
-    real = recording.reading(against, tick if against_tick is None else against_tick)
+    belief = recording.state(path, tick)
+    real = recording.state(against, tick if against_tick is None else against_tick)
     blocks = _different_blocks(real, belief, recording.context)
     known = (each for each in blocks if each.b is not None)
     found = itertools.chain(known, false_things(real, belief))

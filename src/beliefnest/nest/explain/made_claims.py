@@ -190,7 +190,7 @@ class MadeClaim:
     def _is_contradicted(self, path: BeliefPath) -> bool:
         history = self._recording.history
         with self._recording.turn:
-            held = history.reading(self._key, path, self._entry + 1)
+            held = history.state(self._key, path, self._entry + 1)
             return says_otherwise(held, history.context, self.claim)
 
 
@@ -247,7 +247,7 @@ def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool
 
 
 def _block(held: NodeView, context: BeliefContext, place: Position) -> str | None:
-    state = int(held.blocks[context.box.index(place)])
+    state = int(held.grid[context.box.index(place)])
     return None if state < 0 else context.registry.text(state)
 
 

@@ -101,5 +101,5 @@ def _eye(agent: AgentBelief) -> Point:
 
 
 def _block_name(reading: NodeView, box: Box, place: Position) -> str | None:
-    state = int(reading.blocks[box.index(place)])
+    state = int(reading.grid[box.index(place)])
     return None if state < 0 else reading.geometry.sight.registry.name(state)

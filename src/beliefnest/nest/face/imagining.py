@@ -129,7 +129,7 @@ def _witness(
         if doubt.strategy.model.actual is not None:
             ignored |= {cell_of(recording.box, place) for place in alternative.blocks}
             contents |= set(alternative.containers)
-    view = recording.history.reading(base.timeline, path, base.entries)
+    view = recording.history.state(base.timeline, path, base.entries)
     unknown = {
         place
         for percept in plan.percepts

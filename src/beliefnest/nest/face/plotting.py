@@ -102,7 +102,7 @@ def _check_held(recording: Recording, container: Position, courses: Sequence[Cou
     """Raise InputError unless a container was ever at a position, in any of the courses."""
     if any(value is not None for course in courses for _, value in course):
         return
-    known = ", ".join(map(str, sorted(recording.reading(()).containers)))
+    known = ", ".join(map(str, sorted(recording.state(()).containers)))
     raise InputError(
         f"there never was a container at {container}; containers are at {known or 'no position'}"
     )
@@ -200,7 +200,7 @@ def _number(course: Course[V], tick: int) -> int:
 def _acts(recording: Recording, matter: Matter[V], end: int) -> list[NotedAct]:
     """Return the acts on a matter in the real world."""
     found: dict[tuple[int, str | None], str] = {}
-    for event in recording.reading(()).events():
+    for event in recording.state(()).perceived:
         deed = matter.act(event)
         if not deed or event.tick > end:
             continue

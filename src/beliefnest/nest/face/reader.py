@@ -84,7 +84,7 @@ class Reader:
         None: the position of the viewer is unknown there.
         """
         with self._recording.turn:
-            reading = self._recording.on(key).reading(path, tick)
+            reading = self._recording.on(key).state(path, tick)
             if reading.agents[viewer].position is None:
                 return None
             box = self._recording.box

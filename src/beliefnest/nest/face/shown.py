@@ -130,7 +130,7 @@ class ShownSimulator(ABC):
     @in_turn
     def heard_claims(self) -> list[tuple[int, str, Claim]]:
         """Claims that the simulator perceived, oldest first: tick, speaker, claim."""
-        events = self._recording.reading(self._path, self._tick).events()
+        events = self._recording.state(self._path, self._tick).perceived
         return [
             (event.tick, event.actor, claim)
             for event in events
@@ -298,7 +298,7 @@ class ShownSimulator(ABC):
             PathError: There is no such agent.
         """
         self._child_path(agent)
-        return self._recording.reading(self._path, self._tick).visible_from(agent)
+        return self._recording.state(self._path, self._tick).visible_from(agent)
 
     def figure(
         self,

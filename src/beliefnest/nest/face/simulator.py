@@ -254,7 +254,7 @@ class Simulator(ShownSimulator):
             for position, text in (blocks or {}).items()
         }
         for position, text in (signs or {}).items():
-            held = self._recording.reading(self._path).blocks[box.index(position)]
+            held = self._recording.state(self._path).grid[box.index(position)]
             state = plain_state(states.get(position, int(held)))
             states[position] = written(registry, state, text)
         for items in (containers or {}).values():

@@ -184,7 +184,7 @@ class Overlay:
         for a in range(count):
             key = tuple(states[a] for states in self._blocks.values())
             if key not in grids:
-                grids[key] = view.blocks.copy()
+                grids[key] = view.grid.copy()
                 for place, state in zip(self._blocks, key, strict=True):
                     grids[key][self._box.index(place)] = state
             mine = {place: items[a] for place, items in self._contents.items()}
@@ -194,7 +194,7 @@ class Overlay:
 
     def digest(self, view: NodeView) -> bytes:
         """Return a digest of everything on which `worlds` and the node's items depend."""
-        digest = hashlib.blake2b(np.ascontiguousarray(view.blocks).tobytes())
+        digest = hashlib.blake2b(np.ascontiguousarray(view.grid).tobytes())
         parts = (
             self._box,
             list(self._blocks.items()),
@@ -217,7 +217,7 @@ class Overlay:
     def _read(self, view: NodeView) -> _Held:
         agents = view.agents
         return _Held(
-            {place: int(view.blocks[self._box.index(place)]) for place in self._blocks},
+            {place: int(view.grid[self._box.index(place)]) for place in self._blocks},
             {place: view.containers.get(place) for place in self._contents},
             {name: (_pose_of(agents[name]), agents[name].current) for name in self._feet},
         )

@@ -9,6 +9,7 @@ caches: an answer does not depend on the forest that it comes from.
 
 import functools
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.columns import Columns, cell_of
@@ -17,11 +18,11 @@ from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis, PerceivedEvent
 from beliefnest.belief.initial import forked_forest, initial_forest
-from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.claimed_blocks import ClaimedBlocks
 from beliefnest.nest.past.event_log import EventLog
 from beliefnest.nest.past.setting import Setting
+from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.perception.sight import Sight
 from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
 from beliefnest.world.frames import Frame
@@ -96,15 +97,27 @@ class _Stretch:
 class History:
     """States of any node, at any entry of any timeline of a journal.
 
+    Args:
+        journal: The journal.
+        setting: The setting that the nest began with.
+        turn: Lock of the thread that reads the timelines; None: there is only one thread.
+
     Attributes:
+        turn: The lock above.
         generation: Counter that grows whenever states read before may have become invalid, for
             example because a timeline was renamed.
     """
 
-    def __init__(self, journal: Journal, setting: Setting, pace: Pace | None = None) -> None:
+    def __init__(
+        self,
+        journal: Journal,
+        setting: Setting,
+        turn: AbstractContextManager[object] | None = None,
+    ) -> None:
+        self.turn = nullcontext() if turn is None else turn
         self._journal = journal
         self._setting = setting
-        self._pace = Pace() if pace is None else pace
+        self._pace = Pace()
         self.context = context_of(setting)
         self._claimed = ClaimedBlocks(journal, self.context, setting.snapshot)
         self._checkpoints = Checkpoints(journal, setting, self.context, self._pace)
@@ -114,13 +127,13 @@ class History:
         self._pasts: list[tuple[TimelineKey, Forest]] = []
         self.generation = 0
 
-    def reading(
+    def state(
         self,
         key: TimelineKey,
         path: BeliefPath,
         position: int | None = None,
         tick: int | None = None,
-    ) -> NodeView:
+    ) -> TimelineState:
         """Return the state of a node after some entries of a timeline.
 
         Args:
@@ -131,7 +144,13 @@ class History:
         """
         if position is None:
             position = self._journal.info(key).entries
-        return NodeView(self.shared(key, path, position), path, tick)
+        return TimelineState(self.shared(key, path, position), path, tick, key, self)
+
+    def view(
+        self, forest: Forest, path: BeliefPath, key: TimelineKey, tick: int | None = None
+    ) -> TimelineState:
+        """Return the state of a node of a forest of a timeline; `tick` as for `state`."""
+        return TimelineState(forest, path, tick, key, self)
 
     def shared(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
         """Return a forest with a node, after some entries of a timeline.
@@ -262,16 +281,15 @@ class History:
         forest = self._folded(moment.timeline, path, moment.entries, cells)
         return forest.table.bases(forest.node(path), cells, moment.tick)
 
-    def current_blocks(
-        self, key: TimelineKey, path: BeliefPath, position: int, cells: Iterable[int]
-    ) -> set[int]:
-        """Return the cells whose block in a node is current after some entries."""
+    def current_blocks(self, moment: ForkPoint, path: BeliefPath, cells: Iterable[int]) -> set[int]:
+        """Return the cells whose block in a node is current."""
+        key, position = moment.timeline, moment.entries
         base = self._journal.info(key).base
         edited = None if base is None else self._edited_at_first(key, path, position)
         if base is not None and edited is not None:
             # The timeline is unchanged since the fork, so beliefs are as there (section 6).
             left = [cell for cell in cells if cell not in edited]
-            return self.current_blocks(base.timeline, path, base.entries, left)
+            return self.current_blocks(base, path, left)
         return self.shared(key, path, position).current_blocks(path, cells)
 
     def _edited_at_first(
@@ -415,7 +433,7 @@ class History:
 
     def _before(self, base: ForkPoint | None, path: BeliefPath) -> Sequence[PerceivedEvent]:
         """Return the events that a node perceived before the fork from a base, oldest first."""
-        return () if base is None else self.reading(base.timeline, path, base.entries).events()
+        return () if base is None else self.state(base.timeline, path, base.entries).perceived
 
     def _leap(self, key: TimelineKey, forest: Forest, position: int) -> None:
         """Fold a forest that has node 0 alone, without most entries on the way.

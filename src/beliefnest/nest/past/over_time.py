@@ -5,10 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import ForkPoint, Journal, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
@@ -48,9 +47,8 @@ def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
             continue
         before = np.full(box.shape, -1, dtype=np.int32)
         for tick, entries in _places(recording.journal, info).items():
-            reading = recording.history.reading(info.key, path, entries)
-            grid = reading.blocks.copy()
-            state = recording.view_of(reading, ForkPoint(info.key, entries, tick))
+            state = recording.history.state(info.key, path, entries, tick)
+            grid = state.grid.copy()
             yield Moment(info.key, tick, state, _changed(before, grid, box, registry))
             before = grid
 
@@ -78,10 +76,7 @@ def each_tick(
             recording.history.advance(key, forest, position)
             if not after < forest.tick <= until:
                 continue
-            readings = [NodeView(forest, path) for path in paths]
-            moment = ForkPoint(key, position, forest.tick)
-            views = [recording.view_of(each, moment) for each in readings]
-            yield forest.tick, dict(zip(paths, views, strict=True))
+            yield forest.tick, {path: recording.history.view(forest, path, key) for path in paths}
 
 
 def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:

@@ -128,7 +128,7 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
     view, context = NodeView(forest, path), forest.context
     owner = path[-1] if path else None
     agents = view.agents
-    blocks = view.blocks.reshape(-1)
+    blocks = view.grid.reshape(-1)
     present = owner is None or agents[owner].current
     seen = forest.current_blocks(path, range(len(blocks))) if present else set()
     cells = np.array(sorted(seen), dtype=np.int64)
@@ -160,7 +160,7 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
         tuple(sorted(deeds)),
         events,
     )
-    return percept, view.blocks
+    return percept, view.grid
 
 
 def _pose(agent: AgentBelief) -> tuple[Point, float, float]:

@@ -60,7 +60,7 @@ def _moves(
     frame = placing_frame(recording.journal, info)
     if frame is None:
         return {}
-    believed = recording.history.reading(base.timeline, path, base.entries).agents
+    believed = recording.history.state(base.timeline, path, base.entries).agents
     moves: dict[str | Position, tuple[Point, Point]] = {}
     for name, agent in sorted(frame.agents.items()):
         start = believed[name].position
@@ -70,11 +70,11 @@ def _moves(
 
 
 def _chests(recording: Recording, path: BeliefPath, tick: int | None) -> Placements:
-    reading, box = recording.reading(path, tick), recording.box
+    reading, box = recording.state(path, tick), recording.box
     registry = recording.context.registry
     contents = {place: held.items for place, held in reading.containers.items()}
     chests: dict[str | Position, tuple[str | None, str]] = {}
-    for place in chest_places(registry, box, reading.blocks, contents):
-        state = int(reading.blocks[box.index(place)])
+    for place in chest_places(registry, box, reading.grid, contents):
+        state = int(reading.grid[box.index(place)])
         chests[place] = (None if state < 0 else registry.text(state), CHEST)
     return chests

@@ -10,13 +10,12 @@ from copy import copy
 from typing import Self
 
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BranchError, StoreError, TickError
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
+from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.nest.past.turn import Turn
-from beliefnest.nest.past.views import LiveState
 from beliefnest.owned import Barred, is_own
 from beliefnest.prompts import Renderer
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
@@ -59,9 +58,9 @@ class Recording(Barred):
         self.journal = journal
         self.seed = seed
         self.renderer = Renderer() if renderer is None else renderer
-        self.history = History(journal, setting)
-        self.selected: dict[BeliefPath, TimelineKey] = {(): TimelineKey((), MAIN)}
         self.turn = Turn()
+        self.history = History(journal, setting, self.turn)
+        self.selected: dict[BeliefPath, TimelineKey] = {(): TimelineKey((), MAIN)}
         self._latest: tuple[TimelineInfo, ForkPoint] | None = None
 
     @property
@@ -149,18 +148,12 @@ class Recording(Barred):
             raise TickError(f"tick {tick} is in the future; {path_text(path)} is at {info.head}")
         return ForkPoint(*self.place_of(info.key, tick), tick)
 
-    def reading(self, path: BeliefPath, tick: int | None = None) -> NodeView:
-        """Return the view of a node now, or at a past tick; raises as `moment` does."""
-        moment = self.moment(path, tick)
-        return self.history.reading(moment.timeline, path, moment.entries, moment.tick)
-
-    def state(self, path: BeliefPath, tick: int | None = None) -> LiveState:
+    def state(self, path: BeliefPath, tick: int | None = None) -> TimelineState:
         """Return the state of a node now, or at a past tick; raises as `moment` does."""
         moment = self.moment(path, tick)
-        reading = self.history.reading(moment.timeline, path, moment.entries, moment.tick)
-        return self.view_of(reading, moment)
+        return self.history.state(moment.timeline, path, moment.entries, moment.tick)
 
-    def states(self, paths: Iterable[BeliefPath]) -> Mapping[BeliefPath, LiveState]:
+    def states(self, paths: Iterable[BeliefPath]) -> Mapping[BeliefPath, TimelineState]:
         """Return the states of several nodes now, by path."""
         wanted = list(paths)
         together: dict[TimelineKey, list[BeliefPath]] = {}
@@ -169,10 +162,6 @@ class Recording(Barred):
         for key, nodes in together.items():
             self.history.expect(key, nodes)
         return {path: self.state(path) for path in wanted}
-
-    def view_of(self, reading: NodeView, moment: ForkPoint) -> LiveState:
-        """Return the state of a node whose view was read at a moment."""
-        return LiveState(self.history, moment, reading, self.turn)
 
     def close(self) -> None:
         """Save checkpoints for later readers, and close the journal.

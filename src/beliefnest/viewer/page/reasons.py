@@ -150,7 +150,7 @@ class _Views:
 
     def _look_around(self, info: TimelineInfo, tick: int, reading: NodeView) -> None:
         agents = self._reader.agents
-        grid = hash(reading.blocks.tobytes())
+        grid = hash(reading.grid.tobytes())
         cells = sorted(self._reader.history.context.tracked)
         for number, viewer in enumerate(agents):
             name = f"{name_of(info.key, reading.path)} agent-{number}"

@@ -1,0 +1,199 @@
+"""State of a node at a moment of a timeline, for users, prompts and pictures."""
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from typing import Protocol
+
+import numpy as np
+
+from beliefnest.belief.columns import cell_of
+from beliefnest.belief.context import BeliefContext
+from beliefnest.belief.forest import Forest
+from beliefnest.belief.grounds import Basis
+from beliefnest.belief.node_view import NodeView, Part
+from beliefnest.pictures.words import state_words
+from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.world.frames import BlockGrid
+from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.values import Position
+
+__all__ = ["GroundsSource", "TimelineState"]
+
+# After this many questions about single blocks, or in a box of at most this many cells, all blocks
+# are computed at once.
+_FEW = 4
+_SMALL = 1024
+
+_PARTS = (
+    *("path", "tick", "box", "blocks", "signs", "containers", "agents", "items"),
+    *("events", "chat", "thoughts", "addressees"),
+)
+
+
+class GroundsSource(Protocol):
+    """Source of what a forest keeps of few blocks only: their bases and which are current.
+
+    Attributes:
+        turn: Lock of the thread that reads the timelines.
+    """
+
+    turn: AbstractContextManager[object]
+
+    def block_bases(
+        self, moment: ForkPoint, path: BeliefPath, cells: Sequence[int]
+    ) -> dict[int, Basis | None]:
+        """Return the bases of a node's blocks at some cells; None where a block is unknown."""
+
+    def current_blocks(self, moment: ForkPoint, path: BeliefPath, cells: Iterable[int]) -> set[int]:
+        """Return the cells whose block in a node is current."""
+
+
+class _Grounds:
+    """Grounds of a node's blocks, computed on demand."""
+
+    def __init__(
+        self, source: GroundsSource, moment: ForkPoint, path: BeliefPath, cells: int
+    ) -> None:
+        self._source, self._of = source, (moment, path)
+        self._cells = cells
+        self._bases: dict[int, Basis | None] = {}
+        self._currents: dict[int, bool] = {}
+
+    def is_current(self, cell: int) -> bool:
+        """Return True if the block of a cell is backed by a perception in this tick."""
+        if cell not in self._currents:
+            cells = self._asked_with(cell, self._currents)
+            with self._source.turn:
+                found = self._source.current_blocks(*self._of, cells)
+            self._currents.update((each, each in found) for each in cells)
+        return self._currents[cell]
+
+    def basis(self, cell: int) -> Basis | None:
+        """Return the ground of the block of a cell; None where it is unknown."""
+        if cell not in self._bases:
+            with self._source.turn:
+                cells = self._asked_with(cell, self._bases)
+                self._bases.update(self._source.block_bases(*self._of, cells))
+        return self._bases[cell]
+
+    def _asked_with(self, cell: int, known: Collection[int]) -> Sequence[int]:
+        """Return the cells to compute together with one.
+
+        A caller that asked for a few will probably ask for all, and in a small box all of them cost
+        little more than one.
+        """
+        is_all = len(known) >= _FEW or self._cells <= _SMALL
+        return range(self._cells) if is_all else [cell]
+
+
+class _Blocks:
+    """Blocks of a node by position."""
+
+    def __init__(self, view: NodeView, context: BeliefContext, grounds: _Grounds) -> None:
+        self._view, self._context, self._grounds = view, context, grounds
+
+    @property
+    def grid(self) -> BlockGrid:
+        """The block state ids, shape of the box, -1 unknown."""
+        return self._view.grid
+
+    def __getitem__(self, position: Position) -> str | None:
+        state = int(self.grid[self._index(position)])
+        return None if state < 0 else self._context.registry.text(state)
+
+    def __iter__(self) -> Iterator[Position]:
+        return self._context.box.positions()
+
+    def __len__(self) -> int:
+        return int(self.grid.size)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, _Blocks):
+            return NotImplemented
+        return bool(np.array_equal(self.grid, other.grid))
+
+    __hash__ = None  # type: ignore[assignment]  # compared by value, and values are large
+
+    def named(self, names: frozenset[str]) -> dict[Position, str]:
+        """Return known blocks of some names."""
+        registry, grid = self._context.registry, self.grid
+        # One place more at the end, which -1 (unknown) indexes.
+        wanted = np.zeros(registry.states + 1, dtype=np.bool_)
+        for name in names:
+            ids = registry.state_ids(name)
+            wanted[ids.start : ids.stop] = True
+        x, y, z = self._context.box.low
+        return {
+            (x + i, y + j, z + k): registry.text(int(grid[i, j, k]))
+            for i, j, k in np.argwhere(wanted[grid]).tolist()
+        }
+
+    def current(self, position: Position) -> bool:
+        """Return True if the block is backed by a perception in this tick."""
+        return self._grounds.is_current(self._cell(position))
+
+    def basis(self, position: Position) -> Basis | None:
+        """Return the ground of the block; None where it is unknown."""
+        return self._grounds.basis(self._cell(position))
+
+    def _cell(self, position: Position) -> int:
+        self._index(position)
+        return cell_of(self._context.box, position)
+
+    def _index(self, position: Position) -> tuple[int, int, int]:
+        box = self._context.box
+        box.check(position)
+        return box.index(position)
+
+
+class TimelineState(NodeView):
+    """`State` of a node at a moment of a timeline, read in the nest's turn.
+
+    Args:
+        forest: Forest of the timeline, after the entries before the moment.
+        path: Path of the node.
+        tick: Tick of the moment; None: the tick of the last entry.
+        key: The timeline.
+        source: Source of the grounds of blocks.
+    """
+
+    def __init__(
+        self,
+        forest: Forest,
+        path: BeliefPath,
+        tick: int | None,
+        key: TimelineKey,
+        source: GroundsSource,
+    ) -> None:
+        self.turn = source.turn
+        super().__init__(forest, path, tick)
+        self._context, self._position = forest.context, forest.position
+        self._key, self._source = key, source
+
+    @property
+    def blocks(self) -> _Blocks:
+        """The believed blocks."""
+        # Made anew: with a cycle of references the forest would keep a view that is gone.
+        return _Blocks(self, self._context, self._grounds)
+
+    @Part
+    def _grounds(self) -> _Grounds:
+        moment = ForkPoint(self._key, self._position, self.tick)
+        return _Grounds(self._source, moment, self.path, self._context.cells)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, TimelineState):
+            return NotImplemented
+        return all(getattr(self, part) == getattr(other, part) for part in _PARTS)
+
+    __hash__ = None  # type: ignore[assignment]  # compared by value, and values are large
+
+    def __repr__(self) -> str:
+        return f"<state of {path_text(self.path)} at tick {self.tick}: {state_words(self)}>"
+
+    def _repr_html_(self) -> str:
+        # Imported here because drawing takes long to import, and few states are drawn.
+        from beliefnest.pictures.figure import figure_of
+        from beliefnest.pictures.scene import read_scene
+
+        return figure_of([read_scene(self)])._repr_html_()
