@@ -15,7 +15,7 @@ from beliefnest.errors import InputError
 from beliefnest.perception.options import Perception, Radius
 from beliefnest.perception.sight import Sight
 from beliefnest.world.claims import Claim, claims_from_plain
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.frames import BlockGrid, places_of
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, is_sign, plain_state
 from beliefnest.world.values import Block, Box, EventKind, Position, Sign
@@ -232,10 +232,8 @@ class BeliefContext:
         """
         if not self._signs:
             return {}
-        x, y, z = self.box.low
-        signs = self.signs
-        found = np.argwhere(numbers >= self.registry.states).tolist()
-        return {(x + i, y + j, z + k): signs[int(numbers[i, j, k])].text for i, j, k in found}
+        found = places_of(numbers >= self.registry.states, self.box)
+        return {place: self.signs[int(numbers[index])].text for place, index in found}
 
     def renumbered(
         self, numbers: npt.NDArray[np.int16], signs: Sequence[SavedWriting]

@@ -8,7 +8,7 @@ import math
 
 from beliefnest.belief.facts import PlanFacts
 from beliefnest.world.registry import Registry, block_name
-from beliefnest.world.values import Point, Position
+from beliefnest.world.values import Point, Position, feet_in
 
 __all__ = ["FAR", "PER_BLOCK", "to_agent", "to_block", "to_container", "walk"]
 
@@ -42,7 +42,7 @@ def to_agent(facts: PlanFacts, agent: str, item: str) -> float:
     for place in facts.containers:
         if facts.items_in(place).get(item, 0):
             handed = 0.0 if facts.may_reach(agent, place) else _HANDED_OVER
-            ways.append(2.0 + handed + walk(feet, _middle(place)))
+            ways.append(2.0 + handed + walk(feet, feet_in(place)))
     for other in facts.agents:
         if other != agent and facts.items_of(other).get(item, 0):
             ways.append(_HANDED_OVER + walk(facts.feet_of(other), feet))
@@ -56,11 +56,11 @@ def to_container(facts: PlanFacts, goal: Position, item: str) -> float:
     for agent in facts.agents:
         if facts.items_of(agent).get(item, 0):
             handed = 0.0 if agent in able else _HANDED_OVER
-            ways.append(1.0 + handed + walk(facts.feet_of(agent), _middle(goal)))
+            ways.append(1.0 + handed + walk(facts.feet_of(agent), feet_in(goal)))
     for place in facts.containers:
         if place != goal and facts.items_in(place).get(item, 0):
             direct = any(facts.may_reach(agent, place) for agent in able)
-            way = walk(_middle(goal), _middle(place))
+            way = walk(feet_in(goal), feet_in(place))
             ways.append(2.0 + (0.0 if direct else _HANDED_OVER) + way)
     return min(ways)
 
@@ -68,7 +68,3 @@ def to_container(facts: PlanFacts, goal: Position, item: str) -> float:
 def walk(one: Point | None, other: Point | None) -> float:
     """Return the effort of the way between two points; None: an unknown one."""
     return PER_BLOCK * (FAR if one is None or other is None else math.dist(one, other))
-
-
-def _middle(place: Position) -> Point:
-    return (place[0] + 0.5, float(place[1]), place[2] + 0.5)

@@ -13,7 +13,7 @@ from beliefnest.belief.columns import place_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.perception.sight import Geometry
-from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.frames import BlockGrid, Snapshot, places_of
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, EventKind, Position
 
@@ -101,10 +101,8 @@ class NodeView:
     @Part
     def signs(self) -> Mapping[Position, str]:
         """The texts of known signs, in order of position; empty for a blank sign."""
-        x, y, z = self.box.low
-        found = np.argwhere(np.isin(self.grid, self._forest.context.sign_states)).tolist()
-        places = ((x + i, y + j, z + k) for i, j, k in found)
-        return {place: self.texts.get(place, "") for place in places}
+        found = np.isin(self.grid, self._forest.context.sign_states)
+        return {place: self.texts.get(place, "") for place, _ in places_of(found, self.box)}
 
     @Part
     def geometry(self) -> Geometry:

@@ -406,9 +406,7 @@ def stated(context: BeliefContext, text: str, believed: int) -> int:
     if believed < 0 or context.block_name(believed) != name:
         return state
     claimed = [pair.split("=") for pair in text[len(name) + 1 : -1].split(",") if pair]
-    properties = registry.properties(plain_state(old)) | dict(claimed)
-    inner = ",".join(f"{key}={value}" for key, value in properties.items())
-    state = registry.state_id(f"{name}[{inner}]" if inner else name)
+    state = registry.changed(plain_state(old), **dict(claimed))
     if not isinstance(old, Sign):
         return state
     return context.number(Sign(state, old.text), context.claims_on(believed))

@@ -18,7 +18,7 @@ from beliefnest.perception.sight import Geometry, Sight
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Items, Point, Position
 
-__all__ = ["Pose", "World", "Worlds", "middle_of"]
+__all__ = ["Pose", "World", "Worlds"]
 
 Pose = tuple[Point, float, float]
 """Feet, yaw and pitch."""
@@ -40,11 +40,6 @@ class World:
     blocks: BlockGrid
     contents: Mapping[Position, Items]
     agents: Mapping[str, Pose]
-
-
-def middle_of(cell: Position) -> Point:
-    """Return the feet of an agent in the middle of a cell."""
-    return (cell[0] + 0.5, float(cell[1]), cell[2] + 0.5)
 
 
 @lru_cache(maxsize=8)

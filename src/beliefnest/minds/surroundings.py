@@ -8,12 +8,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.minds.alternatives import Worlds, middle_of
+from beliefnest.minds.alternatives import Worlds
 from beliefnest.minds.mind_model import Goal
 from beliefnest.minds.stage import Stage
 from beliefnest.minds.ways import Ways, walkable, ways_from
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Items, Position
+from beliefnest.world.values import Items, Position, feet_in
 
 __all__ = ["Scene"]
 
@@ -100,7 +100,7 @@ class Scene:
         worlds = self.worlds
         count = len(worlds.worlds)
         if worlds.can_differ:
-            looks = [worlds.alike(middle_of(cell), 0.0, 0.0, all_round=True) for cell in ways.cells]
+            looks = [worlds.alike(feet_in(cell), 0.0, 0.0, all_round=True) for cell in ways.cells]
             same = np.array(looks, dtype=np.int64).T.copy()
         else:
             same = np.full((count, len(ways.cells)), (1 << count) - 1, dtype=np.int64)

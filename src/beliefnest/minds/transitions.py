@@ -8,13 +8,12 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.minds.alternatives import middle_of
 from beliefnest.minds.evidence import Moment
 from beliefnest.minds.hypotheses import Hypotheses, State, Sums, conditioned, told
 from beliefnest.minds.planner import Knowledge
 from beliefnest.minds.stage import Stage
 from beliefnest.minds.surroundings import Scene
-from beliefnest.world.values import EYE_HEIGHT, Position
+from beliefnest.world.values import EYE_HEIGHT, Position, feet_in
 
 __all__ = [
     "act",
@@ -177,7 +176,7 @@ def unseen(moment: Moment, actual: int, weights: Weights) -> Weights:
     cells = sorted({state[0] for state in weights})
     eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])
     geometry = moment.scene.worlds.geometry(actual)
-    seen = geometry.sees_agents(eye, yaw, pitch, [middle_of(cell) for cell in cells])
+    seen = geometry.sees_agents(eye, yaw, pitch, [feet_in(cell) for cell in cells])
     visible = {cell for cell, is_seen in zip(cells, seen.tolist(), strict=True) if is_seen}
     return {state: weight for state, weight in weights.items() if state[0] not in visible}
 

@@ -9,7 +9,7 @@ from beliefnest.scenarios.format import AgentEntry, ScenarioFile
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import AGENT_SLOTS, MOST_AGENTS, agent_name_fault
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import EQUIPMENT_SLOTS, EYE_HEIGHT, AgentState, Box, Point
+from beliefnest.world.values import EQUIPMENT_SLOTS, EYE_HEIGHT, AgentState, Box, Point, block_at
 
 __all__ = ["build_agents"]
 
@@ -105,8 +105,7 @@ def _check_place(
     path = ("agents", name, "position")
     body = _body(feet)
     low, high = (tuple(math.floor(value) for value in corner) for corner in body)
-    x, y, z = (math.floor(value) for value in feet)
-    if (x, y, z) not in box:
+    if block_at(feet) not in box:
         raise document.fault(
             path, f"{list(feet)} lies outside the box {list(box.low)} to {list(box.high)}"
         )

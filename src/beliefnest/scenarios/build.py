@@ -1,11 +1,8 @@
 """Construction of scenarios from checked documents: setting, probes, and expectations."""
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any
-
-import numpy as np
 
 from beliefnest.belief.conditions import check_condition
 from beliefnest.belief.grounds import InitialBelief
@@ -38,11 +35,11 @@ from beliefnest.scenarios.space import (
     entry_mask,
 )
 from beliefnest.scenarios.yaml_reading import template_text
-from beliefnest.world.frames import Snapshot
+from beliefnest.world.frames import Snapshot, places_of
 from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
-from beliefnest.world.values import Block, Position
+from beliefnest.world.values import Block, Position, block_at
 
 __all__ = ["build_scenario"]
 
@@ -281,8 +278,8 @@ class _Builder:
             if block.block is not None:
                 with self._document.naming((*place, "block")):
                     state = self._registry.state_id(block.block)
-            for i, j, k in np.argwhere(entry_mask(self._document, place, block, box)).tolist():
-                blocks[(box.low[0] + i, box.low[1] + j, box.low[2] + k)] = state
+            for at, _ in places_of(entry_mask(self._document, place, block, box), box):
+                blocks[at] = state
         for index, sign in enumerate(entry.signs):
             blocks[sign.at] = self._believed_sign((*path, "signs", index), sign, blocks)
         for index, container in enumerate(entry.containers):
@@ -291,8 +288,7 @@ class _Builder:
             self.checks.contents((*place, "items"), container.at, container.items)
         for agent, feet in entry.agents.items():
             self.checks.agent((*path, "agents", agent), agent)
-            x, y, z = (math.floor(value) for value in feet)
-            if (x, y, z) not in box:
+            if block_at(feet) not in box:
                 raise self._document.fault(
                     (*path, "agents", agent),
                     f"{list(feet)} lies outside the box {list(box.low)} to {list(box.high)}",

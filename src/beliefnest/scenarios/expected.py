@@ -26,7 +26,7 @@ from beliefnest.scenarios.trial import Trial
 from beliefnest.world import forms
 from beliefnest.world.forms import note
 from beliefnest.world.limits import AGENT_SLOTS
-from beliefnest.world.values import EventKind, Items, Point, Position
+from beliefnest.world.values import EventKind, Items, Point, Position, block_at
 from beliefnest.world.words import items_words, listed, point_words, with_the
 
 __all__ = [
@@ -466,7 +466,7 @@ class Intends(Deed):
 
     @property
     def explained(self) -> Position | None:
-        return _block(self.place) if self.is_container else None
+        return block_at(self.place) if self.is_container else None
 
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Intends"]:
@@ -485,16 +485,16 @@ class Intends(Deed):
 
     def _met(self, trial: Trial) -> bool:
         used, walked = trial.used, trial.walked
-        if used and _block(used[0]) == _block(self.place):
+        if used and block_at(used[0]) == block_at(self.place):
             return True
         if self.is_container and used:
             return False
-        return bool(walked) and math.dist(_block(walked[-1]), _block(self.place)) <= self.within
+        return bool(walked) and math.dist(block_at(walked[-1]), block_at(self.place)) <= self.within
 
     def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
         if outcome.intended is None:
             return "makes for nothing"
-        place = _block(outcome.intended)
+        place = block_at(outcome.intended)
         labelled = place in setting.labels
         where = container_name(place, setting) if labelled else point_text(outcome.intended)
         return f"makes for {where}"
@@ -913,8 +913,3 @@ def _source(key: str, believed: Believed | None) -> dict[str, Any]:
 def _has(answer: str, text: str) -> bool:
     """Return True if an answer contains a text as whole words."""
     return re.search(rf"(?<!\w){re.escape(text.casefold())}(?!\w)", answer.casefold()) is not None
-
-
-def _block(point: Point) -> Position:
-    x, y, z = point
-    return (math.floor(x), math.floor(y), math.floor(z))

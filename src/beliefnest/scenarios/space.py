@@ -10,7 +10,7 @@ from beliefnest.scenarios.checks import check_inside, check_items
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
 from beliefnest.world.claims import claims_from_plain
-from beliefnest.world.frames import BlockGrid, PlainClaims
+from beliefnest.world.frames import BlockGrid, PlainClaims, places_of
 from beliefnest.world.limits import box_fault, container_slots
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
@@ -135,9 +135,8 @@ def build_containers(
         found[entry.at] = dict(entry.items)
     for state in np.unique(grid).tolist():
         if registry.is_container(registry.name(state)):
-            for index in np.argwhere(grid == state).tolist():
-                x, y, z = (i + low for i, low in zip(index, box.low, strict=True))
-                found.setdefault((x, y, z), {})
+            for place, _ in places_of(grid == state, box):
+                found.setdefault(place, {})
     return dict(sorted(found.items()))
 
 

@@ -11,7 +11,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.loading import kept_scenario
-from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.frames import BlockGrid, Snapshot, places_of
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, Position
@@ -124,8 +124,7 @@ def _signs(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
 
 def _sign_places(place: Snapshot, registry: Registry) -> list[Position]:
     states = [s for s in np.unique(place.blocks).tolist() if is_sign(registry.name(s))]
-    found = np.argwhere(np.isin(place.blocks, states)).tolist()
-    return [_at(place.box, index) for index in found]
+    return [at for at, _ in places_of(np.isin(place.blocks, states), place.box)]
 
 
 def _agent(state: AgentState) -> Any:

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import msgspec
 import zstandard
 
-from beliefnest.errors import BranchError, StoreError
+from beliefnest.errors import BranchError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import Database
+from beliefnest.timeline.database import Database, damage
 from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_found
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
@@ -72,11 +72,8 @@ class Chunks:
             if zstandard.frame_content_size(body) <= _LARGEST:
                 return self._unpacker.decompress(body)
         except zstandard.ZstdError as fault:
-            raise StoreError(f"{path} is damaged; restore it from a copy ({fault})") from fault
-        raise StoreError(
-            f"{path} is damaged; restore it from a copy (a part would unpack to more than "
-            f"{_LARGEST:,} bytes)"
-        )
+            raise damage(path, str(fault)) from fault
+        raise damage(path, f"a part would unpack to more than {_LARGEST:,} bytes")
 
     def add(
         self,
@@ -149,10 +146,8 @@ class Chunks:
             if found is not None:
                 part = self._encoded(found)[start - found.first : stop - found.first]
             if not part:
-                raise StoreError(
-                    f"{self._database.path} is damaged; restore it from a copy "
-                    f"(entry {start} of timeline {timeline} is missing)"
-                )
+                missing = f"entry {start} of timeline {timeline} is missing"
+                raise damage(self._database.path, missing)
             yield from part
             start += len(part)
 
@@ -269,8 +264,6 @@ class Chunks:
         body = self.decompressed(chunk.body) if chunk.compressed else chunk.body
         encoded = codec.split(body)
         if len(encoded) != chunk.count:
-            raise StoreError(
-                f"{self._database.path} is damaged; restore it from a copy "
-                f"(a chunk has {len(encoded)} of {chunk.count} entries)"
-            )
+            counts = f"{len(encoded)} of {chunk.count} entries"
+            raise damage(self._database.path, f"a chunk has {counts}")
         return encoded

@@ -29,7 +29,7 @@ from beliefnest.timeline.store_schema import (
     expected_schema,
 )
 
-__all__ = ["Database", "OlderFormat", "Row", "checked", "checksum"]
+__all__ = ["Database", "OlderFormat", "Row", "checked", "checksum", "damage"]
 
 Row = tuple[Any, ...]
 
@@ -82,6 +82,11 @@ def checksum(*values: object) -> int:
         raise StoreError(f"{head} cannot be stored: {fault}") from fault
 
 
+def damage(path: Path, detail: str) -> StoreError:
+    """Return the error for a damaged run file."""
+    return StoreError(f"{path} {_DAMAGED} ({detail})")
+
+
 def checked(row: Row, path: Path, what: str) -> Row:
     """Check a row against its last value, the checksum, and return the other values.
 
@@ -90,7 +95,7 @@ def checked(row: Row, path: Path, what: str) -> Row:
     """
     *values, found = row
     if checksum(*values) != found:
-        raise StoreError(f"{path} {_DAMAGED} (wrong checksum of {what})")
+        raise damage(path, f"wrong checksum of {what}")
     return tuple(values)
 
 
@@ -331,9 +336,7 @@ class Database(Owned):
         for table in SMALL_TABLES:
             found = self.row(f"PRAGMA integrity_check({table})")
             if found != ("ok",):
-                raise StoreError(
-                    f"{self.path} {_DAMAGED} ({found[0] if found else 'check failed'})"
-                )
+                raise damage(self.path, found[0] if found else "check failed")
 
     def _look(self, older: Sequence[OlderFormat]) -> None:
         """Validate a file opened for reading; read a converted copy if its format is older."""
@@ -467,7 +470,7 @@ def _recognise_start(path: Path) -> None:
         raise StoreError(f"{path} is not a run file: it is {what}; give a run file")
     # If there is a write-ahead log, the rest of the file may still be in the log.
     if settled and size < _page_size(header) * int.from_bytes(header[28:32], "big"):
-        raise StoreError(f"{path} {_DAMAGED} (its end is missing)")
+        raise damage(path, "its end is missing")
 
 
 def _check_regular(path: Path) -> None:

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
-import numpy as np
-
 from beliefnest.timeline.journal import Edit, Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.claims import Claim, claims_from_plain, claims_written
-from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.frames import Frame, Snapshot, places_of
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state
@@ -232,14 +230,8 @@ def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) 
 def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
     """Yield the rows of a timeline's first state; air has no rows."""
     place = _place(key, FIRST_ENTRY, snapshot.tick)
-    low = snapshot.box.low
-    cells = (
-        (place, snapshot.block(place))
-        for place in (
-            (x + low[0], y + low[1], z + low[2])
-            for x, y, z in np.argwhere(snapshot.blocks != registry.air).tolist()
-        )
-    )
+    solid = places_of(snapshot.blocks != registry.air, snapshot.box)
+    cells = ((place, snapshot.block(place)) for place, _ in solid)
     claims = {at: claims_from_plain(plain) for at, plain in snapshot.sign_claims.items()}
     yield from _block_rows(place, cells, claims, registry, None)
     yield from _container_rows(place, snapshot.containers.items(), None)

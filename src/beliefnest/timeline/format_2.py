@@ -8,9 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import Database, checked, checksum
+from beliefnest.timeline.database import Database, checked, checksum, damage
 from beliefnest.timeline.run_records import ProgramRecord
 from beliefnest.timeline.store_schema import BODY_STATE, STATEMENTS
 
@@ -64,5 +63,5 @@ def _typed(body: bytes, path: Path) -> ProgramRecord:
 
 def _number(text: str, path: Path) -> int:
     if not text.isdecimal():
-        raise StoreError(f"{path} is damaged; restore it from a copy ({text!r} is no number)")
+        raise damage(path, f"{text!r} is no number")
     return int(text)

@@ -9,10 +9,10 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
 
-from beliefnest.errors import BranchError, StoreError
+from beliefnest.errors import BranchError
 from beliefnest.timeline import codec
 from beliefnest.timeline.chunks import Chunks
-from beliefnest.timeline.database import Database, OlderFormat, checksum
+from beliefnest.timeline.database import Database, OlderFormat, checksum, damage
 from beliefnest.timeline.format_2 import FORMAT_2, convert_2
 from beliefnest.timeline.journal import (
     Entry,
@@ -141,10 +141,8 @@ class SqliteJournal:
         if row.base is not None:
             base = next(self._timeline_rows("WHERE id = ?", row.base), None)
             if base is None:
-                raise StoreError(
-                    f"{self.path} is damaged; restore it from a copy "
-                    f"(the base of branch {key.branch!r} of {path_text(key.path)} is missing)"
-                )
+                name = f"branch {key.branch!r} of {path_text(key.path)}"
+                raise damage(self.path, f"the base of {name} is missing")
         return _info(row, base)
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
@@ -341,10 +339,8 @@ class SqliteJournal:
             )
             length = 0 if last is None else last[0]
             if length != row.entries or (row.base is not None and row.base not in rows):
-                raise StoreError(
-                    f"{self.path} is damaged; restore it from a copy "
-                    f"(branch {row.branch!r} of {path_text(row.key.path)} is incomplete)"
-                )
+                name = f"branch {row.branch!r} of {path_text(row.key.path)}"
+                raise damage(self.path, f"{name} is incomplete")
 
 
 def _info(row: _TimelineRow, base: _TimelineRow | None) -> TimelineInfo:

@@ -46,6 +46,7 @@ from beliefnest.world.values import (
     Items,
     Point,
     Position,
+    block_at,
 )
 
 __all__ = ["BadLine", "Trace", "load_trace", "read_trace", "record_trace"]
@@ -384,8 +385,7 @@ class _Reader:
 
     def _inside(self, point: Point) -> None:
         _check(point_fault(point))
-        x, y, z = (math.floor(value) for value in point)
-        self._index((x, y, z))
+        self._index(block_at(point))
 
     def _event(self, line: _EventLine, changed: Mapping[Position, int]) -> Event:
         event = event_from(line.kind, line.actor, line.detail, self.names)

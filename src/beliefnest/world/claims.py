@@ -15,7 +15,7 @@ import msgspec
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import Box, Event, EventKind, Point, Position, Sign
+from beliefnest.world.values import Box, Event, EventKind, Point, Position, Sign, block_at
 
 __all__ = [
     "Claim",
@@ -116,8 +116,7 @@ class Claim:
     @property
     def cell(self) -> Position:
         """Position of the block that contains the claim's place."""
-        x, y, z = (math.floor(value) for value in self.place)
-        return (x, y, z)
+        return block_at(self.place)
 
     def plain(self) -> dict[str, Any]:
         """Return plain data: `kind`, `place`, and `item`, `agent` or `state`."""

@@ -76,13 +76,7 @@ def used_door(
         lower = registry.properties(state_at(place))["half"] == "lower"
         parts = [place, (x, y + 1, z)] if lower else [(x, y - 1, z), place]
     return {
-        part: _moved(registry, state_at(part), opens)
+        part: registry.changed(state_at(part), open=str(opens).lower())
         for part in parts
         if registry.name(state_at(part)) == name
     }
-
-
-def _moved(registry: Registry, state: int, opens: bool) -> int:
-    properties = {**registry.properties(state), "open": str(opens).lower()}
-    inner = ",".join(f"{name}={value}" for name, value in properties.items())
-    return registry.state_id(f"{registry.name(state)}[{inner}]")

@@ -4,7 +4,7 @@ A frame holds the changes of one simulator in one tick. A snapshot holds its who
 tick. Both hold facts, never beliefs.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -22,7 +22,7 @@ from beliefnest.world.values import (
     Sign,
 )
 
-__all__ = ["BlockGrid", "Frame", "PlainClaims", "Snapshot"]
+__all__ = ["BlockGrid", "Frame", "PlainClaims", "Snapshot", "places_of"]
 
 PlainClaims = tuple[Mapping[str, Any], ...]
 """Claims as plain data."""
@@ -32,6 +32,15 @@ BlockGrid = npt.NDArray[np.int32]
 
 
 _NOTHING: Mapping[object, object] = {}
+
+
+def places_of(
+    mask: npt.NDArray[np.bool_], box: Box
+) -> Iterator[tuple[Position, tuple[int, int, int]]]:
+    """Yield the position and the index of each True element of a grid of a box, in order."""
+    x, y, z = box.low
+    for i, j, k in np.argwhere(mask).tolist():
+        yield (x + i, y + j, z + k), (i, j, k)
 
 
 @dataclass(frozen=True, slots=True)

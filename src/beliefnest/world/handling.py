@@ -182,9 +182,7 @@ def check_holds_nothing(registry: Registry, state_at: StateAt, place: Position) 
 
 def with_power(registry: Registry, state: int, *, powered: bool) -> int:
     """Return the state of a block after its property `powered` was set."""
-    properties = {**registry.properties(state), "powered": str(powered).lower()}
-    inner = ",".join(f"{name}={value}" for name, value in properties.items())
-    return registry.state_id(f"{registry.name(state)}[{inner}]")
+    return registry.changed(state, powered=str(powered).lower())
 
 
 def _beside(place: Position, side: tuple[int, int, int]) -> Position:

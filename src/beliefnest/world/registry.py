@@ -180,6 +180,16 @@ class Registry:
         names = (name for name, _ in block.properties)
         return dict(zip(names, block.values(state_id), strict=True))
 
+    def changed(self, state_id: int, **properties: str) -> int:
+        """Return the state id of the same block with other values of some properties.
+
+        Raises:
+            UnknownNameError: There is no such state id, property or value.
+        """
+        values = {**self.properties(state_id), **properties}
+        inner = ",".join(f"{name}={value}" for name, value in values.items())
+        return self.state_id(f"{self.name(state_id)}[{inner}]" if inner else self.name(state_id))
+
     def boxes(self, state_id: int) -> tuple[BoxBounds, ...]:
         """Return the collision boxes of a state, in blocks relative to the block's lower corner.
 

@@ -6,6 +6,7 @@ radians: yaw 0 looks along -z, pi/2 along -x; pitch is positive upwards. Time is
 of 50 ms.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -31,6 +32,8 @@ __all__ = [
     "Point",
     "Position",
     "Sign",
+    "block_at",
+    "feet_in",
 ]
 
 TICKS_PER_SECOND = 20
@@ -59,6 +62,16 @@ blocks: the believed block or None, and the actual one.
 
 Items = Mapping[str, int]
 """Item name to count; counts are positive."""
+
+
+def block_at(point: Point) -> Position:
+    """Return the position of the block that contains a point."""
+    return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
+
+
+def feet_in(position: Position) -> Point:
+    """Return the feet of an agent that stands in the middle of a block's place."""
+    return (position[0] + 0.5, float(position[1]), position[2] + 0.5)
 
 
 class Sign(NamedTuple):

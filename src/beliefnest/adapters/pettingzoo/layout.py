@@ -12,6 +12,7 @@ from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_switch
+from beliefnest.world.frames import places_of
 from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Box, Position
@@ -225,6 +226,5 @@ def _power(state: State, place: Position) -> int:
 def _places(setting: Setting, states: Sequence[int]) -> list[Position]:
     """Return the positions of blocks with one of some states, in order."""
     snapshot = setting.snapshot
-    x, y, z = snapshot.box.low
-    cells = np.argwhere(np.isin(snapshot.blocks, states)).tolist()
-    return [(x + i, y + j, z + k) for i, j, k in cells]
+    found = np.isin(snapshot.blocks, states)
+    return [place for place, _ in places_of(found, snapshot.box)]

@@ -9,14 +9,12 @@ world as the agent found it are more probable (Jara-Ettinger and Schachner 2024)
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from beliefnest.belief.grounds import ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.policies.course_planner import Bounds, Planner
 from beliefnest.nest.acting.imagination import Imagination, Performer
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.frames import BlockGrid, places_of
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Position
 
@@ -88,13 +86,12 @@ class _Found:
 
     def changed(self, moment: _Moment) -> set[Position]:
         """Return the places at which a moment differs from the agent's first belief."""
-        x, y, z = self._state.box.low
         differ = (self.first.blocks >= 0) & (moment.blocks != self.first.blocks)
         blocks = {
-            (x + i, y + j, z + k)
-            for i, j, k in np.argwhere(differ).tolist()
+            place
+            for place, index in places_of(differ, self._state.box)
             # The upper half of a door moves with the lower one.
-            if _half(int(self.first.blocks[i, j, k])) != "upper"
+            if _half(int(self.first.blocks[index])) != "upper"
         }
         held = moment.containers
         return blocks | {at for at, items in self.first.containers.items() if held.get(at) != items}

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beliefnest.nest.acting.courses import Course, Glimpse
-from beliefnest.nest.past.percepts import Percept, cell_in
+from beliefnest.nest.past.percepts import Percept
 from beliefnest.perception.sight import Geometry, Sight
 from beliefnest.world.frames import BlockGrid
-from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Point, Position
+from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Point, Position, block_at
 
 __all__ = ["Agreement", "Tolerance", "Witness"]
 
@@ -202,13 +202,13 @@ class Agreement:
         if not witness.items and not percept.items:
             return True
         if witness.owner is None:
-            lying = Counter((item.name, cell_in(item.position)) for item in witness.items)
+            lying = Counter((item.name, block_at(item.position)) for item in witness.items)
             return lying == percept.items
         eye = _eye(glimpse, witness.owner)
         key = (grid, *eye)
         if key not in self._lying:
             geometry = self._geometry(grid, glimpse.blocks)
-            places = [cell_in(item.position) for item in witness.items]
+            places = [block_at(item.position) for item in witness.items]
             seen = geometry.sees_blocks(*eye, np.array(places, dtype=np.int64).reshape(-1, 3))
             self._lying[key] = Counter(
                 (item.name, place)
@@ -252,5 +252,5 @@ def _eye(glimpse: Glimpse, owner: str) -> tuple[Point, float, float]:
 
 
 def _near(feet: Point, other: Point, cells: int) -> bool:
-    pairs = zip(cell_in(feet), cell_in(other), strict=True)
+    pairs = zip(block_at(feet), block_at(other), strict=True)
     return max(abs(one - two) for one, two in pairs) <= cells

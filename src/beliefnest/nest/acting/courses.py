@@ -15,13 +15,12 @@ import numpy as np
 
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import InputError, WorldError
-from beliefnest.minds.alternatives import middle_of
 from beliefnest.minds.walking import Act, Changes, Draw, Open, Step, Strategy, Walker
-from beliefnest.nest.past.percepts import Deed, Percept, cell_in, deed_of
+from beliefnest.nest.past.percepts import Deed, Percept, deed_of
 from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
 from beliefnest.world.signs import plain_state
-from beliefnest.world.values import AgentState, Items, Point, Position
+from beliefnest.world.values import AgentState, Items, Point, Position, block_at, feet_in
 from beliefnest.worlds.protocol import Fault, RunRules
 from beliefnest.worlds.scripted.engines import Engines
 from beliefnest.worlds.scripted.ground_cache import Grounds
@@ -302,7 +301,7 @@ class Course:
     def _walker(self, name: str, strategy: Strategy, draw: Draw) -> Walker:
         state = self.world.agent(name)
         pose = (state.position, state.yaw, state.pitch)
-        return Walker(strategy, draw, pose, cell_in(state.position))
+        return Walker(strategy, draw, pose, block_at(state.position))
 
     def _walk(self, walker: Walker, now: int) -> None:
         if walker.is_over or (now - self.start) % walker.strategy.step_ticks:
@@ -312,8 +311,8 @@ class Course:
         state = world.agent(name)
         if isinstance(action, Step):
             if action.cell != walker.cell:
-                yaw = _yaw(state.position, middle_of(action.cell))
-                world.place_agent(name, middle_of(action.cell), yaw=yaw, pitch=0.0)
+                yaw = _yaw(state.position, feet_in(action.cell))
+                world.place_agent(name, feet_in(action.cell), yaw=yaw, pitch=0.0)
                 state = world.agent(name)
         elif isinstance(action, Open):
             world.open(name, action.place)

@@ -3,7 +3,6 @@
 This is process F-2 of the paper, "reflecting state in the simulator environment".
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -17,7 +16,7 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import AIR
-from beliefnest.world.values import AgentState, Position
+from beliefnest.world.values import AgentState, Position, block_at
 from beliefnest.worlds.by_name import realtime_of
 from beliefnest.worlds.minecraft.exhibits import Exhibit, Plot, Shown, display_names, origin_of
 from beliefnest.worlds.protocol import World
@@ -162,7 +161,7 @@ class Embodying:
         box = self._recording.box
         space = BodySpace(self._recording.context.registry, box, reading.grid)
         places = [each.position for each in reading.agents.values() if each.position is not None]
-        taken = {tuple(map(math.floor, place)) for place in places}
+        taken = {block_at(place) for place in places}
         middle = np.array(places or [box.low, box.high], dtype=float).mean(axis=0)
         cells = np.argwhere(np.ones(box.shape, dtype=np.bool_)) + box.low
         near = np.linalg.norm(cells + 0.5 - middle, axis=1).argsort(kind="stable")
@@ -170,8 +169,7 @@ class Embodying:
             x, y, z = map(int, cells[number])
             if (x, y, z) not in taken and space.heights((x, y, z)):
                 return x, y, z
-        x, y, z = (math.floor(value) for value in middle)
-        return x, y, z
+        return block_at(middle)
 
     def _shown(self, path: BeliefPath, standing: _Embodied) -> tuple[Shown, int]:
         """Return the contents of a simulator's exhibit, and the tick of its latest change."""

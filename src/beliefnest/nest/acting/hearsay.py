@@ -16,7 +16,7 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.doors import is_door, is_switch
-from beliefnest.world.frames import Frame
+from beliefnest.world.frames import Frame, places_of
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import block_name
@@ -131,8 +131,5 @@ def _fittings(history: History, seen: NodeView) -> dict[Position, int]:
         name = registry.name(int(state)) if state >= 0 else ""
         if name and (registry.is_container(name) or is_door(name) or is_switch(name)):
             states.append(state)
-    low = history.context.box.low
-    return {
-        (int(x) + low[0], int(y) + low[1], int(z) + low[2]): int(blocks[x, y, z])
-        for x, y, z in np.argwhere(np.isin(blocks, states))
-    }
+    found = places_of(np.isin(blocks, states), history.context.box)
+    return {place: int(blocks[index]) for place, index in found}

@@ -6,7 +6,6 @@ beliefs follow a timeline. A fork takes well under a millisecond, so that a plan
 of courses. An imagination contains nothing from the simulators above the believer.
 """
 
-import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -24,7 +23,7 @@ from beliefnest.skills.calls import OPEN_CONTAINER, Call
 from beliefnest.world.frames import BlockGrid, Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position
+from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position, block_at
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
 from beliefnest.worlds.scripted.skills import perform
@@ -183,8 +182,8 @@ class Imagination:
         state = self.world.agents.get(agent)
         if state is None:
             return False
-        x, y, z = (math.floor(value) for value in state.position)
-        return self._standing().with_doors_opened.may_lead((x, y, z), InReach(place, REACH))
+        start, goal = block_at(state.position), InReach(place, REACH)
+        return self._standing().with_doors_opened.may_lead(start, goal)
 
     def seen_by(self, agent: str) -> Mapping[str, AgentState]:
         """Return the other agents that an agent of this world sees at the latest tick."""

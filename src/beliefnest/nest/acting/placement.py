@@ -15,7 +15,7 @@ from itertools import product
 from beliefnest.world.doors import is_open
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import BoxBounds, Registry
-from beliefnest.world.values import HALF_WIDTH, AgentState, Box, Point, Position
+from beliefnest.world.values import HALF_WIDTH, AgentState, Box, Point, Position, block_at
 
 __all__ = ["FARTHEST", "BodySpace", "Placed", "moved_agents", "placed", "unknown_floors"]
 
@@ -92,7 +92,7 @@ class BodySpace:
         """Return the unknown block into which an agent would fall; None if known blocks stop it."""
         if self.has_floor(place):
             return None
-        x, y, z = (math.floor(value) for value in place)
+        x, y, z = block_at(place)
         for level in range(y - 1, self.box.low[1] - 1, -1):
             state = self.state((x, level, z))
             if state < 0:
@@ -114,13 +114,13 @@ class BodySpace:
 
     def is_doorway(self, place: Point) -> bool:
         """Return True if the feet are in the block of a shut door."""
-        state = self.state(_cell(place))
+        state = self.state(block_at(place))
         named = state >= 0 and self.registry.name(state).endswith("_door")
         return named and is_open(self.registry, state) is False
 
     def is_clear(self, place: Point) -> bool:
         """Return True if nothing harmful or in the way is in an agent's cells or the one below."""
-        x, y, z = (math.floor(value) for value in place)
+        x, y, z = block_at(place)
         cells = [(x, y + up, z) for up in (-1, 0, 1)]
         names = {self.registry.name(s) for cell in cells if (s := self.state(cell)) >= 0}
         beside = (box for cell in cells for box in self.boxes_at(cell))
@@ -190,13 +190,13 @@ def _can_be(space: BodySpace, agent: AgentState) -> bool:
 
 def _is_taken(place: Point, taken: Sequence[Point]) -> bool:
     """Return True if another agent's feet are in the same block."""
-    return _cell(place) in map(_cell, taken)
+    return block_at(place) in map(block_at, taken)
 
 
 def _nearest(space: BodySpace, place: Point, taken: Sequence[Point]) -> Point | None:
-    near = _walkable(space, _cell(place))
+    near = _walkable(space, block_at(place))
     found = [
-        (_cell(to) not in near, not space.has_floor(to), math.dist(place, to), to)
+        (block_at(to) not in near, not space.has_floor(to), math.dist(place, to), to)
         for to in _places(space, place)
         if math.dist(place, to) <= FARTHEST and space.is_clear(to) and not _is_taken(to, taken)
     ]
@@ -205,7 +205,7 @@ def _nearest(space: BodySpace, place: Point, taken: Sequence[Point]) -> Point | 
 
 def _places(space: BodySpace, place: Point) -> Iterator[Point]:
     """Yield the places near a place where an agent can stand, also on unknown floors."""
-    for x, y, z in _cells_near(_cell(place)):
+    for x, y, z in _cells_near(block_at(place)):
         # An agent on the topmost blocks has its feet one cell above the box.
         if (x, min(y, space.box.high[1]), z) in space.box:
             for height in _levels(space, (x, y, z)):
@@ -253,11 +253,6 @@ def _cells_near(cell: Position) -> Iterator[Position]:
 
 def _span(low: float, high: float) -> range:
     return range(math.floor(low), math.floor(high) + 1)
-
-
-def _cell(place: Point) -> Position:
-    x, y, z = (math.floor(value) for value in place)
-    return (x, y, z)
 
 
 def _body(*places: Point) -> BoxBounds:

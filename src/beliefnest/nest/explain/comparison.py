@@ -14,6 +14,7 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.words import html_lines, html_table, where_words
+from beliefnest.world.frames import places_of
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import contents_words, point_words
@@ -225,10 +226,9 @@ def are_false(real: Contents | None, belief: Contents) -> bool:
 
 
 def _different_blocks(a: NodeView, b: NodeView, context: BeliefContext) -> Iterator[Difference]:
-    (x, y, z), words = context.box.low, context.block_text
-    for i, j, k in np.argwhere(a.numbers != b.numbers).tolist():
-        texts = (words(int(view.numbers[i, j, k])) for view in (a, b))
-        yield Difference("block", (x + i, y + j, z + k), *texts)
+    for place, index in places_of(a.numbers != b.numbers, context.box):
+        texts = (context.block_text(int(view.numbers[index])) for view in (a, b))
+        yield Difference("block", place, *texts)
 
 
 def _different_things(a: BelievedThings, b: BelievedThings) -> Iterator[Difference]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beliefnest.belief.grounds import AgentBelief, ContainerBelief, PerceivedEvent
+from beliefnest.belief.holdings import changed_items
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError
 from beliefnest.minds.alternatives import Pose, World
@@ -19,7 +20,7 @@ from beliefnest.minds.mind_model import Alternative
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry, parse_state
-from beliefnest.world.values import Box, Items, Point, Position
+from beliefnest.world.values import Box, Items, Point, Position, block_at
 
 __all__ = ["Overlay"]
 
@@ -97,8 +98,7 @@ class Overlay:
 
     def truth(self, claim: Claim) -> int:
         """Return the alternatives in which a claim is true; -1: it is about no doubted element."""
-        x, y, z = (math.floor(part) for part in claim.place)
-        place = (x, y, z)
+        place = claim.cell
         if claim.kind in (ClaimKind.LOCATED, ClaimKind.ABSENT):
             if place not in self._contents:
                 return -1
@@ -107,7 +107,7 @@ class Overlay:
         elif claim.kind is ClaimKind.POSITION:
             if claim.agent not in self._feet:
                 return -1
-            true = [_cell(feet) == place for feet in self._feet[claim.agent]]
+            true = [block_at(feet) == place for feet in self._feet[claim.agent]]
         else:
             if place not in self._blocks:
                 return -1
@@ -129,13 +129,12 @@ class Overlay:
             sign = event.kind.traits.stores
             if not sign:
                 continue
-            used = event.detail.get("position")
-            spot = (int(used[0]), int(used[1]), int(used[2])) if used else None
-            if spot is not None and spot in self._contents:
+            spot = event.detail.get("position")
+            if spot in self._contents:
                 moved.add(spot)
                 items = event.detail.get("items", {})
                 self._contents[spot] = [
-                    _changed(each, items, sign) for each in self._contents[spot]
+                    changed_items(each, items, sign) for each in self._contents[spot]
                 ]
         for place, held in now.contents.items():
             old = before.contents[place]
@@ -219,7 +218,7 @@ class Overlay:
         return _Held(
             {place: int(view.grid[self._box.index(place)]) for place in self._blocks},
             {place: view.containers.get(place) for place in self._contents},
-            {name: (_pose_of(agents[name]), agents[name].current) for name in self._feet},
+            {name: (pose_of(agents[name]), agents[name].current) for name in self._feet},
         )
 
     def _is(self, text: str, state: int) -> bool:
@@ -239,16 +238,5 @@ def _fits(items: Items, held: ContainerBelief) -> bool:
     return all(items.get(name, 0) >= count for name, count in held.items.items())
 
 
-def _changed(items: Items, moved: Mapping[str, int], sign: int) -> Items:
-    changed = dict(items)
-    for name, count in moved.items():
-        changed[name] = changed.get(name, 0) + sign * count
-    return {name: count for name, count in changed.items() if count > 0}
-
-
-def _pose_of(agent: AgentBelief) -> Pose | None:
+def pose_of(agent: AgentBelief) -> Pose | None:
     return None if agent.position is None else (agent.position, agent.yaw, agent.pitch)
-
-
-def _cell(feet: Point) -> Position:
-    return (math.floor(feet[0]), math.floor(feet[1]), math.floor(feet[2]))

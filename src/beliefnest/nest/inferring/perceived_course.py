@@ -1,24 +1,23 @@
 """Course of an agent as an observer perceived it, read from one node and its timeline."""
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
+from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError
 from beliefnest.minds.alternatives import Pose, Worlds
 from beliefnest.minds.evidence import Moment
 from beliefnest.minds.mind_model import Alternative, Goal
 from beliefnest.minds.surroundings import Scene
-from beliefnest.nest.inferring.overlay import Overlay
+from beliefnest.nest.inferring.overlay import Overlay, pose_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, Entry, TimelineKey
 from beliefnest.world.claims import Claim, claims_of
 from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.paths import BeliefPath, normalised, path_text
-from beliefnest.world.values import EventKind, Position
+from beliefnest.world.values import EventKind, Position, block_at
 
 __all__ = ["Question", "Reading"]
 
@@ -184,7 +183,7 @@ class Reading:
                 )
         scene = self._scene_of(view)
         agent = view.agents[question.agent]
-        pose = _pose(agent)
+        pose = pose_of(agent)
         seen = agent.current and pose is not None
         alike: tuple[int, ...] = ()
         cell = None
@@ -193,7 +192,7 @@ class Reading:
             alike = tuple(scene.worlds.alike(*pose, all_round=False))
         owner = question.path[-1] if question.path else None
         watching = None if owner in (None, question.agent) else view.agents[owner or ""]
-        watch = None if watching is None or not watching.current else _pose(watching)
+        watch = None if watching is None or not watching.current else pose_of(watching)
         opened, act, deed = self._done(events)
         self.moments.append(
             Moment(tick, scene, cell, alike, truths, learnt, opened, act, deed, self._agrees, watch)
@@ -203,7 +202,7 @@ class Reading:
         """Return the information from the doubted containers that the agent uses."""
         assert self._overlay is not None
         used = {
-            _place(event)
+            event.detail.get("position")
             for event in events
             if event.actor == self.question.agent and event.kind in AT_CONTAINERS
         }
@@ -229,8 +228,11 @@ class Reading:
                 if goals:
                     act = goals[0]
                     continue
-            if event.kind is EventKind.OPEN_CONTAINER and _place(event) in self._overlay.containers:
-                opened = _place(event)
+            if (
+                event.kind is EventKind.OPEN_CONTAINER
+                and event.detail.get("position") in self._overlay.containers
+            ):
+                opened = event.detail.get("position")
                 continue
             deed = True
         return opened, act, deed
@@ -274,7 +276,7 @@ class Reading:
 
     def _cell(self, scene: Scene, pose: Pose, *, on_ground: bool) -> Position:
         """Return the cell of an agent; during a jump or over an edge, its previous cell."""
-        x, y, z = (math.floor(part) for part in pose[0])
+        x, y, z = block_at(pose[0])
         for cell in ((x, y, z), (x, y - 1, z)):
             if scene.can_stand(cell):
                 return cell
@@ -282,12 +284,3 @@ class Reading:
         if on_ground and scene.has_unknown_floor(at):
             return at
         return next((m.cell for m in reversed(self.moments) if m.cell is not None), at)
-
-
-def _pose(agent: AgentBelief) -> Pose | None:
-    return None if agent.position is None else (agent.position, agent.yaw, agent.pitch)
-
-
-def _place(event: PerceivedEvent) -> Position | None:
-    place = event.detail.get("position")
-    return None if place is None else (int(place[0]), int(place[1]), int(place[2]))

@@ -8,7 +8,7 @@ import numpy as np
 from beliefnest.belief.view import State
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.frames import BlockGrid, places_of
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Position
@@ -90,8 +90,7 @@ def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:
 def _changed(
     before: BlockGrid, after: BlockGrid, box: Box, registry: Registry
 ) -> dict[Position, str | None]:
-    x, y, z = box.low
     return {
-        (x + i, y + j, z + k): None if after[i, j, k] < 0 else registry.text(int(after[i, j, k]))
-        for i, j, k in np.argwhere(before != after).tolist()
+        place: None if after[index] < 0 else registry.text(int(after[index]))
+        for place, index in places_of(before != after, box)
     }

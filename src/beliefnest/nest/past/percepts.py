@@ -5,7 +5,6 @@ dropped items, and agents with their cells. If nothing changed for the owner at 
 percept before still holds.
 """
 
-import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -23,9 +22,9 @@ from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import EventKind, Items, Point, Position
+from beliefnest.world.values import EventKind, Items, Point, Position, block_at
 
-__all__ = ["Deed", "Percept", "cell_in", "deed_of", "percepts_of"]
+__all__ = ["Deed", "Percept", "deed_of", "percepts_of"]
 
 Deed = tuple[str, str, Position, tuple[tuple[str, int], ...]]
 """Kind, actor, container, and the items that were seen being moved."""
@@ -70,17 +69,10 @@ class Percept:
         )
 
 
-def cell_in(point: Point) -> Position:
-    """Return the cell that contains a point."""
-    return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
-
-
 def deed_of(kind: EventKind, actor: str, detail: Mapping[str, Any]) -> Deed:
     """Return the visible part of an action at a container."""
-    place = detail["position"]
     items: Mapping[str, int] = detail.get("items", {})
-    at = (int(place[0]), int(place[1]), int(place[2]))
-    return (str(kind), actor, at, tuple(sorted(items.items())))
+    return (str(kind), actor, detail["position"], tuple(sorted(items.items())))
 
 
 def percepts_of(
@@ -144,10 +136,10 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
         if event.kind in AT_CONTAINERS and event.actor is not None
     ]
     lying = Counter(
-        (item.name, cell_in(item.position))
+        (item.name, block_at(item.position))
         for item in view.items.values()
-        if cell_in(item.position) in context.box
-        and cell_of(context.box, cell_in(item.position)) in seen
+        if block_at(item.position) in context.box
+        and cell_of(context.box, block_at(item.position)) in seen
     )
     percept = Percept(
         tick,

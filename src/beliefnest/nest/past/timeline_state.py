@@ -13,7 +13,7 @@ from beliefnest.belief.grounds import Basis
 from beliefnest.belief.node_view import NodeView, Part
 from beliefnest.pictures.words import state_words
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.frames import BlockGrid, places_of
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Position
 
@@ -122,11 +122,8 @@ class _Blocks:
         for name in names:
             ids = registry.state_ids(name)
             wanted[ids.start : ids.stop] = True
-        x, y, z = self._context.box.low
-        return {
-            (x + i, y + j, z + k): registry.text(int(grid[i, j, k]))
-            for i, j, k in np.argwhere(wanted[grid]).tolist()
-        }
+        found = places_of(wanted[grid], self._context.box)
+        return {place: registry.text(int(grid[index])) for place, index in found}
 
     def current(self, position: Position) -> bool:
         """Return True if the block is backed by a perception in this tick."""

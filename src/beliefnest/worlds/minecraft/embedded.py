@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Self
 
 import msgspec
-import numpy as np
 
 from beliefnest.errors import BodyError, WorldError
 from beliefnest.owned import Owned
@@ -280,9 +279,7 @@ class EmbeddedWorld(Owned):
 
 def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
     """Return the changes from one snapshot to another, as arguments of `apply`."""
-    low = after.box.low
     other = before.blocks != after.blocks
-    places = np.argwhere(other).tolist()
     gone = before.containers.keys() - after.containers.keys()
     # A container that replaces another one begins empty.
     contents = {
@@ -290,15 +287,10 @@ def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
         for place, items in after.containers.items()
         if before.containers.get(place) != items or other[after.box.index(place)]
     }
-    agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
-    for name, agent in after.agents.items():
-        if before.agents.get(name) != agent:
-            agents[name] = node_messages.agent_message(agent)
+    agents = node_messages.agents_changes(before.agents, after.agents, node_messages.agent_message)
     return {
         **node_messages.signs_message(after.signs),
-        "blocks": [
-            [low[0] + i, low[1] + j, low[2] + k, int(after.blocks[i, j, k])] for i, j, k in places
-        ],
+        "blocks": node_messages.blocks_changes(before.blocks, after.blocks, after.box.low),
         "containers": [
             *node_messages.contents_message(contents),
             *([*place, None] for place in sorted(gone)),

@@ -8,12 +8,10 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
-import numpy as np
-
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.values import AgentState, Box, Items, Position
 from beliefnest.worlds.minecraft.channel import Channel
-from beliefnest.worlds.minecraft.node_messages import pose_message
+from beliefnest.worlds.minecraft.node_messages import agents_changes, blocks_changes, pose_message
 
 __all__ = ["Exhibit", "Plot", "Shown", "display_names", "origin_of"]
 
@@ -53,24 +51,18 @@ class Shown:
 
     def changes(self, before: "Shown", low: Position) -> dict[str, Any] | None:
         """Return the changes as a message, None if there are none; `low` is the box's corner."""
-        places = np.argwhere(before.blocks != self.blocks).tolist()
+        blocks = blocks_changes(before.blocks, self.blocks, low)
         gone = before.containers.keys() - self.containers.keys()
         contents = [
             (place, held)
             for place, held in self.containers.items()
             if before.containers.get(place) != held
         ]
-        agents: dict[str, Any] = dict.fromkeys(sorted(before.agents.keys() - self.agents.keys()))
-        for name, agent in self.agents.items():
-            if before.agents.get(name) != agent:
-                agents[name] = pose_message(agent)
-        if not (places or gone or contents or agents or before.signs != self.signs):
+        agents = agents_changes(before.agents, self.agents, pose_message)
+        if not (blocks or gone or contents or agents or before.signs != self.signs):
             return None
         return {
-            "blocks": [
-                [low[0] + i, low[1] + j, low[2] + k, int(self.blocks[i, j, k])]
-                for i, j, k in places
-            ],
+            "blocks": blocks,
             "containers": [*_rows(contents), *([*place, None, False] for place in sorted(gone))],
             "signs": [[*place, text] for place, text in sorted(self.signs.items())],
             "agents": agents,

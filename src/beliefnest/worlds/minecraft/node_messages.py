@@ -1,6 +1,6 @@
 """Conversion of the channel's messages to Python values and back (design/channel.md)."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from beliefnest.errors import BeliefNestError, BodyError
 from beliefnest.world.claims import Claim, claims_from_plain
-from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.frames import BlockGrid, Frame, Snapshot
 from beliefnest.world.values import (
     AgentState,
     Block,
@@ -162,19 +162,13 @@ def percepts_message(sensed: Sensed) -> dict[str, Any]:
 
 def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, Any]:
     """Return PERCEPTS of an agent's new knowledge; `low` is the box's lowest corner."""
-    places = np.argwhere(before.blocks != after.blocks).tolist()
-    agents: dict[str, Any] = dict.fromkeys(before.agents.keys() - after.agents.keys())
-    for name, agent in after.agents.items():
-        if before.agents.get(name) != agent:
-            agents[name] = pose_message(agent)
+    agents = agents_changes(before.agents, after.agents, pose_message)
     items: dict[str, Any] = {str(number): None for number in before.items.keys() - after.items}
     for number, item in after.items.items():
         if before.items.get(number) != item:
             items[str(number)] = item
     parts = {
-        "blocks": [
-            [low[0] + i, low[1] + j, low[2] + k, int(after.blocks[i, j, k])] for i, j, k in places
-        ],
+        "blocks": blocks_changes(before.blocks, after.blocks, low),
         "agents": dict(sorted(agents.items())),
         "items": dict(sorted(items.items(), key=lambda item: int(item[0]))),
         "heard": after.heard,
@@ -182,6 +176,27 @@ def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, 
     changes = {name: part for name, part in parts.items() if part}
     if before.signs != after.signs:
         changes["signs"] = [[*place, text] for place, text in sorted(after.signs.items())]
+    return changes
+
+
+def blocks_changes(before: BlockGrid, after: BlockGrid, low: Position) -> list[list[int]]:
+    """Return changed blocks as rows of x, y, z, state; `low` is the box's lowest corner."""
+    return [
+        [low[0] + i, low[1] + j, low[2] + k, int(after[i, j, k])]
+        for i, j, k in np.argwhere(before != after).tolist()
+    ]
+
+
+def agents_changes(
+    before: Mapping[str, AgentState],
+    after: Mapping[str, AgentState],
+    message: Callable[[AgentState], dict[str, Any]],
+) -> dict[str, dict[str, Any] | None]:
+    """Return the changed agents as messages by name; None for those that are gone."""
+    changes: dict[str, dict[str, Any] | None] = dict.fromkeys(sorted(before.keys() - after.keys()))
+    for name, agent in after.items():
+        if before.get(name) != agent:
+            changes[name] = message(agent)
     return changes
 
 

@@ -11,12 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand, passage
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.frames import BlockGrid, places_of
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import is_sign
-from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
+from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, feet_in
 
-__all__ = ["Goal", "Ground", "InReach", "Near", "feet_in", "find_way"]
+__all__ = ["Goal", "Ground", "InReach", "Near", "find_way"]
 
 _DEEPEST_DROP = 3
 _SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
@@ -89,11 +89,6 @@ Goal = Near | InReach
 """Goal of a path."""
 
 
-def feet_in(cell: Position) -> Point:
-    """Return the position of the feet of an agent that stands in a cell."""
-    return (cell[0] + 0.5, float(cell[1]), cell[2] + 0.5)
-
-
 class Ground:
     """Cells in which agents can stand: two free cells above one another, with a solid one below.
 
@@ -119,9 +114,8 @@ class Ground:
         )
         free_states = [s < 0 or s in ways or not registry.boxes(s) for s in states.tolist()]
         free = np.array(free_states, dtype=np.bool_)[places].reshape(blocks.shape)
-        x, y, z = box.low
-        doors = np.argwhere(np.isin(blocks, list(ways))).tolist() if ways else []
-        self._doorways = {(x + i, y + j, z + k): ways[int(blocks[i, j, k])] for i, j, k in doors}
+        doors = places_of(np.isin(blocks, list(ways)), box) if ways else ()
+        self._doorways = {place: ways[int(blocks[index])] for place, index in doors}
         # Add a margin, so that every neighbour of a cell has an index; above the box is air.
         passing, holding = _widened(free), _widened((blocks < 0) | ~free)
         passing[1:-1, _MARGIN + blocks.shape[1], 1:-1] = True

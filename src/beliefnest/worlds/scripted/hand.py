@@ -12,9 +12,9 @@ from typing import Any
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
 from beliefnest.world.registry import AIR, Registry
-from beliefnest.world.values import AgentState, Point, Position
+from beliefnest.world.values import AgentState, Point, Position, block_at, feet_in
 from beliefnest.worlds.protocol import NO_WAY, FreeLine
-from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach, feet_in
+from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __all__ = [
@@ -24,7 +24,6 @@ __all__ = [
     "Hand",
     "SkillError",
     "block_in",
-    "cell_of",
     "doors_in",
     "items_in",
     "number_in",
@@ -93,7 +92,7 @@ class Hand:
     @property
     def cell(self) -> Position:
         """Cell in which the agent stands."""
-        return cell_of(self.feet)
+        return block_at(self.feet)
 
 
 def walk_to_use(hand: Hand, place: Position) -> Doing:
@@ -201,12 +200,7 @@ def point_in(name: str, value: Any) -> Point:
 
 def block_in(value: Any) -> Position:
     """Return the position of the block that contains a point; raises SkillError if not valid."""
-    return cell_of(point_in("position", value))
-
-
-def cell_of(point: Point) -> Position:
-    """Return the cell that contains a point."""
-    return (math.floor(point[0]), math.floor(point[1]), math.floor(point[2]))
+    return block_at(point_in("position", value))
 
 
 def items_in(value: Any) -> dict[str, int]:

@@ -14,7 +14,7 @@ from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_open
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import sign_fault
-from beliefnest.world.values import EYE_HEIGHT, Position
+from beliefnest.world.values import EYE_HEIGHT, Position, block_at
 from beliefnest.worlds.scripted.building import mine_block, place_item, press_button, switch_lever
 from beliefnest.worlds.scripted.footpaths import Near
 from beliefnest.worlds.scripted.hand import (
@@ -22,7 +22,6 @@ from beliefnest.worlds.scripted.hand import (
     Hand,
     SkillError,
     block_in,
-    cell_of,
     doors_in,
     items_in,
     number_in,
@@ -41,7 +40,7 @@ def _go_to_position(hand: Hand, position: Any, dist: Any = 2, doors: Any = None)
     target = point_in("position", position)
     near = number_in("dist", dist)
     doors = doors_in(doors)
-    moved = yield from walk(hand, target, Near(cell_of(target), near), "the position", doors)
+    moved = yield from walk(hand, target, Near(block_at(target), near), "the position", doors)
     if not moved:
         yield
     hand.world.arrive(hand.name, target)
@@ -177,7 +176,7 @@ def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
     if name not in others:
         raise SkillError(f"{name!r} is no agent that is known to be here; it is {sorted(others)}")
     where = others[name].position
-    yield from walk(hand, where, Near(cell_of(where), _NEAR), name)
+    yield from walk(hand, where, Near(block_at(where), _NEAR), name)
     yield
     hand.world.give(hand.name, name, items_in({text_in(item): count}))
 

@@ -24,6 +24,7 @@ from beliefnest.world.values import (
     Point,
     Position,
     Sign,
+    block_at,
 )
 from beliefnest.worlds.scripted.facts import (
     Pending,
@@ -200,7 +201,7 @@ class ScriptedState(Barred):
         if len(position) != 3 or not all(map(math.isfinite, position)):
             raise WorldError(f"{position!r} is no point; give three finite numbers")
         x, y, z = map(float, position)
-        self._in_box((math.floor(x), math.floor(y), math.floor(z)))
+        self._in_box(block_at((x, y, z)))
         return (x, y, z)
 
     def _state(self, block: str) -> int:

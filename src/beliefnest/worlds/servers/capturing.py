@@ -8,7 +8,7 @@ import msgspec
 import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.frames import BlockGrid, Snapshot, places_of
 from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign, sign_fault
@@ -160,9 +160,9 @@ def _said(found: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
             containers[place] = {i: count for i, count in items.items() if registry.has_item(i)}
         elif items:
             others.add(name_at(place))
-    for index in np.argwhere(np.isin(found.blocks, _container_states(names, registry))).tolist():
-        x, y, z = (i + low for i, low in zip(index, found.box.low, strict=True))
-        containers.setdefault((x, y, z), {})
+    holders = np.isin(found.blocks, _container_states(names, registry))
+    for place, _ in places_of(holders, found.box):
+        containers.setdefault(place, {})
     signs = {
         place: text
         for place, text in found.signs.items()
