@@ -197,7 +197,7 @@ def test_recorded_nests_journals_and_servers_are_refused(tmp_path: Path) -> None
 
 
 def test_worlds_are_refused() -> None:
-    world = EmbeddedWorld.start(0)
+    world = EmbeddedWorld(0).start()
     try:
         assert in_child(lambda: world.pid) == "done"
         snapshot = bn.Scenario.load("sally-anne", 3).setting.snapshot

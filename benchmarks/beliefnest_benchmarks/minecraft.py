@@ -82,7 +82,7 @@ def _late(seconds: float, ticks: int) -> float:
 
 def _server(named: str) -> Sequence[Metric]:
     """Return figures of a verified body of Sally-Anne's box, and of many bots."""
-    world = MinecraftWorld.start(ServerAddress.parse(named), 0)
+    world = MinecraftWorld(ServerAddress.parse(named), 0).start()
     snapshot = Scenario.load("sally-anne", 1).setting.snapshot
     try:
         seconds = median_seconds(lambda: _body(world, snapshot), _RUNS)

@@ -20,7 +20,7 @@ _AGENTS = ("ann", "bob", "cleo")
 
 def measure() -> Sequence[Metric]:
     """Return the time from the kill until all bodies have advanced by a tick."""
-    world = EmbeddedWorld.start(0)
+    world = EmbeddedWorld(0).start()
     engine = begun(_room(), world, "embedded", 0)
     try:
         _go_apart(engine)

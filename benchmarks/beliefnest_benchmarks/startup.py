@@ -46,7 +46,7 @@ def _python(code: str) -> None:
 def _memory() -> float:
     """Return the resident memory of Node after the script has played, in MB."""
     setting = Scenario.load("sally-anne").setting
-    world = EmbeddedWorld.start(0)
+    world = EmbeddedWorld(0).start()
     try:
         body = world.open_body("/", "0", setting.snapshot, _ignore)
         for step in setting.script:

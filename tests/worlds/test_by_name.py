@@ -28,7 +28,7 @@ def test_a_frame_that_is_refused_does_not_put_the_channel_out_of_step():
     def refuse(frame: Frame) -> None:
         raise OSError(f"no room for tick {frame.tick}")
 
-    world = EmbeddedWorld.start(0)
+    world = EmbeddedWorld(0).start()
     try:
         body = world.open_body("/", "seed", setting.snapshot, refuse)
         with pytest.raises(OSError, match="no room for tick"):

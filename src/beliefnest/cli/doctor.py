@@ -190,7 +190,7 @@ def _server_checks(server: str) -> tuple[tuple[str, Callable[[], str]], ...]:
     def joined() -> str:
         from beliefnest.worlds.servers.server_world import MinecraftWorld
 
-        with closing(MinecraftWorld.start(address, 0)) as world:
+        with closing(MinecraftWorld(address, 0).start()) as world:
             return (
                 f"{world.address} speaks Minecraft {world.minecraft}, and {address.operator} may "
                 "use all commands that are needed"

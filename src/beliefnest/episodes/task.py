@@ -18,10 +18,9 @@ from beliefnest.scenarios.loading import Change, condition_number
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names, read_document
-from beliefnest.scenarios.space import box_between
 from beliefnest.scenarios.writing import content_text
 from beliefnest.version import VERSION
-from beliefnest.world.values import Position
+from beliefnest.world.values import Box, Position
 
 __all__ = ["Task"]
 
@@ -183,7 +182,7 @@ class Task:
                 "(in a scenario under `episode`)"
             )
         try:
-            check_rules(self.form, self.agents, box_between(*box))
+            check_rules(self.form, self.agents, Box.between(*box))
         except BeliefNestError as fault:
             raise ScenarioError(f"task {self.name}: {fault}") from None
 

@@ -21,7 +21,6 @@ __all__ = [
     "Alternative",
     "Goal",
     "MindModel",
-    "credence_row",
     "read_doubt",
     "simplex_grid",
 ]
@@ -246,14 +245,6 @@ class MindModel:
         if len(set(listed)) < len(listed):
             raise InputError(f"rationality is {given!r}; name each value once")
         self._set("rationalities", tuple(float(each) for each in listed))
-
-
-def credence_row(initial: npt.ArrayLike | None, names: Sequence[str]) -> Floats:
-    """Check and return one initial credence over alternatives; None: the uniform one."""
-    if initial is None:
-        return np.full(len(names), 1 / len(names))
-    row: Floats = _credence_rows([initial], names, True)[0]
-    return row
 
 
 def read_doubt(doubt: Mapping[str, Mapping[str, Any]] | None) -> tuple[Alternative, ...]:

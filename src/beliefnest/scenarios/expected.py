@@ -336,16 +336,18 @@ class Awaited(Deed):
         place = self.believed.place(look, setting)
         match self.key:
             case "opens":
-                if _block(place) not in self.containers:
+                if block_at(place) not in self.containers:
                     raise ScenarioError(
                         f"{self.believed.where}needs a container, but the item is believed "
                         f"{named_place(place, setting)}"
                     )
-                return Opens(_block(place), self.believed)
+                return Opens(block_at(place), self.believed)
             case "arrives":
                 return Arrives(place, self.within, self.believed)
             case _:
-                return Intends(place, self.within, _block(place) in self.containers, self.believed)
+                return Intends(
+                    place, self.within, block_at(place) in self.containers, self.believed
+                )
 
     def judge(self, trial: Trial) -> Judgement:
         raise AssertionError("the expectation is resolved before a program runs")

@@ -24,7 +24,6 @@ from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.format import InstanceEntry, ParameterEntry
 from beliefnest.scenarios.loading import condition_numbers, scenario_in
 from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in
-from beliefnest.scenarios.space import box_between
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EYE_HEIGHT, Box, Position
 from beliefnest.world.words import counted
@@ -236,7 +235,7 @@ class _Scene:
 def _part_of(entry: Mapping[str, Any]) -> Box | None:
     """Return the box of a `fill` or of `walls`; None: the entry is a single block."""
     corners = entry.get("fill") or entry.get("walls")
-    return None if corners is None else box_between(*(tuple(corner) for corner in corners))
+    return None if corners is None else Box.between(*(tuple(corner) for corner in corners))
 
 
 def _is_inside_walls(entry: Mapping[str, Any], part: Box, cell: Position) -> bool:
@@ -285,6 +284,6 @@ def _rule(
 
 
 def _cells_of(corners: tuple[Position, Position]) -> list[Position]:
-    low, high = box_between(*corners).low, box_between(*corners).high
+    low, high = Box.between(*corners).low, Box.between(*corners).high
     spans = (range(a, b + 1) for a, b in zip(low, high, strict=True))
     return [(x, y, z) for x, y, z in itertools.product(*spans)]

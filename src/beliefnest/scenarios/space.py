@@ -18,7 +18,6 @@ from beliefnest.world.values import Box, Items, Position
 
 __all__ = [
     "UNKNOWN",
-    "box_between",
     "build_box",
     "build_containers",
     "build_grid",
@@ -31,16 +30,9 @@ UNKNOWN = -1
 """Block state id of unknown blocks."""
 
 
-def box_between(first: Position, second: Position) -> Box:
-    """Return the box between two opposite corners in any order."""
-    low = tuple(min(pair) for pair in zip(first, second, strict=True))
-    high = tuple(max(pair) for pair in zip(first, second, strict=True))
-    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
-
-
 def build_box(document: Document, file: ScenarioFile) -> Box:
     """Return the box of a scenario; raise ScenarioError if it is too large."""
-    box = box_between(*file.box)
+    box = Box.between(*file.box)
     if fault := box_fault(box):
         raise document.fault(("box",), fault)
     return box

@@ -98,10 +98,7 @@ def _short(value: object) -> str:
 
 def _box(document: Document) -> Box:
     corners: Any = plain(document.root.value["box"])
-    first, second = corners
-    low = tuple(min(pair) for pair in zip(first, second, strict=True))
-    high = tuple(max(pair) for pair in zip(first, second, strict=True))
-    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    return Box.between(*corners)
 
 
 def _check_agents(document: Document, agents: Mapping[str, str]) -> None:

@@ -87,17 +87,14 @@ class _Timeline:
 class MemoryJournal:
     """A journal that is lost when the process ends."""
 
+    writable = True
+
     def __init__(self) -> None:
         self._timelines: dict[TimelineKey, _Timeline] = {}
         self._database = Database.in_memory(RECORDS)
         # Users need not close this journal, and can read it after `close`.
         finalize(self, self._database.close)
         self.records = Records(self._database)
-
-    @property
-    def writable(self) -> bool:
-        """Always True."""
-        return True
 
     def timelines(self) -> Sequence[TimelineInfo]:
         """Return all timelines, in order of creation."""

@@ -98,6 +98,12 @@ class Box:
         (x0, y0, z0), (x1, y1, z1) = self.low, self.high
         return (x1 - x0 + 1, y1 - y0 + 1, z1 - z0 + 1)
 
+    @classmethod
+    def between(cls, first: Position, second: Position) -> "Box":
+        """Return the box between two opposite corners in any order."""
+        (x0, x1), (y0, y1), (z0, z1) = map(sorted, zip(first, second, strict=True))
+        return cls((x0, y0, z0), (x1, y1, z1))
+
     def __contains__(self, position: Position) -> bool:
         (x0, y0, z0), (x, y, z), (x1, y1, z1) = self.low, position, self.high
         return x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1

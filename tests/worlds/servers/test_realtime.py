@@ -15,7 +15,7 @@ from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import BodyError, InputError
 from beliefnest.world.values import EventKind
-from beliefnest.worlds.by_name import joined_of, open_world
+from beliefnest.worlds.by_name import open_world, realtime_of
 
 LONG_S = 120
 PATIENCE = 60
@@ -147,7 +147,7 @@ def test_skills_do_and_are_told_as_in_the_embedded_world(tmp_path):
     with serving(latency=15, version="1.20.2") as older:
         played = worked(scenario, older.address())
         with closing(open_world(older.address(), 0)) as world:
-            joined = joined_of(world)
+            joined = realtime_of(world)
             assert joined is not None
             assert joined.minecraft in ("1.20.2", *given_version())
     for here, there in zip(worked(scenario, "embedded"), played, strict=True):

@@ -52,6 +52,8 @@ class Speculation:
 class SpeculatedBody:
     """Stand-in for a body whose programs have run already. It can only replay their result."""
 
+    goes_on = False
+
     def __init__(self, speculation: Speculation, sink: Sink) -> None:
         self._speculation = speculation
         self._sink = sink
@@ -61,11 +63,6 @@ class SpeculatedBody:
     def lost(self) -> bool:
         """True if the process in which the programs ran has ended."""
         return self._ran and isinstance(self._speculation.error, BodyLostError)
-
-    @property
-    def goes_on(self) -> bool:
-        """False: its clock stands still between the calls."""
-        return False
 
     @property
     def tick(self) -> int:

@@ -16,7 +16,7 @@ from beliefnest.nest.face.history_starts import Starts
 from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
 from beliefnest.nest.past.recording import Recording
 from beliefnest.owned import Barred
-from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.words import counted
 from beliefnest.worlds.scripted.world_facts import WorldFacts
@@ -283,8 +283,7 @@ class Imagined(Barred):
                     f"{path_text(self._path)} already has a branch {name!r}; choose another name"
                 )
             with journal.together():
-                journal.create(key, self._base, self._base.tick)
-                journal.append(key, self._starts.entries(course), course.tick)
+                self._append(journal, key, course)
 
     def __repr__(self) -> str:
         head = (
@@ -315,10 +314,13 @@ class Imagined(Barred):
         key = self._keys.get(course)
         if key is None:
             key = self._keys[course] = TimelineKey(self._path, f"history {len(self._keys)}")
-            journal = self._side.journal
-            journal.create(key, self._base, self._base.tick)
-            journal.append(key, self._starts.entries(course), course.tick)
+            self._append(self._side.journal, key, course)
         return self._side.on(key)
+
+    def _append(self, journal: Journal, key: TimelineKey, course: Course) -> None:
+        """Add a course to a journal as a timeline of its own."""
+        journal.create(key, self._base, self._base.tick)
+        journal.append(key, self._starts.entries(course), course.tick)
 
     def _holds(self, course: Course, wanted: Sequence[GoalCondition]) -> bool:
         def look(path: BeliefPath) -> GoalFacts:

@@ -32,7 +32,7 @@ from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.paths import parse_path
 from beliefnest.world.seeds import checked_seed
 from beliefnest.world.values import TICKS_PER_SECOND, Position
-from beliefnest.worlds.by_name import Worlds, is_real_time, joined_of, open_world, realtime_of
+from beliefnest.worlds.by_name import Worlds, open_world, realtime_of
 from beliefnest.worlds.names import world_name
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
@@ -266,7 +266,7 @@ class Nest(NestBase):
         """
         self[path].child(agent)
         parsed = parse_path(path, self.agents)
-        if not parsed and is_real_time(self._engine.world):
+        if not parsed and realtime_of(self._engine.world) is not None:
             raise InputError(
                 "this real world runs in real time, so programs cannot be tried out in it; explore "
                 "a belief instead, which is played in the embedded world"
@@ -382,15 +382,15 @@ class Nest(NestBase):
     @property
     def address(self) -> str | None:
         """The address at which Minecraft clients join, `HOST:PORT`; None if people cannot join."""
-        host = joined_of(self._engine.world)
+        host = realtime_of(self._engine.world)
         return None if host is None else host.address
 
     @property
     @in_turn
     def people(self) -> frozenset[str]:
         """The names of the people who are joined now."""
-        host = joined_of(self._engine.world)
-        return frozenset() if host is None else host.here()
+        host = realtime_of(self._engine.world)
+        return frozenset() if host is None or not host.invited else host.here()
 
     def wait_for_people(
         self, timeout_s: float = _PATIENCE_S, on_progress: Progress | None = None
@@ -406,7 +406,7 @@ class Nest(NestBase):
             InputError: The time is below 0, or longer than a day.
             WorldError: A person did not join.
         """
-        host = joined_of(self._engine.world)
+        host = realtime_of(self._engine.world)
         if host is None or not host.invited:
             return
         shown: frozenset[str] | None = None
@@ -488,7 +488,7 @@ class Nest(NestBase):
         if name not in people:
             known = ", ".join(sorted(people)) or "none"
             raise UnknownNameError(f"this scenario has no person {name!r}; its people are {known}")
-        host = joined_of(self._engine.world)
+        host = realtime_of(self._engine.world)
         if host is None:
             raise InputError(
                 f"{name} is a person, and people cannot join this world; open it with "

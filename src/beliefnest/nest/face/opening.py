@@ -17,7 +17,7 @@ from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.timeline.run_records import RunJournal, RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.nameable import ClaimsFrom
-from beliefnest.worlds.by_name import LazyWorld, Worlds, joined_of, open_world
+from beliefnest.worlds.by_name import Worlds, new_world, open_world, realtime_of
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import World
 from beliefnest.worlds.servers.address import is_server
@@ -145,7 +145,7 @@ def resumed(
             # People may join before anything else needs the world.
             world = open_world(name, recording.seed, limits)
         else:
-            world = LazyWorld(name, recording.seed, limits)
+            world = new_world(name, recording.seed, limits)
         _invite(recording.setting, world)
         journal.records.add_versions(own_versions())
         return Engine(recording, world, reader_of(claims_from, recording))
@@ -156,7 +156,7 @@ def resumed(
 
 def _invite(setting: Setting, world: World) -> None:
     """Let the people of a setting join. Raise InputError if they cannot join this world."""
-    host = joined_of(world)
+    host = realtime_of(world)
     if host is not None:
         host.invite(setting.people)
     elif setting.people:

@@ -208,17 +208,18 @@ def _told(
     ended: bool,
     smooth: bool,
 ) -> Inference:
-    def rerun(tick: int) -> Inference:
-        again = _trackers(model, moments, step_ticks)
-        for tracker in again:
+    def again(tick: int, *, keeps: bool) -> Sequence[Tracker]:
+        made = _trackers(model, moments, step_ticks, keeps=keeps)
+        for tracker in made:
             tracker.follow([moment for moment in moments if moment.tick <= tick], tick)
-        return _told(model, moments, since, tick, step_ticks, again, False, False)
+        return made
+
+    def rerun(tick: int) -> Inference:
+        made = again(tick, keeps=False)
+        return _told(model, moments, since, tick, step_ticks, made, False, False)
 
     def kept() -> list[Tracker]:
-        again = _trackers(model, moments, step_ticks, keeps=True)
-        for tracker in again:
-            tracker.follow([moment for moment in moments if moment.tick <= until], until)
-        return [tracker.finished(until, ended=ended) for tracker in again]
+        return [tracker.finished(until, ended=ended) for tracker in again(until, keeps=True)]
 
     finished = [tracker.finished(until, ended=ended) for tracker in trackers]
     return Inference(model, since, until, finished, rerun, kept, smooth=smooth)

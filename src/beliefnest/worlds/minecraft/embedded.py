@@ -1,5 +1,6 @@
 """Embedded Minecraft world: one Node process with the server and all bots."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Self
 
@@ -15,7 +16,7 @@ from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
 
-__all__ = ["EmbeddedBody", "EmbeddedWorld"]
+__all__ = ["EmbeddedBody", "EmbeddedWorld", "NodeWorld"]
 
 
 class _Telling:
@@ -38,7 +39,9 @@ class _Telling:
 
 
 class EmbeddedBody:
-    """Region of the embedded world."""
+    """Region of the embedded world; the attributes are those of `Body`."""
+
+    goes_on = False
 
     def __init__(
         self,
@@ -51,8 +54,7 @@ class EmbeddedBody:
         self._channel = channel
         self._region = region
         self._box: Box = snapshot.box
-        self._tick = snapshot.tick
-        self._internal_state = snapshot.internal_state
+        self.tick, self.internal_state = snapshot.tick, snapshot.internal_state
         self._agents = frozenset(snapshot.agents)
         self._sink = sink
         self._happened: list[tuple[int, Event]] = []
@@ -81,24 +83,9 @@ class EmbeddedBody:
         return cls(channel, region, snapshot, sink, on_close)
 
     @property
-    def goes_on(self) -> bool:
-        """False: its clock stands still between calls."""
-        return False
-
-    @property
     def lost(self) -> bool:
         """True if its Node process has ended."""
         return self._channel.lost
-
-    @property
-    def tick(self) -> int:
-        """Latest tick of the body."""
-        return self._tick
-
-    @property
-    def internal_state(self) -> bytes:
-        """State of processes at the end of the last call; snapshots do not contain it."""
-        return self._internal_state
 
     def snapshot(self) -> Snapshot:
         """Return the present state."""
@@ -134,13 +121,13 @@ class EmbeddedBody:
             past={agent: msgspec.to_builtins(each) for agent, each in rules.past.items()},
             senses={agent: each.whole() for agent, each in telling.items()},
         )
-        self._tick, self._internal_state = answer["tick"], answer["internal_state"]
+        self.tick, self.internal_state = answer["tick"], answer["internal_state"]
         return node_messages.results_of(answer["results"], tuple(self._happened))
 
     def step(self, ticks: int) -> None:
         """Let ticks pass without programs."""
         answer = self._channel.request("step", self._take, region=self._region, ticks=ticks)
-        self._tick, self._internal_state = answer["tick"], answer["internal_state"]
+        self.tick, self.internal_state = answer["tick"], answer["internal_state"]
 
     def set_state(self, snapshot: Snapshot) -> None:
         """Set the state to a snapshot by changing only what differs; no frames are sent."""
@@ -148,7 +135,7 @@ class EmbeddedBody:
         self._channel.request(
             "apply", region=self._region, tick=snapshot.tick, **_difference(before, snapshot)
         )
-        self._tick, self._internal_state = snapshot.tick, snapshot.internal_state
+        self.tick, self.internal_state = snapshot.tick, snapshot.internal_state
         self._agents = frozenset(snapshot.agents)
 
     def close(self) -> None:
@@ -167,15 +154,86 @@ class EmbeddedBody:
     def _take(self, message: dict[str, Any]) -> None:
         frame: Frame
         _, frame = node_messages.frame_of(message)
-        self._tick = frame.tick
+        self.tick = frame.tick
         self._happened.extend((frame.tick, event) for event in frame.events)
         self._sink(frame)
 
 
-class EmbeddedWorld(Owned):
-    """World of one Node process; a process that ended is replaced for the next body.
+class NodeWorld(Owned, ABC):
+    """World with a process of Node, which starts when it is first needed.
 
-    The first process starts with the first body.
+    A process that ended is replaced as soon as one is needed again.
+
+    Args:
+        seed: Seed of the world's own random numbers.
+        limits: Limits of Node.
+    """
+
+    has_physics = True
+
+    def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
+        super().__init__()
+        self._seed = seed
+        self._limits = limits or ProcessLimits()
+        self._channel: Channel | None = None
+        self._versions: Mapping[str, str] = {}
+        self._closed = False
+
+    def start(self) -> Self:
+        """Start the process at once, and return the world.
+
+        Raises:
+            BodyError: Node or the bundle is missing, or the start failed. On a server elsewhere the
+                message says what is missing there.
+        """
+        self._live()
+        return self
+
+    @property
+    def pid(self) -> int:
+        """Process id of Node, which is started if necessary."""
+        return (self._channel or self._live()).pid
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Versions of the running programs by name, including the channel's protocol."""
+        return self._versions
+
+    def interrupt(self) -> None:
+        """Kill the process, whatever it is doing."""
+        if self._channel is not None:
+            self._channel.kill()
+
+    @abstractmethod
+    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
+        """Create a body and fill it; see `World`."""
+
+    @abstractmethod
+    def another(self) -> "EmbeddedWorld":
+        """Return another empty world; see `World`."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """End the process; see `World`."""
+
+    def _live(self) -> Channel:
+        """Return the channel to Node, which is started if none is running."""
+        self.check_own("the world")
+        if self._closed:
+            raise BodyError("this world was closed; open another one")
+        if self._channel is None or self._channel.lost:
+            if self._channel is not None:
+                self._channel.close()
+            self._channel = self._started()
+        return self._channel
+
+    @abstractmethod
+    def _started(self) -> Channel:
+        """Start a process and return the channel to it; sets `_versions`."""
+
+
+class EmbeddedWorld(NodeWorld):
+    """World of one Node process.
 
     Args:
         seed: Seed of the world's own random numbers.
@@ -186,43 +244,10 @@ class EmbeddedWorld(Owned):
     def __init__(
         self, seed: int, limits: ProcessLimits | None = None, launch: Launch | None = None
     ) -> None:
-        super().__init__()
-        self._seed = seed
-        self._limits = limits or ProcessLimits()
+        super().__init__(seed, limits)
         self._launch = launch
-        self._channel: Channel | None = None
-        self._versions: Mapping[str, str] = {}
         self._names: set[str] = set()
         self._agents: set[str] = set()
-        self._closed = False
-
-    @classmethod
-    def start(
-        cls, seed: int, limits: ProcessLimits | None = None, launch: Launch | None = None
-    ) -> Self:
-        """Start Node with an empty world at once; the arguments are those of the class.
-
-        Raises:
-            BodyError: Node or the bundle is missing, or the start failed.
-        """
-        world = cls(seed, limits, launch)
-        world._live()
-        return world
-
-    @property
-    def has_physics(self) -> bool:
-        """True: it is Minecraft."""
-        return True
-
-    @property
-    def versions(self) -> Mapping[str, str]:
-        """Versions of the running programs by name, including the channel's protocol."""
-        return self._versions
-
-    @property
-    def pid(self) -> int:
-        """Process id of Node, which is started if necessary."""
-        return (self._channel or self._live()).pid
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
         """Create a region, fill it, and let the bots of its agents join.
@@ -251,30 +276,18 @@ class EmbeddedWorld(Owned):
         other._agents |= self._agents
         return other
 
-    def interrupt(self) -> None:
-        """Kill the process, whatever it is doing."""
-        if self._channel is not None:
-            self._channel.kill()
-
     def close(self) -> None:
         """End the process."""
         self._closed = True
         if self._channel is not None:
             self._channel.close()
 
-    def _live(self) -> Channel:
-        """Return the channel to Node, which is started if none is running."""
-        self.check_own("the world")
-        if self._closed:
-            raise BodyError("this world was closed; open another one")
-        if self._channel is None or self._channel.lost:
-            if self._channel is not None:
-                self._channel.close()
-            launch, self._launch = self._launch, None
-            launch = launch or Launch.begin(self._seed, self._limits)
-            self._channel, self._versions = launch.take()
-            self._names = set()
-        return self._channel
+    def _started(self) -> Channel:
+        launch, self._launch = self._launch, None
+        launch = launch or Launch.begin(self._seed, self._limits)
+        channel, self._versions = launch.take()
+        self._names = set()
+        return channel
 
 
 def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:

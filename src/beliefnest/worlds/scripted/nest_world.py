@@ -1,6 +1,7 @@
 """Bodies without Minecraft: a `ScriptedWorld` of its own for every simulator."""
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import Snapshot
@@ -19,6 +20,8 @@ class ScriptedBody:
         world: The world, to which users report events.
     """
 
+    lost = goes_on = False
+
     def __init__(
         self, world: ScriptedWorld, sink: Sink, seed: str, grounds: Grounds, engines: Engines
     ) -> None:
@@ -29,16 +32,6 @@ class ScriptedBody:
         self._engines = engines
         self._recording = True
         world.listen(sink)
-
-    @property
-    def lost(self) -> bool:
-        """False: there is no process behind it."""
-        return False
-
-    @property
-    def goes_on(self) -> bool:
-        """False: its clock stands still between calls."""
-        return False
 
     @property
     def tick(self) -> int:
@@ -97,20 +90,13 @@ class ScriptedBody:
 class ScriptedNestWorld:
     """World of scripted bodies; `first` becomes the first body, the real world's."""
 
+    has_physics = False
+    versions: Mapping[str, str] = MappingProxyType({})
+
     def __init__(self, first: ScriptedWorld | None = None) -> None:
         self._first = first
         self._grounds = Grounds()
         self._engines = Engines()
-
-    @property
-    def has_physics(self) -> bool:
-        """False: agents are wherever they are told to be."""
-        return False
-
-    @property
-    def versions(self) -> Mapping[str, str]:
-        """Empty: only this package runs."""
-        return {}
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> ScriptedBody:
         """Create a body.

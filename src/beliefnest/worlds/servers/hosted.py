@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import Self
 
 from beliefnest.errors import BodyError
 from beliefnest.worlds.minecraft.channel import Channel
@@ -25,6 +24,11 @@ class HostedWorld(RealtimeWorld):
         limits: Limits of each process.
     """
 
+    # People see the scenario's coordinates, and only agents can enter reality.
+    origin = (0, 0)
+    shows_reality = False
+    minecraft = MINECRAFT
+
     def __init__(
         self, address: ListenAddress, seed: int, limits: ProcessLimits | None = None
     ) -> None:
@@ -32,36 +36,10 @@ class HostedWorld(RealtimeWorld):
         self._address = address
         self._paused = False
 
-    @classmethod
-    def start(cls, address: ListenAddress, seed: int, limits: ProcessLimits | None = None) -> Self:
-        """Start the process of the real world and listen, at once.
-
-        Raises:
-            BodyError: Node or the bundle is missing, or the port is not available.
-        """
-        world = cls(address, seed, limits)
-        world._live()
-        return world
-
     @property
     def address(self) -> str:
         """Address for Minecraft clients: `HOST:PORT`."""
         return str(self._address)
-
-    @property
-    def origin(self) -> tuple[int, int]:
-        """Origin (0, 0): people see the scenario's coordinates."""
-        return (0, 0)
-
-    @property
-    def shows_reality(self) -> bool:
-        """False: only agents can enter it."""
-        return False
-
-    @property
-    def minecraft(self) -> str:
-        """Minecraft version of the clients."""
-        return MINECRAFT
 
     def pause(self, *, paused: bool) -> None:
         """Stop or resume time in the real world."""

@@ -1,16 +1,14 @@
 """Real world in real time, in a process with sockets; beliefs in the embedded world."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping
 
-from beliefnest.errors import BodyError, InputError
-from beliefnest.owned import Owned
+from beliefnest.errors import InputError
 from beliefnest.world.frames import Snapshot
-from beliefnest.worlds.minecraft.channel import Channel
-from beliefnest.worlds.minecraft.embedded import EmbeddedBody, EmbeddedWorld
+from beliefnest.worlds.minecraft.embedded import EmbeddedBody, EmbeddedWorld, NodeWorld
 from beliefnest.worlds.minecraft.exhibits import Exhibit, Plot, Shown
 from beliefnest.worlds.process_limits import ProcessLimits
-from beliefnest.worlds.protocol import Body, Sink
+from beliefnest.worlds.protocol import Sink
 
 __all__ = ["RealtimeBody", "RealtimeWorld"]
 
@@ -23,13 +21,10 @@ class RealtimeBody(EmbeddedBody):
     `set_state` sets the requested state, whatever happened in the meantime.
     """
 
-    @property
-    def goes_on(self) -> bool:
-        """True: neither people nor servers wait."""
-        return True
+    goes_on = True
 
 
-class RealtimeWorld(Owned, ABC):
+class RealtimeWorld(NodeWorld):
     """Process for the real world, and an embedded world for all others.
 
     There are two processes of Node: the one that plays the real world opens sockets; the one in
@@ -38,16 +33,18 @@ class RealtimeWorld(Owned, ABC):
     Args:
         seed: Seed of the random numbers of beliefs' bodies.
         limits: Limits of each process.
+
+    Attributes:
+        origin: Position of scenario (0, y, 0) of reality in Minecraft: x and z.
+        shows_reality: True if visitors see reality itself; False if an exhibit shows it to them.
     """
 
+    origin: tuple[int, int]
+    shows_reality: bool
+
     def __init__(self, seed: int, limits: ProcessLimits | None = None) -> None:
-        super().__init__()
-        self._seed = seed
-        self._limits = limits or ProcessLimits()
+        super().__init__(seed, limits)
         self._beliefs = EmbeddedWorld(seed, limits)
-        self._channel: Channel | None = None
-        self._versions: Mapping[str, str] = {}
-        self._closed = False
         self._invited: frozenset[str] = frozenset()
 
     @property
@@ -72,7 +69,9 @@ class RealtimeWorld(Owned, ABC):
             WorldError: A server's operator may not kick people.
         """
         self._invited = frozenset(people)
-        self.here()
+        # A world that has not been started yet may wait until it has to.
+        if self._invited or self._channel is not None:
+            self.here()
 
     def here(self) -> frozenset[str]:
         """Return the names of the people who play now."""
@@ -80,16 +79,11 @@ class RealtimeWorld(Owned, ABC):
         return frozenset(told["here"])
 
     @property
-    def has_physics(self) -> bool:
-        """True: it is Minecraft."""
-        return True
-
-    @property
     def versions(self) -> Mapping[str, str]:
         """Versions of the running programs by name."""
         return {**self._beliefs.versions, **self._versions}
 
-    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> Body:
+    def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> EmbeddedBody:
         """Open the real world's body in real time, and all others in the embedded world.
 
         Raises:
@@ -125,18 +119,7 @@ class RealtimeWorld(Owned, ABC):
     def interrupt(self) -> None:
         """Kill both processes; blocks that were built on a server stay there."""
         self._beliefs.interrupt()
-        if self._channel is not None:
-            self._channel.kill()
-
-    @property
-    @abstractmethod
-    def origin(self) -> tuple[int, int]:
-        """Position of scenario (0, y, 0) of reality in Minecraft: x and z."""
-
-    @property
-    @abstractmethod
-    def shows_reality(self) -> bool:
-        """True if visitors see reality itself; False if it is shown to them by an exhibit."""
+        super().interrupt()
 
     @property
     def players(self) -> frozenset[str]:
@@ -156,18 +139,3 @@ class RealtimeWorld(Owned, ABC):
         """Return the largest delay of changes in each exhibit, in ticks, by name."""
         lags: Mapping[str, int] = self._live().request("lags")
         return lags
-
-    def _live(self) -> Channel:
-        """Return the channel to the process of the real world, started if none is running."""
-        self.check_own("the world")
-        if self._closed:
-            raise BodyError("this world was closed; open another one")
-        if self._channel is None or self._channel.lost:
-            if self._channel is not None:
-                self._channel.close()
-            self._channel = self._started()
-        return self._channel
-
-    @abstractmethod
-    def _started(self) -> Channel:
-        """Start the process of the real world; sets `_versions`."""

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Self
 
 from beliefnest.errors import BodyError, WorldError
 from beliefnest.worlds.minecraft.channel import Channel
@@ -44,32 +43,13 @@ class MinecraftWorld(RealtimeWorld):
         limits: Limits of each process.
     """
 
+    shows_reality = True
+
     def __init__(
         self, address: ServerAddress, seed: int, limits: ProcessLimits | None = None
     ) -> None:
         super().__init__(seed, limits)
-        self._address = address
-
-    @classmethod
-    def start(cls, address: ServerAddress, seed: int, limits: ProcessLimits | None = None) -> Self:
-        """Check that the server can be used, and let the operator join, at once.
-
-        Raises:
-            BodyError: The server cannot be used; the message says what is missing and what to do.
-        """
-        world = cls(address, seed, limits)
-        world._live()
-        return world
-
-    @property
-    def origin(self) -> tuple[int, int]:
-        """Position of scenario (0, y, 0) on the server: x and z."""
-        return self._address.at
-
-    @property
-    def shows_reality(self) -> bool:
-        """True: it stands on the server, visible to everybody there."""
-        return True
+        self._address, self.origin = address, address.at
 
     @property
     def players(self) -> frozenset[str]:
@@ -86,11 +66,6 @@ class MinecraftWorld(RealtimeWorld):
         """Minecraft version of the server, which is asked if necessary."""
         self._live()
         return self._versions["minecraft_server"]
-
-    @property
-    def pid(self) -> int:
-        """Process id of the Node that speaks to the server; it is started if necessary."""
-        return self._live().pid
 
     def pause(self, *, paused: bool) -> None:
         """Refuse: the server's time cannot be stopped.
