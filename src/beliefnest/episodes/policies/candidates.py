@@ -10,8 +10,7 @@ from beliefnest.skills.calls import Call
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_open, is_switch
 from beliefnest.world.registry import Registry, block_name, parse_state
-from beliefnest.world.values import Position
-from beliefnest.worlds.scripted.hand import cell_of
+from beliefnest.world.values import Position, block_at
 from beliefnest.worlds.scripted.powered import switches_in
 
 __all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
@@ -123,7 +122,7 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
             if other in seen:
                 yield Call("giveItemToOther", (other, item, 1))
             else:
-                yield Call("goToPosition", (cell_of(world.agents[other].position), 2))
+                yield Call("goToPosition", (block_at(world.agents[other].position), 2))
 
 
 def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
