@@ -226,6 +226,7 @@ def test_doctor_finds_everything_in_order(capsys: pytest.CaptureFixture[str]) ->
     assert all(line.startswith("ok") for line in lines)
 
 
+@pytest.mark.long
 def test_doctor_checks_a_server(capsys: pytest.CaptureFixture[str]) -> None:
     with GameServer() as server:
         assert run_command_line(["doctor", server.address(patience=5)]) == 0

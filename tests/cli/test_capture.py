@@ -67,6 +67,7 @@ def believed(scenario: Scenario) -> list[Any]:
         ]
 
 
+@pytest.mark.long
 def test_a_place_on_a_server_is_captured_as_it_is(tmp_path):
     file, out = tmp_path / "room.yaml", tmp_path / "captured.yaml"
     file.write_text(ROOM)

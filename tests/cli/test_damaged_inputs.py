@@ -6,9 +6,8 @@ import os
 import random
 import resource
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -266,8 +265,15 @@ def test_a_cell_without_its_seed_is_refused(
     assert "delete it to run it again" in capfd.readouterr().err
 
 
-def _limited(size: int) -> None:
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+@contextmanager
+def _limited(size: int) -> Iterator[None]:
+    """Let no file become larger, as on a full disk."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
 @pytest.mark.parametrize(
@@ -280,7 +286,14 @@ def _limited(size: int) -> None:
         *((case, 40_000) for case in ("run", "study")),
     ],
 )
-def test_a_full_disk_is_told_in_one_line(made: Path, tmp_path: Path, case: str, size: int) -> None:
+def test_a_full_disk_is_told_in_one_line(
+    made: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    case: str,
+    size: int,
+) -> None:
     folder = tmp_path / "copy"
     shutil.copytree(made, folder)
     commands = {
@@ -293,20 +306,15 @@ def test_a_full_disk_is_told_in_one_line(made: Path, tmp_path: Path, case: str, 
         "films": ["suite", "food-trucks", "--data", "films.json", "--out", "out"],
         "new": ["new", "mine"],
     }
-    done = subprocess.run(
-        [sys.executable, "-m", "beliefnest", *commands[case]],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        preexec_fn=lambda: _limited(size),
-        check=False,
-    )
-    assert "Traceback" not in done.stderr
-    assert done.returncode in (0, 1, 2, 3), done.stderr
+    monkeypatch.chdir(folder)
+    with _limited(size):
+        status = run_command_line(commands[case])
+    said = capsys.readouterr().err
+    assert "Traceback" not in said
+    assert status in (0, 1, 2, 3), said
     if size == 0:
-        assert done.returncode == 2, done.stderr
-        assert done.stderr.strip().splitlines()[-1].startswith("beliefnest: "), done.stderr
+        assert status == 2, said
+        assert said.strip().splitlines()[-1].startswith("beliefnest: "), said
 
 
 def test_what_the_system_refuses_is_told_with_what_to_do(

@@ -1,5 +1,6 @@
 """The nest against the slow reference, on random stories, every node to depth 3 or 4."""
 
+import pytest
 from hypothesis import given
 from tests.nest.comparing import everything
 from tests.semantics.reference import Path, Reference, paths_to
@@ -94,6 +95,7 @@ def test_every_node_where_something_is_claimed(story):
     compare(story, each_tick=False)
 
 
+@pytest.mark.long
 @given(Stories(claims=True, max_acts=10).story)
 def test_every_node_where_something_is_claimed_asked_at_every_tick(story):
     compare(story, each_tick=True, depth=2)
@@ -104,6 +106,7 @@ def test_every_node_with_claims_forks_and_edits(story):
     compare(story, each_tick=False)
 
 
+@pytest.mark.long
 @given(Stories(claims=True, max_acts=12).story)
 def test_every_node_to_depth_four_where_something_is_claimed(story):
     compare(story, each_tick=False, depth=4)
@@ -114,11 +117,13 @@ def test_every_node_where_signs_are_written_on(story):
     compare(story, each_tick=False)
 
 
+@pytest.mark.long
 @given(Stories(signs=True, claims=True, forks=True, max_acts=10).story)
 def test_every_node_where_signs_are_written_on_asked_at_every_tick(story):
     compare(story, each_tick=True, depth=2)
 
 
+@pytest.mark.long
 @given(Stories(signs=True, max_acts=12).story)
 def test_every_node_to_depth_four_where_signs_are_written_on(story):
     compare(story, each_tick=False, depth=4)
@@ -134,6 +139,7 @@ def test_every_node_where_an_item_is_unique_and_claimed_asked_at_every_tick(stor
     compare(story, each_tick=True, depth=2)
 
 
+@pytest.mark.long
 @given(Stories(unique=True, claims=True, max_acts=12).story)
 def test_every_node_to_depth_four_where_an_item_is_unique_and_claimed(story):
     compare(story, each_tick=False, depth=4)

@@ -14,7 +14,7 @@ import beliefnest as bn
 CHEST = (2, 0, 3)
 BLOCK = (2, 0, 2)
 AWAY = (60.5, 0, 1.5)
-BOX = ((0, 0, 0), (63, 3, 9))
+BOX = ((0, 0, 0), (63, 1, 9))
 
 
 def hall(store: Path | None = None, **options: Any) -> tuple[bn.ScriptedWorld, bn.Nest]:

@@ -30,11 +30,12 @@ class Hall:
         claims: dict[Position, list[bn.Claim]] | None = None,
         store: Path | None = None,
         static_blocks: tuple[str, ...] = (),
+        depth: int = 2,
         **options: Any,
     ) -> None:
         options = {"max_visible_distance": 6, "grace": GRACE, "testimony": "informed"} | options
         self.world = bn.ScriptedWorld(
-            ((0, 0, 0), (20, 3, 20)),
+            ((0, 0, 0), (20, 1, 20)),
             {SIGN: "oak_sign"},
             agents={"max": HOME, "nora": AT_SIGN, "bob": FAR},
             containers={LEFT: {"diamond": 1}, RIGHT: {}},
@@ -44,7 +45,7 @@ class Hall:
         perception = bn.Perception(**options)
         self.nest = bn.Nest(self.world, perception, store=store, static_blocks=static_blocks)
         start = self.world.snapshot()
-        self.reference = Reference(start, perception, frozenset(static_blocks), depth=3)
+        self.reference = Reference(start, perception, frozenset(static_blocks), depth=depth)
         self.world.listen(lambda frame: self.reference.frame((), frame))
 
     def where(self, path: str) -> list[Position]:
@@ -59,7 +60,7 @@ class Hall:
 
 @pytest.mark.parametrize("testimony", ["none", "accept", "informed"])
 def test_a_sign_is_read_by_who_comes_to_see_it(testimony: str) -> None:
-    hall = Hall(testimony=testimony)
+    hall = Hall(depth=3, testimony=testimony)
     hall.write()
     assert hall.where("/max") == hall.where("/bob/max") == []
     hall.world.place_agent("max", ALSO_THERE)
@@ -73,7 +74,7 @@ def test_a_sign_is_read_by_who_comes_to_see_it(testimony: str) -> None:
 
 @pytest.mark.parametrize("path", ["/max", "/nora/max", "/max/nora", "/max/nora/max"])
 def test_who_sees_it_written_has_it_from_the_writer(path: str) -> None:
-    hall = Hall()
+    hall = Hall(depth=3)
     hall.world.place_agent("max", ALSO_THERE)
     hall.write()
     assert hall.where(path) == [RIGHT]
@@ -147,7 +148,7 @@ def test_a_text_that_was_read_before_it_claimed_anything_is_nothing_new() -> Non
 
 @pytest.mark.parametrize("static", [(), ("oak_sign",)])
 def test_signs_claim_something_from_the_start(static: tuple[str, ...]) -> None:
-    hall = Hall(signs={SIGN: "right"}, claims={SIGN: [THERE]}, static_blocks=static)
+    hall = Hall({SIGN: "right"}, {SIGN: [THERE]}, static_blocks=static, depth=3)
     assert (hall.where("/nora"), hall.where("/nora/bob")) == ([RIGHT], [])
     hall.world.place_agent("max", ALSO_THERE)
     for path in ("/max", "/max/nora", "/nora/max", "/max/nora/max"):

@@ -24,17 +24,17 @@ SAYS_RIGHT = (bn.Claim.located("diamond", RIGHT),)
 class Hall:
     """The nest and the reference, told the same things."""
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(self, depth: int = 2, **options: Any) -> None:
         options = {"max_visible_distance": 6, "grace": GRACE, "testimony": "informed"} | options
         self.world = bn.ScriptedWorld(
-            ((0, 0, 0), (20, 3, 20)),
+            ((0, 0, 0), (20, 1, 20)),
             agents={"max": HALL, "nora": BESIDE, "bob": FAR},
             containers={LEFT: {}, MIDDLE: {}, RIGHT: {}},
             inventories={"max": {"diamond": 2}, "nora": {"diamond": 1}},
         )
         perception = bn.Perception(**options)
         self.nest = bn.Nest(self.world, perception)
-        self.reference = Reference(self.world.snapshot(), perception, depth=3)
+        self.reference = Reference(self.world.snapshot(), perception, depth=depth)
         self.world.listen(lambda frame: self.reference.frame((), frame))
 
     def go(self, **places: tuple[float, float, float]) -> None:
@@ -301,7 +301,7 @@ def test_2_later_perception_replaces_what_was_heard() -> None:
 
 def test_2_position_and_block_set_the_value() -> None:
     hall = away(GRACE + 1)
-    claims = [bn.Claim.position("bob", (3.5, 0, 1.5)), bn.Claim.block((3, 2, 3), "stone")]
+    claims = [bn.Claim.position("bob", (3.5, 0, 1.5)), bn.Claim.block((3, 1, 3), "stone")]
     hall.world.say("nora", "Bob is there, and a stone.", claims=claims)
     basis = Basis(hall.world.now, Source.HEARD, EventKind.CHAT, "nora")
     for path in ("/max", "/nora/max", "/max/nora"):
@@ -309,7 +309,7 @@ def test_2_position_and_block_set_the_value() -> None:
         bob = state.agents["bob"]
         assert (bob.position, bob.current, bob.basis) == ((3.5, 0, 1.5), False, basis)
         assert node.agents["bob"] == bob
-        assert (state.blocks[(3, 2, 3)], state.blocks.basis((3, 2, 3))) == ("stone", basis)
+        assert (state.blocks[(3, 1, 3)], state.blocks.basis((3, 1, 3))) == ("stone", basis)
 
 
 def test_properties_that_a_claim_does_not_name_stay_as_they_are_believed() -> None:
@@ -371,7 +371,7 @@ def test_4_a_lie_changes_nothing_of_what_the_liar_believes(testimony: str) -> No
 
 
 def test_5_whether_it_is_thought_to_be_taken_up_is_the_same_rule_one_node_deeper() -> None:
-    hall = away(GRACE + 1)
+    hall = away(GRACE + 1, depth=3)
     hall.world.say("nora", "It is on the right.", claims=SAYS_RIGHT)
     assert (hall.where("/nora/max"), hall.where("/max/nora/max")) == ([RIGHT], [RIGHT])
     assert hall.where("/nora/max/nora") == [RIGHT]

@@ -66,6 +66,7 @@ def test_a_server_that_is_down_fails_its_cells_alone_and_they_are_tried_again(se
     assert len(server.requests) == asked + 1
 
 
+@pytest.mark.long
 def test_an_interrupted_study_keeps_whole_cells(server, tmp_path):
     """It is interrupted in its third cell, which waits for an answer."""
     asked, ended = threading.Event(), threading.Event()
@@ -97,6 +98,7 @@ def test_an_interrupted_study_keeps_whole_cells(server, tmp_path):
     assert kept == whole
 
 
+@pytest.mark.long
 def test_slow_answers_are_awaited_side_by_side(server, tmp_path):
     """The first request is answered when the second has come, which needs two jobs at once."""
     second = threading.Event()

@@ -5,7 +5,7 @@ from pathlib import Path
 import msgspec
 import pytest
 import yaml
-from tests.profiles import at_night
+from tests.profiles import at_night, few_by_day
 
 import beliefnest as bn
 from beliefnest.episodes.policies.course_planner import USUAL
@@ -82,7 +82,7 @@ def played(task: bn.Task, policy: str) -> bool:
         return episode.play().success
 
 
-@pytest.mark.parametrize("seed", range(SEEDS))
+@pytest.mark.parametrize("seed", few_by_day(range(SEEDS)))
 @pytest.mark.parametrize("name", HIDDEN)
 def test_who_infers_reaches_the_goal_as_who_knows_all_does(name: str, seed: int) -> None:
     task = bn.Task.load(name, seed=seed)
@@ -90,6 +90,7 @@ def test_who_infers_reaches_the_goal_as_who_knows_all_does(name: str, seed: int)
     assert played(task, "omniscient:search")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", HIDDEN)
 def test_who_does_not_infer_reaches_it_by_luck_alone(name: str) -> None:
     task = bn.Task.load(name, seed=0)
@@ -98,6 +99,7 @@ def test_who_does_not_infer_reaches_it_by_luck_alone(name: str) -> None:
     assert sum(reached) < 0.75 * len(reached)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", HIDDEN)
 def test_a_task_of_another_size_can_be_inferred_too(name: str) -> None:
     # One size of each, the smallest other one, at night all of them.

@@ -1,7 +1,7 @@
 """The built-in tasks: their instances are solved at the order they need, and at none below."""
 
 import pytest
-from tests.profiles import at_night
+from tests.profiles import at_night, few_by_day
 
 import beliefnest as bn
 from beliefnest.episodes.tasks import parameters_of, source_of
@@ -16,7 +16,7 @@ def played(task: bn.Task, order: int) -> bool:
         return episode.play().success
 
 
-@pytest.mark.parametrize("seed", range(SEEDS))
+@pytest.mark.parametrize("seed", few_by_day(range(SEEDS)))
 @pytest.mark.parametrize("name", KNOWN)
 def test_a_task_is_solved_at_its_order_and_not_below(name: str, seed: int) -> None:
     task = bn.Task.load(name, seed=seed)
@@ -65,6 +65,7 @@ def test_a_task_of_another_size_needs_its_order_too(name: str) -> None:
         assert not played(task, task.order - 1), size
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", KNOWN[:: at_night(1, 2)])
 def test_a_task_of_more_agents_needs_its_order_too(name: str) -> None:
     # More than one plot takes planners longest of all.

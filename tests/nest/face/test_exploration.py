@@ -7,6 +7,7 @@ from contextlib import closing
 
 import pytest
 from tests.nest.comparing import everything
+from tests.profiles import few_by_day
 
 import beliefnest as bn
 from beliefnest.nest.face import exploration as exploring
@@ -83,7 +84,9 @@ def acting(simulator, result):
     return simulator.tick
 
 
-@pytest.mark.parametrize(("path", "score"), [("/", seen), ("/bob", seen), ("/", acting)])
+@pytest.mark.parametrize(
+    ("path", "score"), few_by_day([("/bob", seen), ("/", seen), ("/", acting)])
+)
 def test_at_the_same_time_or_in_turn(worlds, tmp_path, path, score):
     in_turn, none = explored(worlds, tmp_path / "a.bn", path, score, 1)
     at_once, one = explored(worlds, tmp_path / "b.bn", path, score, 2)

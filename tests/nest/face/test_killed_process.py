@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from tests.nest.comparing import everything
 from tests.nest.face.acting_nest import OFTEN, PATHS, calls, nest_in
-from tests.profiles import at_night
+from tests.profiles import at_night, few_by_day
 
 import beliefnest as bn
 
@@ -41,7 +41,7 @@ def acted_until_killed(store, seed, least):
     return len(told)
 
 
-@pytest.mark.parametrize("seed", range(KILLS))
+@pytest.mark.parametrize("seed", few_by_day(range(KILLS), 2))
 def test_a_killed_nest_is_resumed_where_it_was(tmp_path, seed):
     store = tmp_path / "run.bn"
     returned = acted_until_killed(store, seed, random.Random(seed).randrange(1, LONGEST))

@@ -141,6 +141,7 @@ def test_who_moved_the_diamond_finds_it_where_sally_believes_it(play_of_a_person
         assert [each.path for each in nest.layout()] == ["/", "/observer/sally"]
 
 
+@pytest.mark.long
 def test_a_visitor_sees_what_is_tried_out_and_can_come_again_after_a_crash():
     scenario = Scenario.load("red-green-blue", condition=1)
     with Nest.open(scenario, realtime=True, listen=0) as nest:
@@ -226,6 +227,7 @@ for (let left = 2000; await seen() !== JSON.stringify(EXPECTED); left--) {
 TAKE = "await getItemFromChest(bot, new Vec3(-2, -51, -4), {diamond: 1})"
 
 
+@pytest.mark.long
 def test_on_a_server_a_belief_is_built_kept_up_and_what_was_there_put_back():
     scenario = sally_anne({})
     with (

@@ -293,6 +293,7 @@ def test_an_experiment_comes_out_the_same(
     assert "NO" not in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_on_a_server_elsewhere_programs_read_no_more() -> None:
     low = -50
     blocks = [
