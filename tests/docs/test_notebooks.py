@@ -4,17 +4,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from tests.profiles import NIGHTLY
 
 if TYPE_CHECKING:
     import nbformat
 
 pytestmark = pytest.mark.extra("ipykernel", "nbclient", "nbformat")
 
-DRAWINGS = {"tutorial": 3, "study": 1, "food_trucks": 4}
+DRAWINGS = {"tutorial": 3, "study": 1, "food_trucks": 4, "training": 2}
+LONG = {"training"}
+"""Notebooks that compute for minutes: they run at night."""
 NOTEBOOKS = sorted((Path(__file__).parents[2] / "docs" / "notebooks").glob("*.ipynb"))
+RUN = [file for file in NOTEBOOKS if NIGHTLY or file.stem not in LONG]
 
 
-@pytest.mark.parametrize("file", NOTEBOOKS, ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", RUN, ids=lambda file: file.stem)
 @pytest.mark.filterwarnings("ignore")  # of Jupyter's own libraries
 def test_every_cell_runs_and_shows_what_the_file_shows(file: Path, tmp_path: Path) -> None:
     import nbclient
@@ -22,7 +26,7 @@ def test_every_cell_runs_and_shows_what_the_file_shows(file: Path, tmp_path: Pat
 
     stored, notebook = (nbformat.read(file, as_version=4) for _ in range(2))
     resources = {"metadata": {"path": str(tmp_path)}}
-    nbclient.NotebookClient(notebook, timeout=300, resources=resources).execute()
+    nbclient.NotebookClient(notebook, timeout=1800, resources=resources).execute()
     shown = _shown(notebook)
     drawn = sum("<svg" in data.get("text/html", "") or "image/svg+xml" in data for data in shown)
     assert drawn >= DRAWINGS[file.stem]
