@@ -2,8 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.build import build_scenario
@@ -11,17 +9,11 @@ from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, merged, wrapped
 from beliefnest.scenarios.document_form import check_form
 from beliefnest.scenarios.parameters import text_of, with_parameters
-from beliefnest.scenarios.sources import read_document
-from beliefnest.scenarios.yaml_reading import parse_yaml
 
 __all__ = [
     "Change",
     "condition_number",
     "condition_numbers",
-    "kept_scenario",
-    "load_conditions",
-    "load_scenario",
-    "scenario_from",
     "scenario_in",
 ]
 
@@ -42,21 +34,6 @@ def condition_number(condition: int | str | None) -> int | None:
     raise ScenarioError(f"{condition!r} is no condition; give its number")
 
 
-def load_scenario(
-    name_or_path: str,
-    condition: int | None = None,
-    parameters: Mapping[str, object] | None = None,
-) -> ScenarioContent:
-    """Load a scenario, see `Scenario.load`."""
-    return scenario_in(read_document(name_or_path), condition, parameters)
-
-
-def load_conditions(name_or_path: str) -> tuple[ScenarioContent, ...]:
-    """Load a scenario under all its conditions, see `Scenario.load_all`."""
-    document = read_document(name_or_path)
-    return tuple(scenario_in(document, number) for number in condition_numbers(document))
-
-
 def condition_numbers(document: Document) -> tuple[int | None, ...]:
     """Return the numbers of a document's conditions, in order; only None if it has none.
 
@@ -64,20 +41,6 @@ def condition_numbers(document: Document) -> tuple[int | None, ...]:
         ScenarioError: The document does not have the right form.
     """
     return tuple(sorted(check_form(with_parameters(document, {})).conditions)) or (None,)
-
-
-def scenario_from(
-    content: Mapping[str, Any], condition: int | None, source: str
-) -> ScenarioContent:
-    """Build a scenario from a mapping, see `Scenario.from_mapping`."""
-    return scenario_in(Document(source, wrapped(content), Path()), condition)
-
-
-def kept_scenario(
-    text: str, templates: Mapping[str, str], condition: int | None, source: str
-) -> ScenarioContent:
-    """Build the scenario that a run keeps, see `Scenario.kept`."""
-    return scenario_in(replace(parse_yaml(text, source), templates=templates), condition)
 
 
 def scenario_in(

@@ -1,20 +1,20 @@
 """Scenarios: events in the real world, and probes and expectations about beliefs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
 from typing import Any, Self
 
 from beliefnest.scenarios.content import ScenarioContent
-from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.document import Document, wrapped
 from beliefnest.scenarios.loading import (
     Change,
     condition_number,
-    kept_scenario,
-    load_conditions,
-    load_scenario,
-    scenario_from,
+    condition_numbers,
     scenario_in,
 )
+from beliefnest.scenarios.sources import read_document
+from beliefnest.scenarios.yaml_reading import parse_yaml
 
 __all__ = ["Scenario"]
 
@@ -41,7 +41,7 @@ class Scenario(ScenarioContent):
             UnknownNameError: There is neither a built-in scenario nor a file of that name.
             ScenarioError: The file is wrong, or the condition does not exist.
         """
-        return cls._of(load_scenario(name_or_path, condition_number(condition), parameters))
+        return cls.varied(read_document(name_or_path), condition_number(condition), parameters)
 
     @classmethod
     def load_all(cls, name_or_path: str) -> tuple[Self, ...]:
@@ -51,7 +51,8 @@ class Scenario(ScenarioContent):
             UnknownNameError: There is neither a built-in scenario nor a file of that name.
             ScenarioError: The file is wrong.
         """
-        return tuple(cls._of(content) for content in load_conditions(name_or_path))
+        document = read_document(name_or_path)
+        return tuple(cls.varied(document, number) for number in condition_numbers(document))
 
     @classmethod
     def from_mapping(
@@ -65,7 +66,8 @@ class Scenario(ScenarioContent):
         Raises:
             ScenarioError: The content is wrong.
         """
-        return cls._of(scenario_from(content, condition_number(condition), source))
+        document = Document(source, wrapped(content), Path())
+        return cls.varied(document, condition_number(condition))
 
     @classmethod
     def varied(
@@ -86,7 +88,8 @@ class Scenario(ScenarioContent):
         Raises:
             ScenarioError: The variation is not a valid scenario.
         """
-        return cls._of(scenario_in(document, condition, parameters, change))
+        content = scenario_in(document, condition, parameters, change)
+        return cls(**{field.name: getattr(content, field.name) for field in fields(content)})
 
     @classmethod
     def kept(
@@ -103,8 +106,4 @@ class Scenario(ScenarioContent):
         Raises:
             ScenarioError: This version cannot read the scenario.
         """
-        return cls._of(kept_scenario(text, templates, condition, source))
-
-    @classmethod
-    def _of(cls, content: ScenarioContent) -> Self:
-        return cls(**{field.name: getattr(content, field.name) for field in fields(content)})
+        return cls.varied(replace(parse_yaml(text, source), templates=templates), condition)

@@ -10,7 +10,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from beliefnest.errors import InputError, ScenarioError
-from beliefnest.scenarios.loading import kept_scenario
+from beliefnest.scenarios.loading import scenario_in
+from beliefnest.scenarios.yaml_reading import parse_yaml
 from beliefnest.world.frames import BlockGrid, Snapshot, places_of
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
@@ -191,7 +192,7 @@ def _yaml(content: Mapping[str, Any], width: int = _WIDTH) -> str:
 def _check(text: str, place: Snapshot) -> None:
     """Load the text as a scenario, and check that it describes the same place."""
     try:
-        read = kept_scenario(text, {}, None, "what was captured").setting.snapshot
+        read = scenario_in(parse_yaml(text, "what was captured"), None).setting.snapshot
     except ScenarioError as error:
         raise InputError(f"a scenario cannot express the place: {error}") from error
     same = (read.blocks == place.blocks).all() and read.containers == place.containers
