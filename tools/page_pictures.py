@@ -9,7 +9,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from beliefnest.cli.page import PageOptions, write_page
+from beliefnest.cli.options import ShowOptions
+from beliefnest.cli.page import write_page
 from beliefnest_benchmarks.browser import Browser, opened_browser
 
 IMAGES = Path(__file__).parents[1] / "docs" / "img"
@@ -51,7 +52,7 @@ def _page(folder: Path, name: str, condition: int | None) -> Path:
         command += ["--condition", str(condition)]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     page = folder.with_suffix(".html")
-    write_page(PageOptions(folder, page, "/", None, None, 2))
+    write_page(ShowOptions(folder), page)
     return page
 
 

@@ -12,7 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
 
-from beliefnest.cli.page import PageOptions, write_page
+from beliefnest.cli.options import ShowOptions
+from beliefnest.cli.page import write_page
 from beliefnest.errors import BodyError, InputError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
@@ -94,7 +95,7 @@ def _story(place: Path) -> Path:
     store, page = place / "story.bn", place / "story.html"
     with Nest.open(Scenario.load("sally-anne", condition=1), store=store) as nest:
         nest.play()
-    write_page(PageOptions(store, page, "/", None, None, 2))
+    write_page(ShowOptions(store), page)
     return page
 
 
@@ -105,7 +106,7 @@ def _long(place: Path) -> Path:
     with Nest(walk.world, Perception(), static_blocks=["stone", "air"], store=store):
         for _ in range(_TICKS):
             walk.tick()
-    write_page(PageOptions(store, page, "/", None, None, 2))
+    write_page(ShowOptions(store), page)
     return page
 
 

@@ -141,10 +141,9 @@ def run(options: RunOptions) -> int:
 def show(options: ShowOptions) -> None:
     """Show the state of a simulator in a recorded run."""
     if options.html is not None:
-        from beliefnest.cli.page import PageOptions, write_page
+        from beliefnest.cli.page import write_page
 
-        at = (options.path, options.tick, options.branch, options.depth)
-        write_page(PageOptions(options.run, options.html, *at))
+        write_page(options, options.html)
     if options.html is None or options.figures or options.gif or options.json:
         from beliefnest.cli.show import show_run
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import stores_in
+from beliefnest.cli.options import ShowOptions
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, ScenarioError, TickError
 from beliefnest.nest.face.recorded import RecordedNest
@@ -18,7 +18,7 @@ from beliefnest.viewer.page.run import About
 from beliefnest.viewer.page.static import write_still_page
 from beliefnest.world.paths import parse_path, path_text
 
-__all__ = ["PageOptions", "about_run", "write_page"]
+__all__ = ["about_run", "write_page"]
 
 _STEPS = 5
 """Actions after which posteriors predict places."""
@@ -26,36 +26,19 @@ _STEPS = 5
 _ENDINGS = (".html", ".htm")
 
 
-@dataclass(frozen=True, slots=True)
-class PageOptions:
-    """Options of `beliefnest show --html`.
-
-    Attributes:
-        run: Run folder or run file.
-        file: HTML file to write.
-        path: Belief that the page includes even if it is deeper than `depth`.
-        tick: Tick that the page shows first; None: the latest.
-        branch: Must be None: the page holds every branch.
-        depth: Depth down to which the page includes all beliefs.
-    """
-
-    run: Path
-    file: Path
-    path: str
-    tick: int | None
-    branch: str | None
-    depth: int
-
-
-def write_page(options: PageOptions) -> None:
+def write_page(options: ShowOptions, file: Path) -> None:
     """Write the page of a run, with all its conditions.
+
+    Args:
+        options: Run, and the belief and tick that the page shows first.
+        file: HTML file to write.
 
     Raises:
         BeliefNestError: There is no such run, a path, tick or file ending is wrong, a branch was
             named, or the file cannot be written.
     """
-    if options.file.suffix.lower() not in _ENDINGS:
-        raise InputError(f"--html writes HTML: {options.file} must end in {' or '.join(_ENDINGS)}")
+    if file.suffix.lower() not in _ENDINGS:
+        raise InputError(f"--html writes HTML: {file} must end in {' or '.join(_ENDINGS)}")
     if options.branch is not None:
         raise InputError(
             "the page holds every branch; leave --branch out, and choose the branch on the page"
@@ -71,11 +54,11 @@ def write_page(options: PageOptions) -> None:
         first: dict[str, object] = {"tick": options.tick}
         if options.path != "/":
             first["at"] = path_text(parse_path(options.path, nest.agents))
-        write_still_page(options.file, runs, options.depth, first)
-    stdout().print(f"written to {options.file}", highlight=False, soft_wrap=True)
+        write_still_page(file, runs, options.depth, first)
+    stdout().print(f"written to {file}", highlight=False, soft_wrap=True)
 
 
-def _check_tick(options: PageOptions, nest: RecordedNest, store: Path) -> None:
+def _check_tick(options: ShowOptions, nest: RecordedNest, store: Path) -> None:
     """Raise TickError if a run does not have the tick that the page shows first."""
     if options.tick is None:
         return

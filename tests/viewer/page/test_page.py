@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from beliefnest.cli.page import PageOptions, write_page
+from beliefnest.cli.options import ShowOptions
+from beliefnest.cli.page import write_page
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest_benchmarks.browser import Browser
@@ -34,7 +35,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         with Nest.open(Scenario.load(name, condition=condition), store=store) as nest:
             nest.play()
         written[name] = folder / f"{name}.html"
-        write_page(PageOptions(store, written[name], path, None, None, 2))
+        write_page(ShowOptions(store, path=path), written[name])
     return written
 
 
@@ -159,7 +160,7 @@ def test_texts_of_a_run_are_texts_whatever_is_in_them(browser, tmp_path):
     evil = "</script><img src=x onerror=\"document.title='taken'\"><script>document.title='taken'"
     world.say("ann", evil)
     nest.close()
-    write_page(PageOptions(tmp_path / "evil.bn", tmp_path / "evil.html", "/", None, None, 1))
+    write_page(ShowOptions(tmp_path / "evil.bn", depth=1), tmp_path / "evil.html")
     browser.open((tmp_path / "evil.html").as_uri())
     assert evil in browser.script("return document.querySelector('.events').textContent")
     assert browser.driver.title != "taken"
@@ -184,7 +185,7 @@ def test_what_is_written_on_a_sign_is_an_event_and_false_where_it_was_missed(bro
     world.write_sign("ann", sign, "out")
     nest.close()
     page = tmp_path / "sign.html"
-    write_page(PageOptions(tmp_path / "sign.bn", page, "/bob", None, None, 1))
+    write_page(ShowOptions(tmp_path / "sign.bn", path="/bob", depth=1), page)
     browser.open(page.as_uri())
     told = "return document.querySelector(arguments[0]).textContent"
     assert "ann writes “out” on the sign" in browser.script(told, ".events")
@@ -214,7 +215,7 @@ def test_claims_hearsay_and_signs_are_told_and_long_paths_keep_their_ends(browse
         world.say("nora", "It moved.", claims=[bn.Claim.located("diamond", right)])
         world.step(4)
     page = tmp_path / "talk.html"
-    write_page(PageOptions(tmp_path / "talk.bn", page, "/max", None, None, 2))
+    write_page(ShowOptions(tmp_path / "talk.bn", path="/max"), page)
     browser.open(page.as_uri())
     texts = "return [...document.querySelectorAll(arguments[0])].map(each => each.textContent)"
     assert browser.script(texts, ".claim") == [

@@ -7,7 +7,8 @@ import pytest
 from tests.viewer.page.test_page import assert_accessible, assert_clean
 
 import beliefnest as bn
-from beliefnest.cli.page import PageOptions, write_page
+from beliefnest.cli.options import ShowOptions
+from beliefnest.cli.page import write_page
 from beliefnest.episodes.policies import Scripted
 from beliefnest.episodes.telling import told_episode
 from beliefnest_benchmarks.browser import Browser
@@ -70,7 +71,7 @@ def test_rounds_are_listed_and_lead_to_ticks_programs_and_branches(
     browser: Browser, store: Path, tmp_path: Path
 ) -> None:
     page = tmp_path / "page.html"
-    write_page(PageOptions(store, page, "/", None, None, 1))
+    write_page(ShowOptions(store, depth=1), page)
     browser.open(page.as_uri())
     assert texts(browser, ".begins strong") == ["Round 1", "Round 2"]
     assert texts(browser, ".deed .what")[:2] == [
@@ -109,7 +110,7 @@ def test_why_a_program_failed_is_told_beside_it(browser: Browser, tmp_path: Path
     task = bn.Task.from_mapping({**TASK, "goal": never, "rounds": 2})
     with bn.Episode(task, policies, store=tmp_path / "run.bn") as episode:
         episode.play(1)
-        write_page(PageOptions(tmp_path / "run.bn", tmp_path / "page.html", "/", None, None, 1))
+        write_page(ShowOptions(tmp_path / "run.bn", depth=1), tmp_path / "page.html")
     browser.open((tmp_path / "page.html").as_uri())
     why = "line 1: turnOnLever: there is no lever at (5, 1, 1), but air. Give that of a lever."
     assert texts(browser, ".deed .why") == [why]
