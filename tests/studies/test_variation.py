@@ -334,7 +334,7 @@ def test_blocks_that_are_expected_and_known_move_with_the_scene(tmp_path):
 def test_every_key_of_a_scenario_is_known_in_another_scene():
     shape = _SHAPE["initial_beliefs"].shape
     for entry, known in {
-        ScenarioFile: {*_SHAPE, "parameters", "constraints", "conditions"},
+        ScenarioFile: {*_SHAPE, "parameters", "constraints", "instances", "conditions"},
         ContainerEntry: _SHAPE["containers"].shape,
         SignEntry: _SHAPE["signs"].shape,
         AgentEntry: _SHAPE["agents"].shape,
