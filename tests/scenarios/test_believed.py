@@ -10,7 +10,7 @@ import beliefnest as bn
 from beliefnest.errors import ScenarioError
 from beliefnest.llm import Answer
 from beliefnest.llm.messages import Message, Sampling
-from beliefnest.scenarios.expected import Answers
+from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.probing import Asking, resolved, run_probe
 from beliefnest.scenarios.records import probe_json
 from beliefnest.scenarios.running import run_scenario

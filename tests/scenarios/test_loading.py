@@ -8,7 +8,7 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.errors import ScenarioError, UnknownNameError
-from beliefnest.scenarios.expected import Arrives, Opens
+from beliefnest.scenarios.expected_acts import Arrives, Opens
 from beliefnest.scenarios.expected_state import Holds, Stands
 from beliefnest.scenarios.json_schema import schema
 from beliefnest.scenarios.scenario import Scenario

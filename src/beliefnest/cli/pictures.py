@@ -10,7 +10,8 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.overview import Card, ConditionPicture, Note
 from beliefnest.pictures.palette import Mark, age_text
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores
-from beliefnest.scenarios.expected import Arrives, Infers
+from beliefnest.scenarios.expected_acts import Arrives
+from beliefnest.scenarios.expected_kinds import Infers
 from beliefnest.scenarios.inferring import means_text
 from beliefnest.scenarios.naming import container_name, named_place, titled
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome

@@ -15,7 +15,8 @@ from rich.table import Table
 from beliefnest.belief.plain import state_json
 from beliefnest.cli.terminal_text import printable
 from beliefnest.llm.messages import Usage
-from beliefnest.scenarios.expected import Infers, Opens
+from beliefnest.scenarios.expected_acts import Opens
+from beliefnest.scenarios.expected_kinds import Infers
 from beliefnest.scenarios.inferring import means_text
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.scenarios.naming import container_name, point_text

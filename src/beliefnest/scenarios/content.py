@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.nest.past.setting import Senses, Setting
-from beliefnest.scenarios.expected import Answers, Expected
+from beliefnest.scenarios.expected import Expected
+from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry

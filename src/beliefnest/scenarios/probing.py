@@ -10,7 +10,9 @@ from beliefnest.nest.face.simulator import Simulator
 from beliefnest.prompts import Template, built_in_template, instructions
 from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Answers, Deed, Infers, Judgement
+from beliefnest.scenarios.expected import Deed, Judgement
+from beliefnest.scenarios.expected_answers import Answers
+from beliefnest.scenarios.expected_kinds import Infers
 from beliefnest.scenarios.inferring import Inferred, Inferring
 from beliefnest.scenarios.judging import outcome_of
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply

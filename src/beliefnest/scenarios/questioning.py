@@ -9,7 +9,7 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.place_names import place_names
 from beliefnest.prompts import Template, built_in_template
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Answers
+from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.outcome import Reply
 from beliefnest.world.values import Position
 

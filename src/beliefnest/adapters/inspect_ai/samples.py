@@ -8,7 +8,7 @@ from typing import Any
 from beliefnest.llm.messages import Answer, Message, Sampling
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Answers
+from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.probing import Asking, run_probe
 from beliefnest.scenarios.scenario import Scenario
