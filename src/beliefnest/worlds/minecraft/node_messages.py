@@ -138,11 +138,7 @@ def contents_message(containers: Mapping[Position, Items]) -> list[list[Any]]:
 def agent_message(agent: AgentState) -> dict[str, Any]:
     """Return an agent's state as a message."""
     return {
-        "position": agent.position,
-        "yaw": agent.yaw,
-        "pitch": agent.pitch,
-        "on_ground": agent.on_ground,
-        "equipment": dict(agent.equipment),
+        **pose_message(agent),
         "inventory": dict(agent.inventory),
         "health": agent.health,
         "food": agent.food,
