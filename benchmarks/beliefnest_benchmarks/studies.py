@@ -16,8 +16,10 @@ from beliefnest_benchmarks.figures import Metric
 __all__ = ["measure"]
 
 _VARIATIONS = 200
-_FIRST = 20
+_FIRST = 24
 """Cells after which all processes have started, and Node has compiled its hot code."""
+_SMALL = 24
+"""Cells of a small study, in which starting counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +28,12 @@ class _Run:
 
     Attributes:
         whole: Seconds from the call to the end of the last process.
+        first: Seconds from the call to the first result.
         rate: Cells per second, from cell number `_FIRST` to the last cell.
     """
 
     whole: float
+    first: float
     rate: float
 
 
@@ -51,8 +55,14 @@ def measure() -> Sequence[Metric]:
     scripted = Study("sally-anne", variations=_VARIATIONS, conditions=[1], world="scripted")
     scripted.plan()
     alone = _run(scripted, 1)
+    small = Study("sally-anne", variations=_SMALL, conditions=[1])
+    small.plan()
     return [
+        Metric(f"{_SMALL} cells, one job, start counted", _run(small, 1).whole, "s"),
+        Metric(f"{_SMALL} cells, two jobs, start counted", _run(small, 2).whole, "s"),
+        Metric("from the start to the first cell of two jobs", two.first, "s", 1.5),
         Metric("cells a second, two jobs", _VARIATIONS / two.whole, "1/s", 8.0, at_least=True),
+        Metric(f"cells a second after {_FIRST}, two jobs", two.rate, "1/s", 8.0, at_least=True),
         Metric("two jobs against one, once started", two.rate / one.rate, "x", 1.8, at_least=True),
         Metric(
             "two jobs against one on one core", two.rate / confined.rate, "x", 1.8, at_least=True
@@ -95,4 +105,5 @@ def _run(study: Study, jobs: int, backend: str = "loky") -> _Run:
             )
     count = max(ended)
     first = min(_FIRST, count - 1)
-    return _Run(whole, (count - first) / (ended[count] - ended[first]))
+    rate = (count - first) / (ended[count] - ended[first])
+    return _Run(whole, ended[1] - started, rate)
