@@ -138,3 +138,16 @@ def test_who_stands_on_a_plate_holds_the_door_open(worlds: dict[str, World], nam
         moved.append([(tick == pressed, detail) for tick, _, detail in told])
     assert moved[0] == moved[1]
     assert len(moved[0]) == 6
+
+
+def test_an_agent_gets_past_the_corner_of_an_iron_door(worlds: dict[str, World]) -> None:
+    # From this edge of its block, the pathfinder of Minecraft's bots takes a way that it cannot go.
+    door = {
+        (4, 1, 4): "iron_door[facing=north,half=lower]",
+        (4, 2, 4): "iron_door[facing=north,half=upper]",
+    }
+    for world in worlds.values():
+        program = "await goToPosition(bot, new Vec3(4, 1, 5), 0)"
+        _, there = played(world, door, program, (5.5, 1.0, 4.319474))
+        x, _, z = there.agents["sally"].position
+        assert (int(x), int(z)) == (4, 5)

@@ -47,7 +47,7 @@ class RewardEntry(_Entry, frozen=True):
 
     reached: Annotated[float, note("When the agent's goal is reached.")] = 1.0
     violated: Annotated[float, note("When it can no longer be reached.")] = 0.0
-    round: Annotated[float, note("For each round.")] = 0.0
+    each_round: Annotated[float, note("For each round.")] = 0.0
     message: Annotated[float, note("For each utterance of the agent.")] = 0.0
 
 

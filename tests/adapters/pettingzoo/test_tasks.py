@@ -30,7 +30,7 @@ HALL = {
         "goal": {"reach": [{"agent": "ann", "items": {"diamond": 1}}]},
         "goals": {"bob": {"never": [{"agent": "ann", "items": {"diamond": 1}}]}},
         "talk": ["ann"],
-        "rewards": {"reached": 5, "violated": -3, "round": -1, "message": -0.25},
+        "rewards": {"reached": 5, "violated": -3, "each_round": -1, "message": -0.25},
         "rounds": 4,
         "round_ticks": 2,
     },

@@ -155,7 +155,7 @@ class TaskActing:
     def _earned(self, agent: str) -> float:
         """Return the reward for the latest round, by the agent's own goal."""
         rewards, progress = self._task.form.rewards, self._episode.progress[agent]
-        earned = rewards.round + rewards.message * self._utterances[agent]
+        earned = rewards.each_round + rewards.message * self._utterances[agent]
         if agent not in self._settled:
             if progress.succeeded(over=self.is_over):
                 self._settled.add(agent)

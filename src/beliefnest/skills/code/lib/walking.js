@@ -11,6 +11,8 @@ const STILL = 0.01
 const SETTLE_TICKS = 10
 const MIDDLE = 0.15
 const STEP_TICKS = 40
+/** Number of times that the pathfinder may get stuck at one place before its path is given up. */
+const MOST_STUCK = 2
 
 const ANY_DOOR = { openDoors: true, closeDoors: false }
 
@@ -38,15 +40,31 @@ async function settle (context) {
  * @returns {Promise<Error | null>} the reason why the walk ended early; null if it did not
  */
 async function attempt (context, goal) {
+  const { pathfinder } = context.bot
+  const stuck = watchStuck(context, () => pathfinder.setGoal(null))
   try {
-    await context.bot.pathfinder.goto(goal)
+    await pathfinder.goto(goal)
     return null
   } catch (error) {
     if (!(error.name in REASONS)) throw error
-    return error
+    return stuck.isStuck() ? Object.assign(noPath(), { isStuck: true }) : error
   } finally {
+    stuck.end()
     await settle(context)
   }
+}
+
+/** Call a function when the pathfinder gets stuck at one place again and again: it would try the same path forever. */
+function watchStuck (context, giveUp) {
+  let [place, times] = [null, 0]
+  const end = context.listen('path_reset', reason => {
+    if (reason !== 'stuck') return
+    const here = context.bot.entity.position.floored()
+    times = place?.equals(here) ? times + 1 : 1
+    place = here
+    if (times === MOST_STUCK) giveUp()
+  })
+  return { end, isStuck: () => times >= MOST_STUCK }
 }
 
 /**
@@ -62,10 +80,18 @@ async function attempt (context, goal) {
 async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
   const { bot, fail } = context
   const tried = new Set()
+  const centred = new Set()
   let fault = null
   while (!arrived()) {
     fault = await attempt(context, goal)
     if (arrived()) return
+    const here = `${bot.entity.position.floored()}`
+    if (fault?.isStuck && !centred.has(here)) {
+      // At the edge of its block the bot may touch what it would pass from the middle.
+      centred.add(here)
+      await stepToMiddle(context, () => false)
+      continue
+    }
     const walled = fault === null || fault.name === 'NoPath'
     if (!walled || !await passDoors(context, goal, target, tried, doors)) break
   }
@@ -115,15 +141,23 @@ function viewpoint ({ bot, goals }, block, accepts) {
   return { goal, arrived }
 }
 
+/** Return the middle of the block in which a bot stands. */
+const middleOf = bot => bot.entity.position.floored().offset(0.5, 0, 0.5)
+
+/** Go to the middle of the bot's block; stop earlier if `done()` is true. */
+async function stepToMiddle (context, done) {
+  const { bot } = context
+  const middle = middleOf(bot)
+  await bot.lookAt(middle.offset(0, EYE_HEIGHT, 0), true)
+  await stepUntil(context, () => bot.entity.position.xzDistanceTo(middle) < MIDDLE || done(), STEP_TICKS)
+  await settle(context)
+}
+
 /** Go to the middle of the bot's block if the server would accept the use of a block only from there. */
 async function stepToView (context, block) {
   const { bot } = context
-  const middle = bot.entity.position.floored().offset(0.5, 0, 0.5)
-  if (hindranceOf(bot, block) === null || hindranceOf(bot, block, middle) !== null) return
-  const near = () => bot.entity.position.xzDistanceTo(middle) < MIDDLE || hindranceOf(bot, block) === null
-  await bot.lookAt(middle.offset(0, EYE_HEIGHT, 0), true)
-  await stepUntil(context, near, STEP_TICKS)
-  await settle(context)
+  if (hindranceOf(bot, block) === null || hindranceOf(bot, block, middleOf(bot)) !== null) return
+  await stepToMiddle(context, () => hindranceOf(bot, block) === null)
 }
 
 /** Walk to where a block can be used. */
