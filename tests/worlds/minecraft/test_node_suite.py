@@ -14,8 +14,9 @@ FILES = sorted(path.relative_to(NODE_ROOM) for path in (NODE_ROOM / "test").rglo
 TOGETHER = () if NIGHTLY else ("places", "plugins", "sandbox", "skills")
 """Folders whose files run in one process by day: most of what a file takes is Node's beginning."""
 
-LONG = ("fuzz", "people", "tcp")
-"""Folders whose tests wait for real time or vary at random what the others try."""
+LONG = ("fuzz", "people", "tcp", "determinism.test.js", "resuming.test.js")
+"""Folders and files whose tests wait for real time, vary at random what the others try, or start
+Node often for what Python's tests of seeds and of resumed runs hold as well."""
 
 
 def runs() -> dict[str, list[Path]]:
@@ -28,7 +29,7 @@ def runs() -> dict[str, list[Path]]:
 
 
 def is_long(name: str) -> bool:
-    """Return whether the files wait for real time or vary what others try."""
+    """Return whether a run has the mark `long`."""
     return name.split("/")[1] in LONG
 
 
