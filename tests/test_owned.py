@@ -6,7 +6,7 @@ import subprocess
 import sys
 import textwrap
 from collections.abc import Callable, Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 import pytest
@@ -39,15 +39,32 @@ def in_child(act: Callable[[], object]) -> str:
     return told
 
 
-@pytest.fixture(params=["scripted", "embedded", "memory"])
-def nest(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[bn.Nest]:
+KINDS = ["scripted", "embedded", "memory"]
+
+
+@contextmanager
+def opened(kind: str, folder: Path) -> Iterator[bn.Nest]:
     """Open a nest with a belief in control mode; with a run file, except `memory`."""
     scenario = bn.Scenario.load("sally-anne", 3)
-    in_memory = request.param == "memory"
-    world, store = ("scripted", None) if in_memory else (request.param, tmp_path / "run.bn")
-    with bn.Nest.open(scenario, world=world, store=store) as opened:
-        opened["/sally"].switch("plan")
-        yield opened
+    world, store = ("scripted", None) if kind == "memory" else (kind, folder / "run.bn")
+    with bn.Nest.open(scenario, world=world, store=store) as nest:
+        nest["/sally"].switch("plan")
+        yield nest
+
+
+@pytest.fixture(params=KINDS)
+def nest(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[bn.Nest]:
+    with opened(request.param, tmp_path) as nest:
+        yield nest
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def same_nest(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[bn.Nest]:
+    """Return one nest for all acts that are refused, and so change nothing of it."""
+    with opened(request.param, tmp_path_factory.mktemp("same")) as nest:
+        yield nest
 
 
 ACTS: dict[str, Callable[[bn.Nest], object]] = {
@@ -69,9 +86,9 @@ ACTS: dict[str, Callable[[bn.Nest], object]] = {
 
 @pytest.mark.parametrize("act", ACTS.values(), ids=ACTS)
 def test_every_use_in_a_child_is_refused_in_one_line(
-    nest: bn.Nest, act: Callable[[bn.Nest], object]
+    same_nest: bn.Nest, act: Callable[[bn.Nest], object]
 ) -> None:
-    told = in_child(lambda: act(nest))
+    told = in_child(lambda: act(same_nest))
     assert told.startswith("ForkedError: ")
     assert f"was opened by process {os.getpid()} and cannot be used in process" in told
     assert "\n" not in told
