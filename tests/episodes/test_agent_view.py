@@ -59,7 +59,7 @@ class Records:
         self.read.append(mind.world.blocks.tolist())
         for path in ((), ("bob",), ("bob", "ann")):
             node = mind.view(path)
-            self.read.append([dict(node.containers), dict(node.agents), node.blocks.tolist()])
+            self.read.append([dict(node.containers), dict(node.agents), node.grid.tolist()])
         self.read += [
             view.tick,
             view.round,
@@ -142,7 +142,7 @@ class ReadsAll(Records):
         for path in ((), *((name,) for name in names), *below):
             node = mind.view(path)
             self.read.append(plain(view.about(*path) if path else view.state))
-            self.read.append([dict(node.containers), dict(node.agents), node.blocks.tolist()])
+            self.read.append([dict(node.containers), dict(node.agents), node.grid.tolist()])
         self.read += [view.last, view.brief, view.heard, view.ticks_left, self.model.prompt(view)]
         self.known = self.known | (np.asarray(view.state.blocks.grid) >= 0)
         self.thoughts = len(view.state.thoughts)
