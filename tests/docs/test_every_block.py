@@ -49,6 +49,7 @@ RUN_BY = {
     ("servers.md", "python"): "worlds/servers/test_realtime.py",
     ("skills.md", "js"): "skills/test_examples.py",
     ("studies.md", "python"): "docs/test_studies_page.py",
+    ("supplement.md", "python"): "docs/test_supplement_page.py",
     ("timelines.md", "python"): "docs/test_nest_pages.py",
     ("tutorial.md", "python"): "docs/test_tutorial.py",
     ("visiting.md", "python"): "nest/face/test_layout.py",

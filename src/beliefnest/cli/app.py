@@ -12,6 +12,7 @@ from beliefnest.cli.options import (
     CaptureOptions,
     ExportOptions,
     Json,
+    MethodsFormat,
     PlayOptions,
     PowerOptions,
     RunOptions,
@@ -309,20 +310,64 @@ def play(options: PlayOptions) -> int:
 
 
 @app.command()
+def bundle(
+    results: Annotated[Path, typer.Argument(help="Folder of a study or a run.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="ZIP file to write; default: the folder's name."),
+    ] = None,
+    runs: Annotated[
+        bool, typer.Option("--runs", help="Include recorded run files, which are large.")
+    ] = False,
+) -> None:
+    """Write a supplement: everything to read a study or run, and to reproduce it without models."""
+    from beliefnest.cli.bundle import write_bundle
+
+    write_bundle(results, out, runs=runs)
+
+
+@app.command()
+def methods(
+    results: Annotated[Path, typer.Argument(help="Folder of a study or a run.")],
+    form: MethodsFormat = "markdown",
+) -> None:
+    """Print the paragraph for a methods section, from recorded facts."""
+    from beliefnest.cli.bundle import print_methods
+
+    print_methods(results, form)
+
+
+@app.command()
 def reproduce(
+    supplement: Annotated[
+        Path | None,
+        typer.Argument(
+            help="Supplement (ZIP file or folder), or folder of a study or run, to play again "
+            "without any model; default: the paper's experiments."
+        ),
+    ] = None,
     copies: Annotated[
-        int, typer.Option(help="Mirrored, turned and renamed copies of each experiment.", min=0)
-    ] = 4,
+        int | None,
+        typer.Option(
+            help="Mirrored, turned and renamed copies of each experiment; default: 4.", min=0
+        ),
+    ] = None,
     jobs: Annotated[int, typer.Option(help="Cells to play in parallel.", min=1)] = 1,
     page: Annotated[
         Path | None, typer.Option(help="Write the table to this Markdown file.")
     ] = None,
     json: Json = False,
 ) -> int:
-    """Play the paper's experiments and variations; print the results beside the paper's claims."""
+    """Play a supplement again and compare all rows; or the paper's experiments and its claims."""
+    if supplement is not None:
+        if copies is not None or page is not None:
+            raise InputError("--copies and --page are for the paper's experiments; leave them out")
+        from beliefnest.cli.supplement import reproduce_supplement
+
+        return reproduce_supplement(supplement, jobs, as_json=json)
     from beliefnest.cli.reproduce import run_reproduction
 
-    return run_reproduction(copies, jobs, page, as_json=json)
+    return run_reproduction(4 if copies is None else copies, jobs, page, as_json=json)
 
 
 @app.command()

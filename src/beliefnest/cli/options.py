@@ -16,6 +16,7 @@ __all__ = [
     "CaptureOptions",
     "ExportOptions",
     "Json",
+    "MethodsFormat",
     "PlayOptions",
     "PowerOptions",
     "RunOptions",
@@ -32,6 +33,9 @@ Options = TypeVar("Options")
 Status = TypeVar("Status")
 
 Cache = Literal["read", "write", "off"]
+MethodsFormat = Annotated[
+    Literal["markdown", "latex"], typer.Option("--format", help="Format of the paragraph.")
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object.")]
 
 

@@ -11,13 +11,20 @@ import msgspec
 from beliefnest.errors import ModelError
 from beliefnest.files import read_regular
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
-from beliefnest.llm.stored_exchange import Exchange, decode_exchange, encode_exchange, request_key
+from beliefnest.llm.stored_exchange import (
+    Exchange,
+    decode_exchange,
+    encode_exchange,
+    exchange_of,
+    request_key,
+)
 
 __all__ = ["CacheMode", "CachedModel"]
 
-CacheMode = Literal["read", "write", "off"]
-"""Mode of the cache. `read`: use cached answers, ask for the others and store them. `write`:
-always ask, and store the answers. `off`: neither use nor store answers."""
+CacheMode = Literal["read", "only", "write", "off"]
+"""Mode of the cache. `read`: use cached answers, ask for the others and store them. `only`:
+use cached answers, and ask for no others. `write`: always ask, and store the answers. `off`:
+neither use nor store answers."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +34,7 @@ class CachedModel:
     Attributes:
         model: Model for requests that are not in the cache.
         folder: Folder of the cache; created with the first answer.
-        mode: `read` or `write`.
+        mode: `read`, `only` or `write`.
     """
 
     model: Model
@@ -47,13 +54,13 @@ class CachedModel:
                 written.
         """
         path = self.folder / f"{request_key(self.name, messages, sampling)}.json"
-        if self.mode == "read":
+        if self.mode in ("read", "only"):
             kept = _read(path)
             if kept is not None:
-                return Answer(kept.text, kept.usage, cached=True)
+                return Answer(kept.text, kept.usage, cached=True, date=kept.date)
         answer = self.model.answer(messages, sampling)
         if self.mode != "off":
-            exchange = Exchange(self.name, tuple(messages), sampling, answer.text, answer.usage)
+            exchange = exchange_of(self.name, messages, sampling, answer)
             _write(path, exchange)
         return answer
 

@@ -80,11 +80,13 @@ class Answer:
         text: Full text.
         usage: Resources that this answer used.
         cached: True if the answer comes from a cache without a request.
+        date: Day of the answer (UTC, YYYY-MM-DD); empty: not known, or the same on every day.
     """
 
     text: str
     usage: Usage = field(default_factory=Usage)
     cached: bool = False
+    date: str = ""
 
 
 class Model(Protocol):

@@ -11,7 +11,12 @@ from beliefnest.errors import ModelError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
-from beliefnest.llm.stored_exchange import Exchange, decode_exchange, encode_exchange
+from beliefnest.llm.stored_exchange import (
+    Exchange,
+    decode_exchange,
+    encode_exchange,
+    exchange_of,
+)
 
 __all__ = ["FileRecordingModel", "ReplayModel", "ScriptedModel", "load_replay", "load_script"]
 
@@ -70,7 +75,7 @@ class ReplayModel:
                 f"or the run does. The prompt ends: {excerpt(last[-200:])}"
             )
         exchange = left.popleft()
-        return Answer(exchange.text, exchange.usage, cached=True)
+        return Answer(exchange.text, exchange.usage, cached=True, date=exchange.date)
 
 
 @dataclass(frozen=True)
@@ -92,7 +97,7 @@ class FileRecordingModel:
             ModelError: The model failed, or the file cannot be written.
         """
         answer = self.model.answer(messages, sampling)
-        exchange = Exchange(self.name, tuple(messages), sampling, answer.text, answer.usage)
+        exchange = exchange_of(self.name, messages, sampling, answer)
         try:
             self.file.parent.mkdir(parents=True, exist_ok=True)
             with self.file.open("ab") as file:

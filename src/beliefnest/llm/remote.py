@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from beliefnest.errors import BeliefNestError, ModelError
@@ -310,7 +311,7 @@ def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelRes
         raise UnusableAnswerError(
             f"{model.name} gave an empty answer; ask again or use another model", usage
         )
-    return Answer(text, usage)
+    return Answer(text, usage, date=datetime.now(UTC).date().isoformat())
 
 
 def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:

@@ -125,6 +125,8 @@ def check_model(name: str, environment: Mapping[str, str], connection: Connectio
 
 
 def _resolved(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
+    if is_of_provider(name) and connection.cache_mode == "only":
+        return _Unreachable(name, "no model is asked here")
     try:
         return resolve_model(
             name, environment, limits=connection.answer_limits, clock=connection.clock

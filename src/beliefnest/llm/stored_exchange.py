@@ -6,12 +6,12 @@ from collections.abc import Sequence
 import msgspec
 
 from beliefnest.files import decode_json
-from beliefnest.llm.messages import Message, Sampling, Usage
+from beliefnest.llm.messages import Answer, Message, Sampling, Usage
 
-__all__ = ["Exchange", "decode_exchange", "encode_exchange", "request_key"]
+__all__ = ["Exchange", "decode_exchange", "encode_exchange", "exchange_of", "request_key"]
 
 
-class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     """A request to a model and its answer; it never contains a key.
 
     Attributes:
@@ -20,6 +20,7 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         sampling: Sampling parameters.
         text: Text of the answer.
         usage: Resources that the answer used.
+        date: Day of the answer, as in `Answer`; earlier versions did not store it.
     """
 
     model: str
@@ -27,12 +28,20 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     sampling: Sampling
     text: str
     usage: Usage
+    date: str = ""
 
 
 def request_key(model: str, messages: Sequence[Message], sampling: Sampling) -> str:
     """Return a hash of a request; it changes with any change of text, model or sampling."""
     request = msgspec.json.encode([model, list(messages), sampling])
     return hashlib.sha256(request).hexdigest()
+
+
+def exchange_of(
+    model: str, messages: Sequence[Message], sampling: Sampling, answer: Answer
+) -> Exchange:
+    """Return the stored form of a request and its answer."""
+    return Exchange(model, tuple(messages), sampling, answer.text, answer.usage, answer.date)
 
 
 def encode_exchange(exchange: Exchange) -> bytes:

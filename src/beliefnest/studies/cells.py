@@ -34,6 +34,7 @@ __all__ = [
     "check_called",
     "digest",
     "plan_cells",
+    "planned_cell",
     "variation_id",
 ]
 
@@ -390,6 +391,29 @@ def _with_template(
     return replace(scenario, probes=probes)
 
 
+def planned_cell(key: CellKey, document: Document, template: Template | None) -> Cell:
+    """Return the cell of a recorded key, made from a document and a template.
+
+    The key of the cell has the hash of these, which differs from the recorded one if they are not
+    those that the cell was played with.
+
+    Raises:
+        BeliefNestError: They make no scenario.
+    """
+    variation = Variation(key.variation)
+    scene = variation.scene if variation.changes_scene else None
+    scenario = Scenario.varied(document, key.condition, variation.parameters, scene)
+    if template is None:
+        return Cell(replace(key, content=_content(document, scenario, None)), scenario)
+    asked = _with_template(scenario, template, variation, document)
+    return Cell(replace(key, content=_content(document, asked, template)), asked)
+
+
+def _content(document: Document, scenario: Scenario, template: Template | None) -> str:
+    """Return the hash of a scenario's file and of its templates."""
+    return digest([document.text, dict(scenario.templates), template and template.text])[:16]
+
+
 def _cells(
     design: Design,
     document: Document,
@@ -397,12 +421,12 @@ def _cells(
     variation: Variation,
 ) -> Iterator[Cell]:
     for template, scenario in asked:
-        content = digest([document.text, dict(scenario.templates), template and template.text])
+        content = _content(document, scenario, template)
         for model in design.models:
             for repeat in range(1, design.repeats + 1):
                 key = CellKey(
                     scenario=scenario.name,
-                    content=content[:16],
+                    content=content,
                     condition=scenario.condition,
                     variation=variation.values,
                     model=model,

@@ -10,9 +10,10 @@ import numpy as np
 
 from beliefnest.scenarios.scoring import wilson_interval
 
-__all__ = ["exchange_p", "mean_interval", "rate_interval"]
+__all__ = ["DRAWS", "exchange_p", "mean_interval", "rate_interval"]
 
-_DRAWS = 2_000
+DRAWS = 2_000
+"""Draws of a bootstrap."""
 
 
 def mean_interval(
@@ -33,7 +34,7 @@ def mean_interval(
         return None, None
     sums = np.array([sum(values) for values in clusters], dtype=float)
     counts = np.array([len(values) for values in clusters], dtype=float)
-    draws = np.random.default_rng(0).integers(0, len(clusters), (_DRAWS, len(clusters)))
+    draws = np.random.default_rng(0).integers(0, len(clusters), (DRAWS, len(clusters)))
     means = sums[draws].sum(axis=1) / counts[draws].sum(axis=1)
     low, high = np.percentile(means, [2.5, 97.5])
     return float(low), float(high)

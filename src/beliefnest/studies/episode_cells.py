@@ -24,7 +24,7 @@ from beliefnest.studies.chance import episode_draws
 from beliefnest.studies.episode_design import EpisodeDesign, Player
 from beliefnest.studies.variation import Variation, listed_variations
 
-__all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes"]
+__all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes", "task_of_cell"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,6 +163,20 @@ class _Place:
     def invalid(self, why: str) -> Invalid:
         """Return an entry that says why this place makes no episode."""
         return Invalid(self.name, self.condition, self.variation.values, why)
+
+
+def task_of_cell(key: EpisodeKey, name: str, document: Document | None) -> Task:
+    """Return the instance that a recorded key names.
+
+    Args:
+        key: The key.
+        name: Name of the task, or path of its file.
+        document: Document of the scenario; None: a task.
+
+    Raises:
+        BeliefNestError: They make no task.
+    """
+    return _Place(name, document, key.condition, Variation(key.variation)).task(key.instance)
 
 
 def _cells(

@@ -1,19 +1,28 @@
 """Tables with plain types: data frames of pandas, CSV and Parquet."""
 
 import csv
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
-from beliefnest.errors import MissingExtraError
+from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.world.texts import formula_free
 
 if TYPE_CHECKING:  # pandas and pyarrow are optional, and imported when a table is made.
     import pandas
     import pyarrow
 
-__all__ = ["Typed", "plain_frame", "write_csv", "write_parquet"]
+__all__ = [
+    "Typed",
+    "csv_rows",
+    "csv_text",
+    "plain_frame",
+    "read_csv_rows",
+    "write_csv",
+    "write_parquet",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,15 +87,44 @@ def write_csv(columns: Mapping[str, Typed], file: Path) -> None:
 
     An apostrophe precedes texts that a spreadsheet would take as formulas.
     """
+    with file.open("w", newline="", encoding="utf-8") as out:
+        _write_csv(columns, out)
+
+
+def _write_csv(columns: Mapping[str, Typed], out: TextIO) -> None:
     cells = [
         _texts(column) if column.found_kind == "string" else column.values
         for column in columns.values()
     ]
-    with file.open("w", newline="", encoding="utf-8") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(columns)
-        for row in zip(*cells, strict=True):
-            writer.writerow(formula_free(v) if isinstance(v, str) else v for v in row)
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(columns)
+    for row in zip(*cells, strict=True):
+        writer.writerow(formula_free(v) if isinstance(v, str) else v for v in row)
+
+
+def csv_text(columns: Mapping[str, Typed]) -> str:
+    """Return a table as `write_csv` writes it."""
+    written = io.StringIO(newline="")
+    _write_csv(columns, written)
+    return written.getvalue()
+
+
+def csv_rows(columns: Mapping[str, Typed]) -> list[dict[str, str]]:
+    """Return the rows of a table as `write_csv` writes them, each value as text."""
+    return list(csv.DictReader(io.StringIO(csv_text(columns), newline="")))
+
+
+def read_csv_rows(file: Path) -> list[dict[str, str]]:
+    """Return the rows of a CSV file, each value as text.
+
+    Raises:
+        InputError: The file is not CSV in UTF-8.
+    """
+    try:
+        with file.open(newline="", encoding="utf-8") as opened:
+            return list(csv.DictReader(opened))
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise InputError(f"{file} cannot be read: {error}") from None
 
 
 def write_parquet(columns: Mapping[str, Typed], file: Path) -> None:

@@ -1,23 +1,22 @@
-"""Results of a study: tables, intervals, a figure, a page."""
+"""Results of a study: data frames, regressions, a figure, a page, a supplement."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+import os
+import tempfile
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from beliefnest.errors import InputError
-from beliefnest.studies.checking import checked_columns
-from beliefnest.studies.counting import Pairs, count_rows, paired_rows
-from beliefnest.studies.episode_rows import EPISODES
+from beliefnest.studies.archive import write_zip
+from beliefnest.studies.bundling import bundled
+from beliefnest.studies.counting import count_rows
+from beliefnest.studies.methods import Format, methods_text, study_facts
 from beliefnest.studies.plainframe import Typed, plain_frame, write_csv, write_parquet
-from beliefnest.studies.positions import choices_of, count_positions
-from beliefnest.studies.power import Source, power_rows
-from beliefnest.studies.power_sources import SIZES, recorded_sources
+from beliefnest.studies.power import power_rows
+from beliefnest.studies.power_sources import SIZES
 from beliefnest.studies.regression import Effect, Family, Kind, Regression, fit_rows
-from beliefnest.studies.rows import PROBES
-from beliefnest.studies.study_folder import StudyFolder
-from beliefnest.studies.table import Table, variation_columns
+from beliefnest.studies.reproducing import Reproduction, reproduce_study
+from beliefnest.studies.study_record import COMPARED, StudyRecord
 
 if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they are needed.
     import pandas
@@ -25,61 +24,13 @@ if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they 
 
 __all__ = ["StudyResult"]
 
-_COMPARED = (
-    *("one", "other", "pairs", "variations", "both", "only_one", "only_other", "difference"),
-)
-"""Attributes of `Pairs` that are columns of `differences`."""
 
-
-@dataclass(frozen=True)
-class StudyResult:
+class StudyResult(StudyRecord):
     """Results in the folder of a study.
 
     Attributes:
         folder: Folder of the study.
     """
-
-    folder: StudyFolder
-
-    @classmethod
-    def read(cls, path: str | Path) -> "StudyResult":
-        """Return the results in a folder, of a study that has ended or not.
-
-        Raises:
-            InputError: The folder holds no study.
-        """
-        result = cls(StudyFolder.existing(path))
-        # Read the plan now, so that a folder without a study is refused here.
-        result.folder.plan()
-        return result
-
-    def __repr__(self) -> str:
-        tried = sum(self.folder.cell(cell["name"]) is not None for cell in self._plan["cells"])
-        return f"<study in {self.folder.path}: {tried} of {len(self._plan['cells'])} cells>"
-
-    @cached_property
-    def _plan(self) -> dict[str, Any]:
-        return self.folder.plan()
-
-    @cached_property
-    def table(self) -> Table:
-        """Form of `frame`: a table of episodes, or of probes of scenarios."""
-        return EPISODES if "tasks" in self._plan else PROBES
-
-    @cached_property
-    def rows(self) -> list[dict[str, Any]]:
-        """Return the rows of `frame` as plain values."""
-        return list(self.table.rows(self.folder, self._plan))
-
-    @property
-    def invalid(self) -> list[dict[str, Any]]:
-        """Combinations that make no scenario, and why."""
-        return list(self._plan["invalid"])
-
-    @property
-    def plan(self) -> dict[str, Any]:
-        """Return the latest plan, as plain values."""
-        return dict(self._plan)
 
     def frame(self) -> "pandas.DataFrame":
         """Return one row for each probe of each cell, or each episode, in the order of the plan.
@@ -90,26 +41,7 @@ class StudyResult:
         Raises:
             MissingExtraError: pandas is not installed.
         """
-        return plain_frame(self._typed())
-
-    def _typed(self) -> dict[str, Typed]:
-        kinds = self.table.kinds(variation_columns(self._plan))
-        return {name: Typed([row[name] for row in self.rows], kind) for name, kind in kinds.items()}
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Return the names of the columns of `frame`."""
-        return tuple(self.table.kinds(variation_columns(self._plan)))
-
-    @property
-    def groups(self) -> tuple[str, ...]:
-        """Return the default columns by which summaries group rows."""
-        table = self.table
-        return (*table.groups, *self._several(table.further_groups))
-
-    def _several(self, columns: Iterable[str]) -> tuple[str, ...]:
-        """Return those of some columns that have several values."""
-        return tuple(name for name in columns if len({row.get(name) for row in self.rows}) > 1)
+        return plain_frame(self.typed())
 
     def summary(self, by: Sequence[str] | str | None = None) -> "pandas.DataFrame":
         """Return for each group its accuracy with a 95 % interval, and counts of all outcomes.
@@ -132,32 +64,6 @@ class StudyResult:
         counted = self.counted(names)
         columns = counted[0] if counted else names
         return plain_frame({name: Typed([row[name] for row in counted]) for name in columns})
-
-    def counted(self, by: Sequence[str]) -> list[dict[str, Any]]:
-        """Return the rows of `summary` as plain values."""
-        return count_rows(self.rows, by, self.table.means)
-
-    def paired(self, between: str, by: Sequence[str] = ()) -> list[tuple[tuple[Any, ...], Pairs]]:
-        """Return the rows of `differences` as values: the group's values of `by`, and its pairs.
-
-        Raises:
-            InputError: The column does not identify rows.
-        """
-        table = self.table
-        identity = [*table.identity, *variation_columns(self._plan)]
-        groups: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
-        for row in self.rows:
-            groups.setdefault(tuple(row.get(name) for name in by), []).append(row)
-        return [
-            (values, pairs)
-            for values, rows in groups.items()
-            for pairs in paired_rows(rows, between, identity, table.same.get(between, ()))
-        ]
-
-    def apart(self, between: str) -> tuple[str, ...]:
-        """Return the default columns that define the groups of a comparison."""
-        same = (between, *self.table.same.get(between, ()))
-        return self._several(name for name in self.table.apart if name not in same)
 
     def differences(
         self, between: str, by: Sequence[str] | str | None = None
@@ -187,30 +93,8 @@ class StudyResult:
         """
         found = self.compared(between, by)
         names = list(self.apart(between)) if by is None else self.checked(by)
-        columns = [*names, *_COMPARED, "low", "high", "p"]
+        columns = [*names, *COMPARED, "low", "high", "p"]
         return plain_frame({name: Typed([row[name] for row in found]) for name in columns})
-
-    def compared(self, between: str, by: Sequence[str] | str | None = None) -> list[dict[str, Any]]:
-        """Return the rows of `differences` as plain values; raise as it does."""
-        self.checked(between)
-        names = self.checked(self.apart(between) if by is None else by)
-        compared = self.paired(between, names)
-        levels = list(dict.fromkeys(row[between] for row in self.rows))
-        if len(levels) > 1 and not compared:
-            raise InputError(
-                f"no two rows differ in {between!r} alone, which is {levels[0]!r}, {levels[1]!r}; "
-                "compare groups that share no variations by `fit`"
-            )
-        return [
-            {
-                **dict(zip(names, values, strict=True)),
-                **{name: getattr(pairs, name) for name in _COMPARED},
-                "low": pairs.interval[0],
-                "high": pairs.interval[1],
-                "p": pairs.p,
-            }
-            for values, pairs in compared
-        ]
 
     def fit(
         self,
@@ -239,19 +123,6 @@ class StudyResult:
             self.checked(each if isinstance(each, str) else list(each))
         return fit_rows(self.rows, wanted, kind, family)
 
-    def choices(self) -> list[dict[str, Any]]:
-        """Return the answers to questions with options, see `choices_of`; copies are left out."""
-        rows: dict[str, list[dict[str, Any]]] = {}
-        for row in self.rows:
-            rows.setdefault(row["cell"], []).append(row)
-        found = ((own, self.folder.cell(name)) for name, own in rows.items())
-        return [
-            choice
-            for own, cell in found
-            if cell is not None and cell["error"] is None and own[0]["copy_of"] is None
-            for choice in choices_of(own, cell)
-        ]
-
     def positions(self, by: Sequence[str] | str | None = None) -> "pandas.DataFrame":
         """Return how often each position was chosen for each position of the right option.
 
@@ -268,42 +139,6 @@ class StudyResult:
         """
         counted = self.counted_positions(self.checked(self.position_groups if by is None else by))
         return plain_frame({name: Typed([row[name] for row in counted]) for name in counted[0]})
-
-    @property
-    def position_groups(self) -> tuple[str, ...]:
-        """Return the default columns of `positions`."""
-        return (*self.table.groups[-1:], *self._several(self.table.further_groups))
-
-    def counted_positions(self, by: Sequence[str]) -> list[dict[str, Any]]:
-        """Return the rows of `positions` as plain values; raise InputError if there are none."""
-        counted = count_positions(self.choices(), by)
-        if not counted:
-            raise InputError(
-                f"{self.folder.path} has no answer to a question with options and one right option"
-            )
-        return counted
-
-    def power_sources(
-        self, between: str | None = None, by: Sequence[str] | None = None
-    ) -> list[tuple[str, Source]]:
-        """Return the groups and comparisons of recorded rows that `power` draws from.
-
-        Raises:
-            InputError: A column does not exist, or no row is judged.
-        """
-        names = self.checked(self.groups if by is None else by)
-        column = self.default_between if between is None else self.checked(between)[0]
-        compared = []
-        if column is not None:
-            apart = self.apart(column)
-            for values, pairs in self.paired(column, apart):
-                compared.append((list(zip(apart, values, strict=True)), column, pairs))
-        return list(recorded_sources(self.rows, names, compared))
-
-    @property
-    def default_between(self) -> str | None:
-        """Return the first column of the table's comparisons with several values; None: none."""
-        return next(iter(self._several(self.table.compared)), None)
 
     def power(
         self,
@@ -379,6 +214,42 @@ class StudyResult:
             raise InputError(f"{path} cannot be written: {error.strerror}") from None
         return path
 
+    def bundle(self, file: str | Path, *, runs: bool = False) -> Path:
+        """Write the supplement: a ZIP file with which `beliefnest reproduce` plays all cells again.
+
+        Args:
+            file: The ZIP file; the same study gives the same bytes.
+            runs: Include the recorded run files.
+
+        Raises:
+            InputError: A file contains a key or password that is set on this machine, the file
+                cannot be written, or the folder is that of an earlier version.
+        """
+        path = Path(file)
+        write_zip(bundled(self, os.environ, runs=runs), path)
+        return path
+
+    def methods(self, form: Format = "markdown") -> str:
+        """Return the paragraph for a methods section, which contains recorded facts only.
+
+        Args:
+            form: `markdown` or `latex`.
+
+        Raises:
+            InputError: The format does not exist, or a file of the folder is damaged.
+        """
+        return methods_text(study_facts(self), form)
+
+    def reproduce(self, jobs: int = 1) -> Reproduction:
+        """Play all cells with a result again, without any model, and compare all rows.
+
+        Raises:
+            InputError: The folder does not have the inputs of the study.
+            BodyError: A worker process ended unexpectedly.
+        """
+        with tempfile.TemporaryDirectory() as again:
+            return reproduce_study(self.folder.path, Path(again), jobs, lambda progress: None)
+
     def write_tables(self) -> tuple[Path, Path]:
         """Write `rows.csv` and `rows.parquet` into the folder, with the type of each column.
 
@@ -388,11 +259,7 @@ class StudyResult:
             MissingExtraError: pyarrow is not installed; `rows.csv` is written.
         """
         csv, parquet = self.folder.path / "rows.csv", self.folder.path / "rows.parquet"
-        columns = self._typed()
+        columns = self.typed()
         write_csv(columns, csv)
         write_parquet(columns, parquet)
         return csv, parquet
-
-    def checked(self, names: Sequence[str] | str) -> list[str]:
-        """Return one or several names of columns as a list; raise InputError if one is unknown."""
-        return checked_columns(names, self.columns)

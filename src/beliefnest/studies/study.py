@@ -4,9 +4,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+import msgspec
 from filelock import Timeout
 
 from beliefnest.errors import InputError, ModelError
+from beliefnest.files import read_regular_text
 from beliefnest.llm.resolve import check_model
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
@@ -26,6 +28,7 @@ from beliefnest.studies.episode_design import (
 )
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
+from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.jobs import OnStudyProgress, StudyProgress, run_cells
 from beliefnest.studies.plainframe import Typed, plain_frame
 from beliefnest.studies.power import Source, power_rows
@@ -149,11 +152,13 @@ class Study:
             InputError: It is a study of tasks, which does not extract claims.
         """
         study = cls.__new__(cls)
-        study._hold(read_design(Path(file), claims_from))
+        study._hold(read_design(Path(file), claims_from), read_regular_text(Path(file)))
         return study
 
-    def _hold(self, design: Design | EpisodeDesign) -> None:
+    def _hold(self, design: Design | EpisodeDesign, written: str = "") -> None:
         self._design = design
+        # Text of the study's file; empty: the study was made in Python.
+        self._written = written
         scenarios = design.scenarios if isinstance(design, Design) else ()
         self._table = PROBES if isinstance(design, Design) else EPISODES
         self._documents: dict[str, Document] = {name: read_document(name) for name in scenarios}
@@ -233,8 +238,16 @@ class Study:
         )
         self._check_models(terms, backend)
         try:
+            inputs = self._inputs(plan)
             with place.lock():
-                place.write_plan({**self._plan_json(part), "versions": own_versions()})
+                inputs.write(place.path)
+                place.write_plan(
+                    {
+                        **self._plan_json(part),
+                        "versions": own_versions(),
+                        "inputs": msgspec.to_builtins(inputs.index),
+                    }
+                )
                 run_cells(part.cells, place, terms, jobs, backend, on_progress or _say_nothing)
         except Timeout:
             raise InputError(f"another process runs the study in {folder}") from None
@@ -297,6 +310,30 @@ class Study:
         sources = self.power_sources(accuracy, difference, correlation, between)
         rows = power_rows(sources, sizes, simulations, seed)
         return plain_frame({name: Typed([row[name] for row in rows]) for name in rows[0]})
+
+    def _inputs(self, plan: Plan[Cell] | Plan[EpisodeCell]) -> Inputs:
+        """Return the texts with which the cells can be played again elsewhere.
+
+        Raises:
+            InputError: A file cannot be read.
+        """
+        inputs = Inputs()
+        if self._written:
+            inputs.add_study(self._written)
+        if isinstance(self._design, Design):
+            for document in self._documents.values():
+                inputs.add_document("scenarios", document.root.value["name"].value, document)
+            for template in self._design.templates:
+                inputs.add_template(template)
+        else:
+            for name in self._design.tasks:
+                inputs.add_task(name)
+        for cell in plan.cells:
+            if isinstance(cell, EpisodeCell):
+                inputs.add_policies(cell.key.policies.values())
+        for name in self._design.asked:
+            inputs.add_model(name)
+        return inputs
 
     def take_over(self, folder: str | Path, others: Sequence[str | Path]) -> int:
         """Copy the cells of folders in which other machines ran shards of the study.

@@ -115,10 +115,7 @@ class Table:
         """Yield the rows of the cells of a plan, see `rows_with_copies`."""
         varied = variation_columns(plan)
 
-        def rows_of(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-            return self._rows_of(cell, found, varied)
-
-        return rows_with_copies(folder, plan, rows_of)
+        return rows_with_copies(folder, plan, lambda cell, found: self.rows_of(cell, found, varied))
 
     def planned(self, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield the rows that a plan will have, without results.
@@ -130,11 +127,18 @@ class Table:
         for cell in plan["cells"]:
             if cell["alike"] is None or cell["alike"] not in seen:
                 seen.add(cell["alike"] or cell["name"])
-                yield from self._rows_of(cell, {"error": "not played"}, varied)
+                yield from self.rows_of(cell, {"error": "not played"}, varied)
 
-    def _rows_of(
+    def rows_of(
         self, cell: Mapping[str, Any], found: Mapping[str, Any], varied: Iterable[str]
     ) -> Iterator[dict[str, Any]]:
+        """Yield the rows of one cell.
+
+        Args:
+            cell: Entry of the cell in the plan.
+            found: Content of the cell's file.
+            varied: Names of the columns of variations.
+        """
         variation = _varied(cell)
         for result in self.results(cell, found):
             source = Source(cell, found, result)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.resolve import Connection
 from beliefnest.studies.spending import SharedBudget
 
@@ -22,6 +23,7 @@ class Terms:
         runs: Folder of recorded runs; None: no recording.
         limits: Limits of tokens and cost of the whole study.
         environment: Variables with addresses and keys of models; None: the worker's environment.
+        cache_mode: Use of the cached answers.
     """
 
     answers: Path
@@ -29,6 +31,7 @@ class Terms:
     runs: Path | None
     limits: RunLimits
     environment: Mapping[str, str] | None = None
+    cache_mode: CacheMode = "read"
 
     @property
     def surroundings(self) -> Mapping[str, str]:
@@ -38,7 +41,7 @@ class Terms:
     def connection(self) -> Connection:
         """Return the connection to models, with budget and cache."""
         budget = SharedBudget.of(self.limits, self.ledger)
-        return Connection(budget=budget, cache=self.answers)
+        return Connection(budget=budget, cache=self.answers, cache_mode=self.cache_mode)
 
     def store(self, cell: str) -> Path | None:
         """Return the run file of a cell, after deleting an earlier try's; None: no recording."""

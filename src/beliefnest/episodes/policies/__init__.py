@@ -21,8 +21,10 @@ __all__ = [
     "Random",
     "Scripted",
     "draws_by_seed",
+    "file_of_policy",
     "is_program",
     "policy_beside",
+    "policy_of_file",
     "resolve_policy",
     "text_of_policy",
 ]
@@ -172,6 +174,21 @@ def policy_beside(name: str, folder: Path) -> str:
         return f"{folder / file}:{made}" if file.endswith(".py") else name
     kind, _, file = name.partition(":")
     return f"{kind}:{folder / file}" if is_program(name) else name
+
+
+def file_of_policy(name: str) -> str:
+    """Return the file in the name of a policy; empty if it names none."""
+    if _is_of_user(name):
+        file = name.rpartition(":")[0]
+        return file if file.endswith(".py") else ""
+    return name.partition(":")[2] if is_program(name) else ""
+
+
+def policy_of_file(name: str, file: Path) -> str:
+    """Return the name of a policy with another file in it."""
+    if _is_of_user(name):
+        return f"{file}:{name.rpartition(':')[2]}"
+    return f"{name.partition(':')[0]}:{file}"
 
 
 def _model(

@@ -1,0 +1,55 @@
+"""`beliefnest bundle`, `beliefnest methods`: the supplement and the methods of a study or run."""
+
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from beliefnest.cli.console import progress_on
+from beliefnest.studies.archive import write_zip
+from beliefnest.studies.bundling import bundled, facts_of, opened
+from beliefnest.studies.methods import Format, methods_text
+from beliefnest.world.words import counted
+
+__all__ = ["print_methods", "write_bundle"]
+
+
+def print_methods(folder: Path, form: Format) -> None:
+    """Print the paragraph for a methods section; raise InputError if there are no results."""
+    sys.stdout.write(methods_text(facts_of(opened(folder)), form))
+
+
+def write_bundle(folder: Path, out: Path | None, *, runs: bool) -> None:
+    """Write the supplement of a study or run.
+
+    Args:
+        folder: Folder of the study or run.
+        out: The ZIP file; None: `FOLDER.zip` in the current folder.
+        runs: Include the recorded run files.
+
+    Raises:
+        InputError: There are no results, or a file contains a secret.
+    """
+    with progress_on("bundle") as on_progress:
+        on_progress("reading", 0, 0)
+        files = bundled(opened(folder), os.environ, runs=runs)
+        target = out or Path(f"{folder.resolve().name}.zip")
+        on_progress(f"writing {counted(len(files), 'file')}", 0, 0)
+        write_zip(files, target)
+    sys.stdout.write(f"{target}: {counted(len(files), 'file')}, {target.stat().st_size:,} bytes\n")
+    if not any(name == "figure.svg" or name.endswith("picture.png") for name in files):
+        sys.stdout.write('without a figure; install "beliefnest[plot]" to add it\n')
+    named = _naming_home(files)
+    if named:
+        sys.stdout.write(
+            f"{counted(len(named), 'file')} with the path of your home folder, such as {named[0]}; "
+            "change this before an anonymous review\n"
+        )
+
+
+def _naming_home(files: Mapping[str, bytes]) -> list[str]:
+    home = str(Path.home())
+    # The home of a system user, such as `/` or `/root`, names nobody.
+    if home in ("/", "/root"):
+        return []
+    return [name for name, content in files.items() if home.encode() in content]

@@ -1,0 +1,190 @@
+"""`beliefnest reproduce SUPPLEMENT`: play a study or run again without models, and compare."""
+
+import contextlib
+import io
+import json
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from beliefnest.cli.console import progress_on
+from beliefnest.cli.options import RunOptions
+from beliefnest.cli.run import run_scenarios
+from beliefnest.errors import InputError, ModelError
+from beliefnest.llm.stored_exchange import encode_exchange
+from beliefnest.nest.past.versions import own_versions
+from beliefnest.studies.archive import damaged_files, unpack
+from beliefnest.studies.bundling import opened
+from beliefnest.studies.comparing import ERROR, Difference, differing_contents, differing_rows
+from beliefnest.studies.jobs import StudyProgress
+from beliefnest.studies.methods import run_facts
+from beliefnest.studies.plainframe import csv_rows, read_csv_rows
+from beliefnest.studies.reproducing import Reproduction, reproduce_study
+from beliefnest.studies.run_result import RunResult
+from beliefnest.studies.study_record import StudyRecord
+from beliefnest.world.words import counted
+from beliefnest.worlds.names import WORLDS
+
+__all__ = ["reproduce_supplement"]
+
+_MOST_TOLD = 20
+_OF_MACHINE = ("seconds", "run_dir", "model", "table")
+"""Keys of results that differ between machines, name the model that replays answers, or repeat
+other keys for people."""
+
+
+def reproduce_supplement(supplement: Path, jobs: int, *, as_json: bool) -> int:
+    """Play a study or run again, without any model, and compare all rows.
+
+    Args:
+        supplement: ZIP file of `beliefnest bundle`, its folder, or a folder of a study or run.
+        jobs: Number of cells to play in parallel.
+        as_json: Print one JSON object.
+
+    Returns:
+        Exit status: 0 if everything is equal, else 1.
+
+    Raises:
+        BeliefNestError: There are no results, or they cannot be played again.
+    """
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = supplement
+        if not supplement.is_dir():
+            folder = unpack(supplement, Path(scratch, "unpacked"))
+        result = opened(folder)
+        again = Path(scratch, "again")
+        with progress_on("reproduce") as on_progress:
+
+            def told(progress: StudyProgress) -> None:
+                on_progress("playing", progress.done + progress.failed, progress.total)
+
+            if isinstance(result, StudyRecord):
+                found = reproduce_study(folder, again, jobs, told)
+                recorded = dict(result.plan.get("versions", {}))
+            else:
+                on_progress("playing", 0, 0)
+                found = _reproduce_run(result, again)
+                recorded = dict(result.report.get("versions", {}))
+        differences = [*damaged_files(folder), *found.differences]
+    other = _other_versions(recorded)
+    if as_json:
+        sys.stdout.write(json.dumps(_report(found, differences, other), indent=2) + "\n")
+    else:
+        sys.stdout.write("\n".join(_lines(found, differences, other)) + "\n")
+    return 1 if differences else 0
+
+
+def _report(
+    found: Reproduction, differences: Sequence[Difference], other: Mapping[str, Any]
+) -> dict[str, Any]:
+    return {
+        "equal": not differences,
+        "cells": found.cells,
+        "left_out": found.left_out,
+        "rows": found.rows,
+        "differences": [each.plain() for each in differences],
+        "other_versions": other,
+    }
+
+
+def _lines(
+    found: Reproduction, differences: Sequence[Difference], other: Mapping[str, Any]
+) -> Iterator[str]:
+    for name, (before, now) in other.items():
+        yield f"other version: {name} {before}, now {now}"
+    for each in differences[:_MOST_TOLD]:
+        yield each.text
+    if len(differences) > _MOST_TOLD:
+        yield f"and {len(differences) - _MOST_TOLD} more differences"
+    played = f"{counted(found.cells, 'cell')} played again without a model"
+    if found.left_out:
+        played += f" ({counted(found.left_out, 'cell')} without a recorded result left out)"
+    rows = counted(found.rows, "row")
+    if differences:
+        yield f"NOT EQUAL: {counted(len(differences), 'difference')} in {rows}; {played}"
+    else:
+        yield f"equal: all of {rows}; {played}"
+
+
+def _other_versions(recorded: Mapping[str, str]) -> dict[str, tuple[str, str]]:
+    """Return the programs whose version differs from the recorded one, with both versions."""
+    now = own_versions()
+    return {
+        name: (version, now[name])
+        for name, version in recorded.items()
+        if name in now and now[name] != version
+    }
+
+
+def _reproduce_run(result: RunResult, again: Path) -> Reproduction:
+    """Run the conditions of a run again, with its recorded answers, and compare the results."""
+    folder, settings = result.folder, result.report["settings"]
+    models = _replaying(result, again.with_name("answers"))
+    if settings["world"] not in WORLDS:
+        raise InputError(
+            f"{folder} was run in the world {settings['world']}, which is in real time and cannot "
+            f"be repeated; runs in {', '.join(WORLDS)} can"
+        )
+    options = RunOptions(
+        scenario=str(folder / "scenario.yaml"),
+        condition=list(settings["conditions"]),
+        world=settings["world"],
+        models=",".join(models[name] for name in settings["models"]),
+        repeat=settings["repeat"],
+        out=again,
+        seed=settings["seed"],
+        cache="off",
+        attempts=settings["attempts"],
+        temperature=settings["temperature"],
+        claims_from=models.get(settings.get("claims_from", "")),
+        json=True,
+    )
+    # What a command prints is not the result here: the report in the folder is.
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(ModelError):
+        run_scenarios(options)
+    played = RunResult.read(again)
+    return Reproduction(
+        cells=len(result.report["runs"]),
+        left_out=len(result.report.get("failures", [])),
+        rows=sum(row["outcome"] != "error" for row in result.rows),
+        differences=tuple(_differences(result, played, models)),
+    )
+
+
+def _replaying(result: RunResult, folder: Path) -> dict[str, str]:
+    """Return by name of a model the model that replays its answers, from files that are written."""
+    folder.mkdir(parents=True, exist_ok=True)
+    models = {"offline": "offline"}
+    exchanges = result.exchanges()
+    for number, name in enumerate(each.name for each in run_facts(result).models):
+        if name != "offline":
+            file = folder / f"{number}.jsonl"
+            own = [encode_exchange(each) for each in exchanges if each.model == name]
+            file.write_bytes(b"".join(line + b"\n" for line in own))
+            models[name] = f"replay:{file}"
+    return models
+
+
+def _differences(
+    recorded: RunResult, again: RunResult, models: Mapping[str, str]
+) -> Iterator[Difference]:
+    file = recorded.folder / "rows.csv"
+    if file.is_file():
+        yield from differing_rows(
+            read_csv_rows(file), csv_rows(recorded.typed()), lambda n: f"rows.csv:{n + 1}"
+        )
+
+    def key(run: Mapping[str, Any], model: str) -> tuple[Any, ...]:
+        return run["condition"], run["seed"], model
+
+    failed = {key(each, each["model"]): each["error"] for each in again.report["failures"]}
+    after = {key(each, each["model"]): each for each in again.report["runs"]}
+    for number, before in enumerate(recorded.report["runs"]):
+        where = f"run.json, runs.{number}"
+        known = key(before, models[before["model"]])
+        if known in failed:
+            yield Difference(where, ERROR, None, failed[known])
+        else:
+            yield from differing_contents(before, after.get(known, {}), where, _OF_MACHINE)

@@ -1,0 +1,186 @@
+"""Files of a supplement: a study or run with all that is needed to read it and to play it again."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.files import read_regular
+from beliefnest.llm.providers import PROVIDERS
+from beliefnest.llm.secrets import Secrets, secrets_in
+from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
+from beliefnest.studies.archive import check_secrets, with_manifest
+from beliefnest.studies.inputs import no_inputs
+from beliefnest.studies.methods import Facts, methods_text, run_facts, study_facts
+from beliefnest.studies.page import page_text
+from beliefnest.studies.plainframe import csv_text
+from beliefnest.studies.run_result import RunResult
+from beliefnest.studies.study_record import StudyRecord
+
+__all__ = ["Results", "bundled", "facts_of", "opened"]
+
+Results = StudyRecord | RunResult
+
+
+def opened(folder: Path) -> Results:
+    """Return the results in the folder of a study or of a run.
+
+    Raises:
+        InputError: The folder holds neither.
+    """
+    if (folder / "study.json").is_file() or (folder / "cells").is_dir():
+        return StudyRecord.read(folder)
+    if (folder / "run.json").is_file():
+        return RunResult.read(folder)
+    raise InputError(
+        f"there is neither a study nor a run at {folder}; give the folder of `beliefnest study "
+        "--out` or `beliefnest run --out`"
+    )
+
+
+def facts_of(result: Results) -> Facts:
+    """Return the recorded facts about a study or run; raise InputError if a file is damaged."""
+    return study_facts(result) if isinstance(result, StudyRecord) else run_facts(result)
+
+
+def bundled(result: Results, environment: Mapping[str, str], *, runs: bool) -> dict[str, bytes]:
+    """Return the files of the supplement of a study or run, by path.
+
+    Args:
+        result: The results.
+        environment: Variables with keys and addresses of models, which must not be in a file.
+        runs: Include the recorded run files.
+
+    Raises:
+        InputError: A file contains a secret, or the folder lacks the study's inputs.
+    """
+    files = _files(result, runs=runs)
+    check_secrets(files, _secrets(environment))
+    return with_manifest(files, _kind(result), facts_of(result).versions)
+
+
+def _kind(result: Results) -> str:
+    return "study" if isinstance(result, StudyRecord) else "run"
+
+
+def _files(result: Results, *, runs: bool) -> dict[str, bytes]:
+    if isinstance(result, StudyRecord):
+        if "inputs" not in result.plan:
+            raise no_inputs(result.folder.path)
+        files = dict(_study_files(result, runs=runs))
+    else:
+        files = dict(_run_files(result, runs=runs))
+    facts = facts_of(result)
+    for form, name in (("markdown", "methods.md"), ("latex", "methods.tex")):
+        files[name] = methods_text(facts, "latex" if form == "latex" else "markdown").encode()
+    files["README.md"] = _readme(result, facts, files).encode()
+    return files
+
+
+def _study_files(result: StudyRecord, *, runs: bool) -> Iterator[tuple[str, bytes]]:
+    folder = result.folder.path
+    planned = {cell["name"] for cell in result.plan["cells"]}
+    yield "study.json", read_regular(folder / "study.json")
+    for path in _below(folder, ("inputs", "answers", *(["runs"] if runs else []))):
+        yield path.relative_to(folder).as_posix(), path.read_bytes()
+    for name in sorted(planned & result.folder.names()):
+        yield f"cells/{name}.json", read_regular(folder / "cells" / f"{name}.json")
+    yield "rows.csv", csv_text(result.typed()).encode()
+    yield "study.html", page_text(result, result.groups).encode()
+    yield from _figure(result.counted(result.groups), result.groups)
+
+
+def _figure(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> Iterator[tuple[str, bytes]]:
+    """Yield the figure of accuracies; nothing without matplotlib."""
+    along = [name for name in by if len({group[name] for group in groups}) > 1] or list(by[:1])
+    try:
+        yield "figure.svg", svg_of(plot_accuracy(groups, along)).encode()
+    except UnknownNameError:
+        return
+
+
+def _run_files(result: RunResult, *, runs: bool) -> Iterator[tuple[str, bytes]]:
+    folder = result.folder
+    for path in _below(folder, (".",)):
+        is_store = path.suffix == ".bn" or path.name.endswith((".bn-wal", ".bn-shm"))
+        if (runs or not is_store) and path.suffix not in (".part", ".lock"):
+            yield path.relative_to(folder).as_posix(), path.read_bytes()
+    yield "rows.csv", csv_text(result.typed()).encode()
+
+
+def _below(folder: Path, names: Sequence[str]) -> list[Path]:
+    return sorted(
+        path
+        for name in names
+        for path in (folder / name).rglob("*")
+        if path.is_file() and not path.is_symlink()
+    )
+
+
+def _secrets(environment: Mapping[str, str]) -> Secrets:
+    """Return the keys of all providers and the passwords in their addresses."""
+    values: list[str] = []
+    for provider in PROVIDERS.values():
+        values += [environment.get(name, "") for name in provider.key_variables]
+        values += secrets_in(environment.get(provider.url_variable, ""))
+    return Secrets(values)
+
+
+def _readme(result: Results, facts: Facts, files: Mapping[str, bytes]) -> str:
+    version = facts.versions.get("beliefnest", "")
+    pin = f"=={version}" if version else ""
+    kind = _kind(result)
+    contents = "\n".join(
+        f"| `{name}` | {told} |"
+        for name, told in _CONTENTS[kind].items()
+        if any(file == name or file.startswith(name) for file in files)
+    )
+    return f"""# Supplement of a {kind}
+
+{methods_text(facts, "markdown")}
+Play everything again, without any model, and compare all rows:
+
+```bash
+pip install "beliefnest[study,plot]{pin}"
+beliefnest reproduce .
+```
+
+The command takes the recorded answers in place of models. It says that all rows are equal, or
+which ones differ and where.
+
+| file | content |
+|---|---|
+{contents}
+"""
+
+
+_CONTENTS = {
+    "study": {
+        "inputs/study.yaml": "the study as it was written",
+        "inputs/scenarios/": "scenarios as they were played",
+        "inputs/tasks/": "tasks as they were played",
+        "inputs/templates/": "prompt templates",
+        "inputs/policies/": "programs and classes of policies",
+        "inputs/models/": "files of scripted or recorded answers",
+        "study.json": "the plan: each cell with its values and seed, and invalid combinations",
+        "answers/": "every request to a model and its answer, with tokens, cost and date",
+        "cells/": "the result of each cell",
+        "runs/": "recorded runs, for `beliefnest show` and `beliefnest serve`",
+        "rows.csv": "one row for each probe or episode",
+        "figure.svg": "accuracies with 95 % intervals",
+        "study.html": "the page: figure, intervals, differences, all rows",
+        "methods.md": "the paragraph above; `methods.tex`: the same in LaTeX",
+        "bundle.json": "versions, and the SHA-256 of every file",
+    },
+    "run": {
+        "scenario.yaml": "the scenario as it was played",
+        "scenario.templates.json": "its prompt templates",
+        "run.json": "settings, versions and all results",
+        "model.jsonl": "every request to a model and its answer",
+        "rows.csv": "one row for each probe",
+        "picture.png": "all conditions at their ends",
+        "report.html": "the page",
+        "methods.md": "the paragraph above; `methods.tex`: the same in LaTeX",
+        "bundle.json": "versions, and the SHA-256 of every file",
+    },
+}

@@ -1,0 +1,417 @@
+"""Paragraph for a methods section, from what a study or a run has recorded."""
+
+import hashlib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.files import read_regular
+from beliefnest.llm.resolve import is_of_provider
+from beliefnest.llm.stored_exchange import Exchange, decode_exchange
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
+from beliefnest.studies.clusters import DRAWS
+from beliefnest.studies.counting import Row
+from beliefnest.studies.run_result import RunResult
+from beliefnest.studies.study_record import StudyRecord
+from beliefnest.world.words import counted
+
+__all__ = [
+    "FORMATS",
+    "Facts",
+    "Format",
+    "ModelFacts",
+    "answered",
+    "exchanges_in",
+    "methods_text",
+    "run_facts",
+    "study_facts",
+    "usage_of",
+]
+
+Format = Literal["markdown", "latex"]
+FORMATS: tuple[Format, ...] = get_args(Format)
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFacts:
+    """Model of a study.
+
+    Attributes:
+        name: Its name.
+        answers: Number of recorded answers.
+        dates: First and last day of the answers; None: no date is recorded.
+        undated: Number of answers without a recorded date.
+    """
+
+    name: str
+    answers: int = 0
+    dates: tuple[str, str] | None = None
+    undated: int = 0
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Recorded facts about a study or a run.
+
+    Attributes:
+        kind: `study` or `run`.
+        versions: Versions of programs by name; empty: not recorded.
+        world: Name of the world.
+        subjects: What was played, in words with names in code marks.
+        factors: What it was combined with, in the same form.
+        seed: Seed, in the same form; None: there is none.
+        models: Models that answered.
+        asking: How models were asked, in words; empty: they were not.
+        templates: Prompt templates with the hash of their texts; None: built in.
+        cells: Number of cells.
+        rows: Number of rows.
+        judged: Number of judged rows, without copies.
+        variations: Number of independent variations among them.
+        tokens: Tokens of all rows.
+        cost: Known cost of all rows in US dollars.
+        unpriced: Number of rows whose cost is not known.
+        excluded: What was excluded, by keys of `_EXCLUDED`, and how often.
+        intervals: Methods of the intervals of accuracies.
+    """
+
+    kind: Literal["study", "run"]
+    versions: Mapping[str, str]
+    world: str
+    subjects: str
+    factors: Sequence[str]
+    seed: str | None
+    models: Sequence[ModelFacts]
+    asking: str
+    templates: Mapping[str, str | None]
+    cells: int
+    rows: int
+    judged: int
+    variations: int
+    tokens: int
+    cost: float
+    unpriced: int
+    excluded: Mapping[str, int] = field(default_factory=dict)
+    intervals: Sequence[str] = ()
+
+
+def exchanges_in(folder: Path) -> Iterator[Exchange]:
+    """Yield the answers in a folder of cached answers.
+
+    Raises:
+        InputError: A file is damaged.
+    """
+    for file in sorted(folder.glob("*.json")):
+        try:
+            yield decode_exchange(read_regular(file))
+        except (msgspec.MsgspecError, OSError) as error:
+            raise InputError(f"{file} is damaged: {error}; delete it") from None
+
+
+def answered(names: Sequence[str], exchanges: Sequence[Exchange]) -> list[ModelFacts]:
+    """Return the facts about each model, from its recorded answers."""
+    found = []
+    for name in dict.fromkeys(names):
+        own = [each for each in exchanges if each.model == name]
+        dates = sorted(each.date for each in own if each.date)
+        span = (dates[0], dates[-1]) if dates else None
+        found.append(ModelFacts(name, len(own), span, len(own) - len(dates)))
+    return found
+
+
+def usage_of(rows: Sequence[Row]) -> tuple[int, float, int]:
+    """Return tokens, known cost and number of rows without known cost."""
+    ended = [row for row in rows if row["outcome"] != "error"]
+    tokens = sum(row.get("tokens") or 0 for row in rows)
+    return (
+        tokens,
+        sum(row.get("cost") or 0.0 for row in rows),
+        sum(row.get("cost") is None for row in ended),
+    )
+
+
+def study_facts(result: StudyRecord) -> Facts:
+    """Return the facts about a study, from its folder.
+
+    Raises:
+        InputError: A file of the folder is damaged.
+    """
+    plan, rows = result.plan, result.rows
+    names = [each.removeprefix("model:") for each in plan["models"]]
+    names += [plan["claims_from"]] if plan.get("claims_from") else []
+    tokens, cost, unpriced = usage_of(rows)
+    judged = [row for row in rows if row["ok"] is not None and row["copy_of"] is None]
+    return Facts(
+        kind="study",
+        versions=plan.get("versions", {}),
+        world=plan["world"],
+        subjects=_subjects(plan),
+        factors=list(_factors(plan)),
+        seed=None if "seed" not in plan else f"seed {plan['seed']}",
+        models=answered(names, list(exchanges_in(result.folder.answers))),
+        asking=_asking(plan),
+        templates=_templates(result),
+        cells=len(plan["cells"]),
+        rows=len(rows),
+        judged=len(judged),
+        variations=len({row["variation"] for row in judged}),
+        tokens=tokens,
+        cost=cost,
+        unpriced=unpriced,
+        excluded=_excluded(result),
+        intervals=_intervals(result.counted(result.groups)),
+    )
+
+
+def run_facts(result: RunResult) -> Facts:
+    """Return the facts about a run, from its folder.
+
+    Raises:
+        InputError: A file of the folder is damaged.
+    """
+    report, rows = result.report, result.rows
+    settings = report["settings"]
+    names = [*settings["models"], *filter(None, [settings.get("claims_from")])]
+    tokens, cost, unpriced = usage_of(rows)
+    judged = [row for row in rows if row["ok"] is not None]
+    numbers = sorted({row["condition"] for row in rows if row["condition"] is not None})
+    factors = [f"the {_several('model', settings['models'])}"]
+    if settings["repeat"] > 1:
+        factors.append(counted(settings["repeat"], "repeat"))
+    told = f"the scenario {_code(report['scenario'])}"
+    excluded = {
+        "error": sum(row["outcome"] == "error" for row in rows),
+        "unjudged": sum(row["ok"] is None and row["outcome"] != "error" for row in rows),
+    }
+    return Facts(
+        kind="run",
+        versions=report.get("versions", {}),
+        world=settings["world"],
+        subjects=f"{told} under {_several('condition', numbers, '')}" if numbers else told,
+        factors=factors,
+        seed=f"seed {settings['seed']}",
+        models=answered(names, result.exchanges()),
+        asking=_asking(settings),
+        templates={},
+        cells=len(report["runs"]) + len(report.get("failures", [])),
+        rows=len(rows),
+        judged=len(judged),
+        variations=len({row["variation"] for row in judged}),
+        tokens=tokens,
+        cost=cost,
+        unpriced=unpriced,
+        excluded={name: count for name, count in excluded.items() if count},
+    )
+
+
+def _intervals(groups: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the methods of the intervals of counted groups, in words."""
+    used = {group["interval"] for group in groups}
+    return [told for name, told in _INTERVALS.items() if name in used]
+
+
+_INTERVALS = {
+    "wilson": "the method of Wilson (1927)",
+    "bootstrap": f"the cluster bootstrap over variations ({DRAWS:,} draws)",
+}
+
+
+def _subjects(plan: Mapping[str, Any]) -> str:
+    if "tasks" in plan:
+        names = sorted({cell["key"]["task"] for cell in plan["cells"]})
+        return f"episodes of the {_several('task', names)} ({_several('seed', plan['seeds'], '')})"
+    keys = [cell["key"] for cell in plan["cells"]]
+    names = list(dict.fromkeys(key["scenario"] for key in keys))
+    numbers = sorted({key["condition"] for key in keys if key["condition"] is not None})
+    told = f"the {_several('scenario', names)}"
+    return f"{told} under {_several('condition', numbers, '')}" if numbers else told
+
+
+def _factors(plan: Mapping[str, Any]) -> Iterator[str]:
+    variations = plan["variations"]
+    if isinstance(variations, int):
+        yield f"{counted(variations, 'drawn variation')} of each scenario"
+    elif variations:
+        lists = [f"{_code(n)} ({counted(len(v), 'value')})" for n, v in variations.items()]
+        yield f"all valid combinations of {_listed(lists)}"
+    if "tasks" in plan:
+        yield f"the {_several('policy', plan['players'], plural='policies')}"
+    else:
+        yield f"the {_several('model', plan['models'])}"
+    if plan.get("templates"):
+        yield f"the {_several('prompt template', plan['templates'])}"
+    if plan["repeats"] > 1:
+        yield counted(plan["repeats"], "repeat")
+    design = plan.get("design")
+    if design == "balanced":
+        yield "a balanced design, in which each variation is played under one condition"
+    elif design is not None:
+        yield "a Latin square, which divides the cells into lists"
+
+
+def _asking(plan: Mapping[str, Any]) -> str:
+    if "attempts" not in plan:
+        return ""
+    heat = plan["temperature"]
+    told = "the provider's default temperature" if heat is None else f"temperature {heat:g}"
+    return f"at {told}, with at most {counted(plan['attempts'], 'request')} for a program"
+
+
+def _templates(result: StudyRecord) -> dict[str, str | None]:
+    index = result.plan.get("inputs", {}).get("templates", {})
+    found: dict[str, str | None] = {}
+    for name in result.plan.get("templates", []):
+        if name in BUILT_IN_TEMPLATES:
+            found[name] = None
+        elif name in index:
+            text = read_regular(result.folder.path / index[name])
+            found[name] = hashlib.sha256(text).hexdigest()[:12]
+        else:
+            found[name] = "hash not recorded"
+    return found
+
+
+def _excluded(result: StudyRecord) -> dict[str, int]:
+    """Return what is not among the judged rows, in words, with counts."""
+    plan, rows = result.plan, result.rows
+    tried = {row["cell"] for row in rows}
+    found = {
+        "combination": len(plan["invalid"]),
+        "unplayed": sum(cell["name"] not in tried for cell in plan["cells"]),
+        "error": sum(row["outcome"] == "error" for row in rows),
+        "unjudged": sum(row["ok"] is None and row["outcome"] != "error" for row in rows),
+        "copy": sum(row["copy_of"] is not None and row["ok"] is not None for row in rows),
+    }
+    return {name: count for name, count in found.items() if count}
+
+
+_EXCLUDED = {
+    "combination": "{0} that makes no valid scenario or episode",
+    "unplayed": "{0} that has not been played",
+    "error": "{0} without a result, because a model, a script or a world failed",
+    "unjudged": "{0} without an expectation to judge",
+    "copy": "{0} that differs from another row only by a seed on which nothing depends",
+}
+_NOUNS = {
+    "combination": "combination",
+    "unplayed": "cell",
+    "error": "row",
+    "unjudged": "row",
+    "copy": "row",
+}
+
+
+def methods_text(facts: Facts, form: Format) -> str:
+    """Return the paragraph; it contains recorded facts only.
+
+    Raises:
+        InputError: The format does not exist.
+    """
+    if form not in FORMATS:
+        raise InputError(f"there is no format {form!r}; give one of {', '.join(FORMATS)}")
+    written = _latex if form == "latex" else _markdown
+    return " ".join(written(sentence) for sentence in _sentences(facts)) + "\n"
+
+
+def _sentences(facts: Facts) -> Iterator[str]:
+    versions = facts.versions
+    program = f"BeliefNest {versions['beliefnest']}" if "beliefnest" in versions else "BeliefNest"
+    details = [f"Python {versions['python']}"] if "python" in versions else []
+    details += [versions["platform"]] if "platform" in versions else []
+    on = f" ({', '.join(details)})" if details else " (version not recorded)"
+    yield f"The {facts.kind} was played with {program}{on} in the world {_code(facts.world)}."
+    yield f"It combines {facts.subjects} with {_listed(facts.factors)}."
+    seed = "" if facts.seed is None else f"; all random numbers derive from {facts.seed}"
+    yield f"This makes {counted(facts.cells, 'cell')} and {counted(facts.rows, 'row')}{seed}."
+    if facts.models:
+        yield f"{_listed([_model(each) for each in facts.models], first=True)}."
+    if facts.asking and any(is_of_provider(each.name) for each in facts.models):
+        yield f"Models were asked {facts.asking}."
+    if facts.templates:
+        told = [
+            f"{_code(name)} ({'built in' if text is None else f'SHA-256 {text}'})"
+            for name, text in facts.templates.items()
+        ]
+        yield f"Prompts were rendered with {_listed(told)}."
+    if facts.tokens or facts.cost or facts.unpriced:
+        cost = f"cost {facts.cost:.2f} US dollars"
+        if facts.unpriced:
+            cost += f", without {counted(facts.unpriced, 'row')} whose price is not known"
+        yield f"The answers used {facts.tokens:,} tokens and {cost}."
+    if facts.excluded:
+        told = [_exclusion(name, count) for name, count in facts.excluded.items()]
+        yield f"Excluded were {_listed(told)}."
+    else:
+        yield "Nothing was excluded."
+    yield (
+        f"{counted(facts.judged, 'row').capitalize()} of "
+        f"{counted(facts.variations, 'independent variation')} "
+        f"{'is' if facts.judged == 1 else 'are'} judged."
+    )
+    if facts.intervals:
+        yield f"The 95 % intervals of accuracies are by {_listed(facts.intervals)}."
+
+
+def _exclusion(name: str, count: int) -> str:
+    told = _EXCLUDED[name].format(counted(count, _NOUNS[name]))
+    if count == 1:
+        return told
+    for one, many in ((" makes ", " make "), (" has ", " have "), (" differs ", " differ ")):
+        told = told.replace(one, many)
+    return told
+
+
+def _model(model: ModelFacts) -> str:
+    if not is_of_provider(model.name):
+        return f"{_code(model.name)} is no language model of a provider"
+    if not model.answers:
+        return f"{_code(model.name)} gave no recorded answer"
+    given = f"{_code(model.name)} gave {counted(model.answers, 'recorded answer')}"
+    if model.dates is None:
+        return f"{given} (dates not recorded)"
+    first, last = model.dates
+    span = f"on {first}" if first == last else f"from {first} to {last}"
+    without = f", {model.undated} without a recorded date" if model.undated else ""
+    return f"{given} {span} (UTC){without}"
+
+
+_MARK = "\0"
+"""Mark around names, which no text of a study contains."""
+
+
+def _code(name: str) -> str:
+    return f"{_MARK}{name.replace(_MARK, '')}{_MARK}"
+
+
+def _several(noun: str, names: Sequence[object], mark: str = _MARK, plural: str = "") -> str:
+    told = [f"{mark}{name}{mark}" for name in names]
+    word = noun if len(names) == 1 else plural or f"{noun}s"
+    return f"{word} {_listed(told)}"
+
+
+def _listed(parts: Sequence[str], *, first: bool = False) -> str:
+    """Return parts as `a, b and c`; with `first`, as clauses separated by semicolons."""
+    if first or len(parts) < 2:
+        return "; ".join(parts)
+    return f"{', '.join(parts[:-1])} and {parts[-1]}"
+
+
+def _markdown(sentence: str) -> str:
+    return sentence.replace(_MARK, "`")
+
+
+_SPECIAL = {
+    "\\": r"\textbackslash{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    **{letter: f"\\{letter}" for letter in "&%$#_{}"},
+}
+
+
+def _latex(sentence: str) -> str:
+    parts = ["".join(_SPECIAL.get(c, c) for c in part) for part in sentence.split(_MARK)]
+    # Every second part stands between two marks.
+    return "".join(rf"\texttt{{{part}}}" if n % 2 else part for n, part in enumerate(parts))

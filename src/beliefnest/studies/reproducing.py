@@ -1,0 +1,258 @@
+"""Playing the cells of a recorded study again, from its folder alone and without any model."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from beliefnest.episodes.policies import policy_of_file
+from beliefnest.episodes.task import Task
+from beliefnest.episodes.tasks import builtin_tasks
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.llm.budget import RunLimits
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template, built_in_template
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.sources import read_document
+from beliefnest.studies.cells import Cell, CellKey, Keyed, planned_cell
+from beliefnest.studies.comparing import ERROR, Difference, differing_contents, differing_rows
+from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
+from beliefnest.studies.inputs import InputIndex, no_inputs
+from beliefnest.studies.jobs import OnStudyProgress, run_cells
+from beliefnest.studies.plainframe import csv_rows, read_csv_rows
+from beliefnest.studies.study_folder import StudyFolder
+from beliefnest.studies.study_record import StudyRecord
+from beliefnest.studies.terms import Terms
+
+__all__ = ["Reproduction", "reproduce_study"]
+
+
+@dataclass(frozen=True, slots=True)
+class Reproduction:
+    """Comparison of a recorded study, or run, with the same played again.
+
+    Attributes:
+        cells: Number of cells that were played again.
+        left_out: Number of cells that had no result, which are not played again.
+        rows: Number of recorded rows with a result.
+        differences: All differences; empty if everything is equal.
+    """
+
+    cells: int
+    left_out: int
+    rows: int
+    differences: tuple[Difference, ...]
+
+    @property
+    def is_equal(self) -> bool:
+        """Return True if there is no difference."""
+        return not self.differences
+
+
+def reproduce_study(
+    folder: Path, again: Path, jobs: int, on_progress: OnStudyProgress
+) -> Reproduction:
+    """Play all cells of a study again that have a result, and compare rows and contents.
+
+    Scenarios and templates are those in the folder's `inputs/`, and answers of models those in
+    `answers/`. No model is asked.
+
+    Args:
+        folder: Folder of the study.
+        again: Empty folder for the new results.
+        jobs: Number of cells to play in parallel.
+        on_progress: Function that receives the progress.
+
+    Raises:
+        InputError: The folder holds no study, or not its inputs, or other inputs than those that
+            its cells were played with.
+        BodyError: A worker process ended unexpectedly.
+    """
+    recorded = StudyRecord.read(folder)
+    plan = recorded.plan
+    found = {cell["name"]: recorded.folder.cell(cell["name"]) for cell in plan["cells"]}
+    ended = [
+        cell
+        for cell in plan["cells"]
+        if (content := found[cell["name"]]) is not None and content["error"] is None
+    ]
+    inputs = _Inputs.of(folder, plan)
+    cells = [inputs.cell(cell) for cell in ended]
+    place = StudyFolder.open(again)
+    place.write_plan({**plan, "cells": ended})
+    terms = Terms(
+        answers=(folder / "answers").absolute(),
+        ledger=place.ledger.absolute(),
+        runs=None,
+        limits=RunLimits(None, None),
+        environment={},
+        cache_mode="only",
+    )
+    run_cells(cells, place, terms, jobs, "loky", on_progress)
+    for planned, cell in zip(ended, cells, strict=True):
+        _restore(place, planned, cell.key.name, inputs.names)
+    differences = [
+        *_differing_table(recorded),
+        *_differing_cells(recorded, StudyRecord.read(again), ended),
+    ]
+    judged = sum(row["outcome"] != "error" for row in recorded.rows)
+    left_out = len(plan["cells"]) - len(ended)
+    return Reproduction(len(ended), left_out, judged, tuple(differences))
+
+
+def _restore(
+    place: StudyFolder, planned: Mapping[str, Any], played: str, names: Mapping[str, str]
+) -> None:
+    """Give a new result the name and key of the recorded one, and its names of files."""
+    content = place.cell(played)
+    assert content is not None
+    if played != planned["name"]:
+        (place.cells / f"{played}.json").unlink()
+    renamed = _renamed(content, names)
+    place.write_cell(planned["name"], {**renamed, "key": planned["key"], "seed": planned["seed"]})
+
+
+def _renamed(value: Any, names: Mapping[str, str]) -> Any:
+    """Return plain values with each name replaced by another, wherever it stands in a text."""
+    if isinstance(value, str):
+        for new, old in names.items():
+            value = value.replace(new, old)
+        return value
+    if isinstance(value, list):
+        return [_renamed(each, names) for each in value]
+    if isinstance(value, dict):
+        return {key: _renamed(each, names) for key, each in value.items()}
+    return value
+
+
+def _differing_table(recorded: StudyRecord) -> Iterator[Difference]:
+    """Yield differences of `rows.csv` from the cells beside it."""
+    file = recorded.folder.path / "rows.csv"
+    if file.is_file():
+        # The first row is line 2, below the header.
+        yield from differing_rows(
+            read_csv_rows(file), csv_rows(recorded.typed()), lambda number: f"rows.csv:{number + 1}"
+        )
+
+
+def _differing_cells(
+    recorded: StudyRecord, again: StudyRecord, ended: Sequence[Mapping[str, Any]]
+) -> Iterator[Difference]:
+    """Yield differences of each cell: of its rows, or, if these are equal, of its content."""
+    rows: dict[str, tuple[list[dict[str, Any]], list[dict[str, Any]]]]
+    rows = {cell["name"]: ([], []) for cell in ended}
+    for side, result in enumerate((recorded, again)):
+        for row in result.rows:
+            if row["cell"] in rows:
+                rows[row["cell"]][side].append({**row, "run": ""})
+    for name, (before, after) in rows.items():
+        where = f"cells/{name}.json"
+        failed = again.folder.cell(name)
+        if failed is not None and failed["error"] is not None:
+            yield Difference(where, ERROR, None, failed["error"])
+            continue
+        found = list(differing_rows(before, after, _probe_in(where)))
+        yield from found or differing_contents(recorded.folder.cell(name), failed, where, ("run",))
+
+
+def _probe_in(file: str) -> Callable[[int], str]:
+    return lambda number: f"{file}, probe {number}"
+
+
+@dataclass(frozen=True)
+class _Inputs:
+    """Inputs in the folder of a study.
+
+    Attributes:
+        folder: Folder of the study.
+        index: Names and files.
+        documents: Documents of scenarios and tasks, by name.
+        names: Names with files of this folder in them, and the recorded names.
+    """
+
+    folder: Path
+    index: InputIndex
+    documents: Mapping[str, Document]
+    names: Mapping[str, str]
+
+    @classmethod
+    def of(cls, folder: Path, plan: Mapping[str, Any]) -> "_Inputs":
+        """Return the inputs of a plan; raise InputError if the folder does not have them."""
+        if "inputs" not in plan:
+            raise no_inputs(folder)
+        try:
+            index = msgspec.convert(plan["inputs"], InputIndex)
+        except msgspec.ValidationError as error:
+            raise InputError(f"{folder / 'study.json'} is damaged: {error}") from None
+        documents = {
+            name: _document(folder, file)
+            for name, file in {**index.scenarios, **index.tasks}.items()
+        }
+        root = folder.absolute()
+        moved = {
+            **{
+                policy_of_file(name, root / file): name
+                for name, file in index.policies.items()
+                if policy_of_file(name, Path("x")) != name
+            },
+            **{f"{name.partition(':')[0]}:{root / f}": name for name, f in index.models.items()},
+        }
+        return cls(folder, index, documents, moved)
+
+    def cell(self, planned: Mapping[str, Any]) -> Keyed:
+        """Return a cell to play, from its entry in the plan.
+
+        Raises:
+            InputError: The inputs are not those that the cell was played with.
+        """
+        key = dict(planned["key"])
+        try:
+            made = self._episode(key) if "task" in key else self._probes(key)
+        except (BeliefNestError, KeyError, TypeError) as error:
+            raise InputError(
+                f"{self.folder}: the cell {planned['name']} cannot be made from the inputs: {error}"
+            ) from None
+        return made
+
+    def _probes(self, key: dict[str, Any]) -> Cell:
+        recorded = CellKey(**key)
+        cell = planned_cell(recorded, self.documents[recorded.scenario], self._template(recorded))
+        if cell.key.content != recorded.content:
+            raise InputError(
+                f"{self.index.scenarios[recorded.scenario]}, or a template, has changed since the "
+                "cell was played"
+            )
+        return replace(cell, key=replace(recorded, model=self._here(recorded.model)))
+
+    def _template(self, key: CellKey) -> Template | None:
+        if not key.template:
+            return None
+        if key.template in BUILT_IN_TEMPLATES:
+            return built_in_template(key.template)
+        file = self.folder / self.index.templates[key.template]
+        return Template(key.template, file.read_text(encoding="utf-8"))
+
+    def _episode(self, key: dict[str, Any]) -> EpisodeCell:
+        recorded = EpisodeKey(**key)
+        source = recorded.task
+        if recorded.task in self.index.tasks:
+            source = str(self.folder / self.index.tasks[recorded.task])
+        document = None if source in builtin_tasks() else Task.scenario_document(source)
+        task = task_of_cell(recorded, source, document)
+        policies = {agent: self._here(name) for agent, name in recorded.policies.items()}
+        return EpisodeCell(replace(recorded, policies=policies), task, draws=True)
+
+    def _here(self, name: str) -> str:
+        """Return the name of a policy or model with its file in this folder."""
+        for new, old in self.names.items():
+            if name == old or name.startswith(f"model:{old}:"):
+                return name.replace(old, new)
+        return name
+
+
+def _document(folder: Path, file: str) -> Document:
+    try:
+        return read_document(str(folder / file))
+    except BeliefNestError as error:
+        raise InputError(f"an input of the study cannot be read: {error}") from None

@@ -1,0 +1,99 @@
+"""Results in the folder of `beliefnest run`, in the form of a study's rows."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.files import read_regular
+from beliefnest.llm.stored_exchange import Exchange, decode_exchange
+from beliefnest.scenarios.record_forms import read_json
+from beliefnest.studies.plainframe import Typed
+from beliefnest.studies.rows import PROBES
+
+__all__ = ["RunResult"]
+
+_REPORT = "run.json"
+_OTHER = "name another folder"
+
+
+class _ReportForm(msgspec.Struct):
+    scenario: str
+    status: str
+    settings: dict[str, Any]
+    runs: list[dict[str, Any]]
+    failures: list[dict[str, Any]] = []
+    versions: dict[str, str] = {}
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """Results in a run folder.
+
+    Attributes:
+        folder: The run folder.
+        report: Content of `run.json`.
+    """
+
+    folder: Path
+    report: Mapping[str, Any]
+
+    @classmethod
+    def read(cls, folder: Path) -> "RunResult":
+        """Return the results in a run folder; raise InputError if it is damaged."""
+        file = folder / _REPORT
+        report = read_json(file, _OTHER)
+        try:
+            msgspec.convert(report, _ReportForm)
+        except msgspec.ValidationError as error:
+            raise InputError(f"{file} is damaged: {error}; {_OTHER}") from None
+        return cls(folder, report)
+
+    @cached_property
+    def rows(self) -> list[dict[str, Any]]:
+        """Return a row for each probe of each condition, with the columns of a study."""
+        rows: list[dict[str, Any]] = []
+        for number, run in enumerate(self.report["runs"], 1):
+            cell = self._cell(f"run-{number}", run)
+            rows += PROBES.rows_of(cell, {"error": None, **run, "run": ""}, ())
+        for number, failure in enumerate(self.report.get("failures", []), 1):
+            cell = self._cell(f"failure-{number}", failure)
+            rows += PROBES.rows_of(cell, {"error": failure["error"]}, ())
+        return rows
+
+    def _cell(self, name: str, run: Mapping[str, Any]) -> dict[str, Any]:
+        key = {
+            "scenario": self.report["scenario"],
+            "condition": run["condition"],
+            "variation": {},
+            "model": run["model"],
+            "template": "",
+            "repeat": 1 + run["seed"] - self.report["settings"]["seed"],
+        }
+        return {"name": name, "seed": run["seed"], "key": key, "probes": []}
+
+    def typed(self) -> dict[str, Typed]:
+        """Return the columns of `rows`."""
+        kinds = PROBES.kinds(())
+        return {name: Typed([row[name] for row in self.rows], kind) for name, kind in kinds.items()}
+
+    def exchanges(self) -> list[Exchange]:
+        """Return all requests to models with their answers, in order.
+
+        Raises:
+            InputError: The file is damaged.
+        """
+        file = self.folder / "model.jsonl"
+        if not file.is_file():
+            return []
+        found = []
+        for number, line in enumerate(read_regular(file).splitlines(), 1):
+            try:
+                found.append(decode_exchange(line))
+            except msgspec.MsgspecError as error:
+                raise InputError(f"{file}:{number} is damaged: {error}; {_OTHER}") from None
+        return found
