@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Beam
-    from beliefnest.perception.shadows import Shadows
 
 __all__ = [
     "HEAR_ALL",
@@ -30,6 +29,7 @@ __all__ = [
     "Senses",
     "Space",
     "Span",
+    "Weighing",
 ]
 
 Ints = npt.NDArray[np.int32]
@@ -61,7 +61,6 @@ class Senses(NamedTuple):
         hearing: One of `HEAR_ALL`, `HEAR_SEEN`, `HEAR_NEAR`.
         radius: Greatest distance of hearing, blocks, for `HEAR_NEAR`.
         negative: True if a pose becomes unknown when its place is seen empty.
-        weighs: True if hearers weigh claims, so that what they watch is counted.
     """
 
     far: float
@@ -69,7 +68,6 @@ class Senses(NamedTuple):
     hearing: int
     radius: float
     negative: bool
-    weighs: bool
 
 
 class Space(NamedTuple):
@@ -84,7 +82,7 @@ class Space(NamedTuple):
         holds: bool, True for each block number of a container; the last entry is for unknown.
         origin: float64 (3,), added to scenario coordinates to get the grid's.
         senses: Limits of what agents can perceive.
-        beam, shadows: Work arrays from `beams.beam_room` and `shadows.no_shadows`.
+        beam: Scratch memory from `beams.beam_room`.
     """
 
     sizes: tuple[int, int, int]
@@ -96,7 +94,6 @@ class Space(NamedTuple):
     origin: Floats
     senses: Senses
     beam: "Beam"
-    shadows: "Shadows"
 
 
 class Poses(NamedTuple):
@@ -158,15 +155,6 @@ class Nodes(NamedTuple):
             are; -1 unknown.
         basis_current: (N, T), whether the block is backed by a perception in this tick.
         basis_source: (N, T), its source, a code of `BeliefContext.basis_code`.
-        counted: (N,), tick up to which the next five arrays count. These have length 0 along A if
-            hearers weigh no claims (semantics, section 8).
-        missed: (N, A), number of ticks at which the owner did not perceive the agent.
-        met: (N, A), id of the pose in which the owner last perceived the agent; -1: it never
-            did, or it has seen since that the agent is gone.
-        meets: (N, A), whether the owner sees the agent in the parent.
-        met_missed: (N, A, A), copy of `missed` from the tick at which the agent was last seen.
-        watch_missed: (N, T, A), copy of `missed` from the tick at which the tracked cell was last
-            watched; -1: it never was.
     """
 
     parent: Ints
@@ -191,6 +179,22 @@ class Nodes(NamedTuple):
     basis_at: Ints
     basis_source: npt.NDArray[np.uint8]
     basis_current: Flags
+
+
+class Weighing(NamedTuple):
+    """Arrays by which hearers weigh claims (semantics, section 8), for N nodes as in `Nodes`.
+
+    Attributes:
+        counted: (N,), tick up to which the other arrays count.
+        missed: (N, A), number of ticks at which the owner did not perceive the agent.
+        met: (N, A), id of the pose in which the owner last perceived the agent; -1: it never
+            did, or it has seen since that the agent is gone.
+        meets: (N, A), whether the owner sees the agent in the parent.
+        met_missed: (N, A, A), copy of `missed` from the tick at which the agent was last seen.
+        watch_missed: (N, T, A), copy of `missed` from the tick at which the tracked cell was last
+            watched; -1: it never was.
+    """
+
     counted: Ints
     missed: Ints
     met: Ints

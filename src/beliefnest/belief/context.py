@@ -96,7 +96,7 @@ class BeliefContext:
     def space(self) -> Space:
         """The box and its shapes for the kernel."""
         # Imported here because compiled code loads slowly and listing scenarios does without it.
-        from beliefnest.perception import beams, shadows
+        from beliefnest.perception import beams
 
         sight, registry = self.sight, self.registry
         codes = np.empty(_NUMBERS + 1, dtype=np.uint16)
@@ -114,7 +114,6 @@ class BeliefContext:
             1.0 - np.array(self.box.low, dtype=np.float64),
             self._senses,
             beams.beam_room(),
-            shadows.no_shadows(),
         )
 
     @cached_property
@@ -129,8 +128,12 @@ class BeliefContext:
             hearing,
             options.hearing.blocks if isinstance(options.hearing, Radius) else 0.0,
             options.negative_evidence,
-            options.testimony == "informed",
         )
+
+    @property
+    def weighs(self) -> bool:
+        """True if hearers weigh claims (semantics, section 8), so that what they watch counts."""
+        return self.options.testimony == "informed"
 
     def heard_from(self, tick: int, speaker: int) -> Basis:
         """Return the basis of a claim of a speaker; `NOBODY`: a sign of unknown writer."""

@@ -10,12 +10,12 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from threading import Lock
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import Changes, Facts, Nodes, Poses, Space, Span
+from beliefnest.belief.arrays import Changes, Facts, Nodes, Poses, Space, Span, Weighing
 
 __all__ = ["FirstPerceptions"]
 
@@ -53,26 +53,29 @@ class FirstPerceptions:
         poses: Poses,
         facts: Facts,
         nodes: Nodes,
+        weighing: Weighing | None,
         changes: Changes,
         below: npt.NDArray[np.bool_],
     ) -> None:
         """Let the nodes that `below` marks perceive, as `kernel.fold` of an entry without events.
 
-        Arrays of `nodes` and rows of `changes` are written in place.
+        Arrays of `nodes` and `weighing` and rows of `changes` are written in place.
         """
         from beliefnest.belief import kernel  # loads compiled code, which listing does not need
 
-        if sum(each.nbytes for each in nodes) > _LARGEST:
-            kernel.fold(space, poses, facts, nodes, changes, Span(0, 1, False), below)
+        arrays: Sequence[Array] = (*nodes, *(weighing or ()))
+        span = Span(0, 1, False)
+        if sum(each.nbytes for each in arrays) > _LARGEST:
+            kernel.fold(space, poses, facts, nodes, weighing, changes, span, below)
             return
-        key = _digest(space, (*poses, facts.tick, *nodes, below))
+        key = _digest(space, (*poses, facts.tick, *arrays, below))
         seen = self._seen.get(key)
         if seen is None:
-            kernel.fold(space, poses, facts, nodes, changes, Span(0, 1, False), below)
+            kernel.fold(space, poses, facts, nodes, weighing, changes, span, below)
             rows = changes.rows[: changes.used[0]].copy()
-            self._keep(key, _Seen([each.copy() for each in nodes], rows))
+            self._keep(key, _Seen([each.copy() for each in arrays], rows))
             return
-        for row, kept in zip(cast("Sequence[Array]", nodes), seen.nodes, strict=True):
+        for row, kept in zip(arrays, seen.nodes, strict=True):
             np.copyto(row, kept)
         changes.used[0] = len(seen.rows)
         changes.rows[: len(seen.rows)] = seen.rows

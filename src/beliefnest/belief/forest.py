@@ -408,12 +408,12 @@ class Forest:
         context, columns, facts = self.context, self.columns, self.columns.facts()
         first = columns.events_until(start)
         changes = self._changes(columns.events_until(stop) - first)
-        poses, nodes = self.poses.arrays(), self.table.nodes()
+        poses, nodes, weighing = self.poses.arrays(), self.table.nodes(), self.table.weighing()
         everywhere = np.ones(self.table.count, dtype=np.bool_)
         span = Span(start - columns.first, stop - columns.first, True)
         self.holdings.end_acts(everywhere)
         reached = columns.first + kernel.fold(
-            context.space, poses, facts, nodes, changes, span, everywhere
+            context.space, poses, facts, nodes, weighing, changes, span, everywhere
         )
         count = columns.events_until(reached) - first
         self.perceived_events.note(first, changes.perceived[:count])
@@ -452,7 +452,8 @@ class Forest:
         for level in self.table.levels():
             changes = self._changes(0)._replace(perceived=perceived)
             poses, nodes, facts = self.poses.arrays(), self.table.nodes(), columns.facts()
-            kernel.fold(space, poses, facts, nodes, changes, Span(at, at + 1, True), level)
+            weighing, span = self.table.weighing(), Span(at, at + 1, True)
+            kernel.fold(space, poses, facts, nodes, weighing, changes, span, level)
             self.holdings.end_acts(level)
             if level[0]:
                 self.holdings.apply_frame(columns.frames.get(entry))
@@ -488,13 +489,15 @@ class Forest:
         parts = (level & below for level in self.table.levels()) if by_level else (below,)
         for part in parts:
             poses, nodes, changes = self.poses.arrays(), self.table.nodes(), self._changes(0)
+            weighing = self.table.weighing()
             if context.signs or by_level:
                 # A cached result of another nest does not fit: numbers of signs and unique items
                 # differ between nests.
-                kernel.fold(context.space, poses, facts, nodes, changes, Span(0, 1, False), part)
+                span = Span(0, 1, False)
+                kernel.fold(context.space, poses, facts, nodes, weighing, changes, span, part)
             else:
                 context.first_perceptions.perceive(
-                    context.space, poses, facts, nodes, changes, part
+                    context.space, poses, facts, nodes, weighing, changes, part
                 )
             rows = _by_entry(changes, 0).get(0, {})
             self.holdings.follow(self.tick, self.tick, rows, {}, part)

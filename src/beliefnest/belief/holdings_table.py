@@ -164,24 +164,23 @@ class HoldingsTable:
 
     def perceives(self, node: int, cell: int, item: str) -> bool:
         """Return True if the owner perceives in this entry whether an item is in a container."""
-        if (node, cell) in self._looked_into or (node, cell, item) in self._seen_moved:
-            return True
         content = self._holdings[node].containers.get(cell)
-        if content is None or not content.current:
-            return False
-        return content.complete or item in content.items
+        if content is not None and content.current and (content.complete or item in content.items):
+            return True
+        return (node, cell) in self._looked_into or (node, cell, item) in self._seen_moved
 
     def perceives_elsewhere(self, node: int, cell: int, item: str) -> bool:
         """Return True if the owner perceives in this entry that an item is in another place."""
-        held, here = self._holdings[node].containers, Whereabouts("container", cell)
-        if any(place != here for place in self._found_now.get((node, item), ())):
-            return True
-        if item in self._context.unique and item in self._own(node):
-            return True
-        return any(
-            at != cell and item in content.items and self.perceives(node, at, item)
-            for at, content in held.items()
-        )
+        if item in self._context.unique:
+            here = Whereabouts("container", cell)
+            if any(place != here for place in self._found_now.get((node, item), ())):
+                return True
+            if item in self._own(node):
+                return True
+        for at, content in self._holdings[node].containers.items():
+            if item in content.items and at != cell and self.perceives(node, at, item):
+                return True
+        return False
 
     def end_acts(self, which: npt.NDArray[np.bool_]) -> None:
         """End the currency of contents that acts showed in the last entry.

@@ -38,13 +38,14 @@ from beliefnest.belief.arrays import (
     Senses,
     Space,
     Span,
+    Weighing,
 )
 from beliefnest.belief.seeing import eye_of, grid_cell, sees_agent, sees_cell, whole
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.eyes import Eye, set_code
 from beliefnest.world.event_kinds import Sense
 
-__all__ = ["fold", "put", "put_all", "refresh_pending"]
+__all__ = ["fold", "put", "put_all"]
 
 _WORD = 64
 
@@ -153,14 +154,6 @@ def put_all(
         put(space, nodes, whole(which[number]), whole(cell), whole(states[number]))
 
 
-@compiled
-def refresh_pending(nodes: Nodes, node: int) -> None:
-    """Compute all pending bits of a node from its blocks and those of its parent."""
-    nodes.pending[node, :] = 0
-    for cell in range(nodes.blocks.shape[1]):
-        _mark(nodes, node, cell)
-
-
 @merged
 def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: int) -> None:
     """Apply an entry to node 0. Everything that node 0 knows is current (section 2)."""
@@ -175,7 +168,7 @@ def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, ent
             nodes.seen_at[0, who] = facts.tick[entry]
     for row in range(facts.block_at[entry], facts.block_at[entry + 1]):
         cell, state = whole(facts.block_cell[row]), whole(facts.block_state[row])
-        _put_noted(space, nodes, changes, entry, facts.tick[entry], whole(0), cell, state)
+        _put_noted(space, nodes, changes, entry, whole(facts.tick[entry]), whole(0), cell, state)
     for spot in range(len(nodes.tracked)):
         known = nodes.blocks[0, nodes.tracked[spot]] != UNKNOWN
         nodes.basis_current[0, spot] = known
@@ -195,7 +188,7 @@ def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: boo
     for spot in range(len(nodes.tracked)):
         if moved:
             cell = whole(nodes.tracked[spot])
-            nodes.watched[node, spot] = sees_cell(space, nodes, parent, eye, cell)
+            nodes.watched[node, spot] = sees_cell(space, nodes.codes[parent], eye, cell)
         nodes.basis_current[node, spot] = False
         if nodes.watched[node, spot] and nodes.blocks[parent, nodes.tracked[spot]] != UNKNOWN:
             nodes.basis_at[node, spot] = nodes.basis_at[parent, spot]
@@ -219,7 +212,7 @@ def _observe_agents(
         seen = who == me
         if not seen and pose != UNKNOWN:
             if moved or nodes.tried[node, who] != pose:
-                nodes.sees[node, who] = sees_agent(space, poses, nodes, parent, eye, pose)
+                nodes.sees[node, who] = sees_agent(space, poses, nodes.codes[parent], eye, pose)
                 nodes.tried[node, who] = pose
             seen = nodes.sees[node, who]
         if seen:
@@ -234,7 +227,7 @@ def _observe_agents(
         if (
             space.senses.negative
             and believed != UNKNOWN
-            and sees_agent(space, poses, nodes, parent, eye, believed)
+            and sees_agent(space, poses, nodes.codes[parent], eye, believed)
         ):
             nodes.pose[node, who] = UNKNOWN
 
@@ -261,7 +254,7 @@ def _observe_blocks(
         for place in range(_WORD):
             if (bits >> np.uint64(place)) & np.uint64(1):
                 cell = word * _WORD + place
-                if sees_cell(space, nodes, parent, eye, cell):
+                if sees_cell(space, nodes.codes[parent], eye, cell):
                     state = whole(nodes.blocks[parent, cell])
                     _put_noted(space, nodes, changes, entry, tick, node, cell, state)
     nodes.fresh[node] = False
@@ -331,7 +324,7 @@ def _perceive_events(
             )
         elif sense == Sense.PLACE:
             cell, eye = whole(facts.event_cell[event]), eye_of(space, poses, whole(nodes.eye[node]))
-            got = sees_cell(space, nodes, parent, eye, cell)
+            got = sees_cell(space, nodes.codes[parent], eye, cell)
         else:
             got = actor >= 0 and nodes.pose[parent, actor] != UNKNOWN and nodes.sees[node, actor]
         changes.perceived[event - first_event, node] = got
@@ -356,7 +349,6 @@ def _update_absent(
     nodes.basis_current[node, :] = False
     nodes.eye[node] = UNKNOWN
     nodes.watched[node, :] = False
-    nodes.meets[node, :] = False
     me = whole(nodes.agent[node])
     first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
@@ -374,30 +366,32 @@ def _copy(row: npt.NDArray[np.int32], to: npt.NDArray[np.int32]) -> None:
 
 
 @inner
-def _count_to(nodes: Nodes, node: int, tick: int) -> None:
+def _count_to(nodes: Nodes, weighing: Weighing, node: int, tick: int) -> None:
     """Count the ticks up to `tick` for condition 1b of section 8.1, with the present flags.
 
     `missed` grows for every agent that the owner did not perceive. The copies of `missed` for
     places and agents that the owner watches follow it. The difference between `missed` and such a
     copy is therefore the number of ticks without the agent since the owner last watched.
     """
-    if nodes.counted[node] < 0:
-        nodes.counted[node] = tick
-    passed = tick - nodes.counted[node]
-    nodes.counted[node] = tick
-    for who in range(nodes.missed.shape[1]):
+    if weighing.counted[node] < 0:
+        weighing.counted[node] = tick
+    passed = tick - weighing.counted[node]
+    weighing.counted[node] = tick
+    for who in range(weighing.missed.shape[1]):
         if not nodes.current[node, who]:
-            nodes.missed[node, who] += passed
+            weighing.missed[node, who] += passed
     for spot in range(len(nodes.tracked)):
         if nodes.watched[node, spot]:
-            _copy(nodes.missed[node], nodes.watch_missed[node, spot])
-    for who in range(nodes.missed.shape[1]):
-        if nodes.meets[node, who]:
-            _copy(nodes.missed[node], nodes.met_missed[node, who])
+            _copy(weighing.missed[node], weighing.watch_missed[node, spot])
+    for who in range(weighing.missed.shape[1]):
+        if weighing.meets[node, who]:
+            _copy(weighing.missed[node], weighing.met_missed[node, who])
 
 
 @inner
-def _observe_meetings(space: Space, poses: Poses, nodes: Nodes, node: int, moved: bool) -> None:
+def _observe_meetings(
+    space: Space, poses: Poses, nodes: Nodes, weighing: Weighing, node: int, moved: bool
+) -> None:
     """Note the pose in which the present owner of a node perceives each agent.
 
     Set `met` to unknown where the owner sees the last such place without the agent. The test is
@@ -405,26 +399,27 @@ def _observe_meetings(space: Space, poses: Poses, nodes: Nodes, node: int, moved
     """
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     eye = eye_of(space, poses, whole(nodes.eye[node]))
-    for who in range(nodes.missed.shape[1]):
+    for who in range(weighing.missed.shape[1]):
         pose = whole(nodes.pose[parent, who])
         if who == me or (pose != UNKNOWN and nodes.sees[node, who]):
-            nodes.met[node, who] = pose
-            nodes.meets[node, who] = True
+            weighing.met[node, who] = pose
+            weighing.meets[node, who] = True
             continue
-        met = whole(nodes.met[node, who])
+        met = whole(weighing.met[node, who])
         if (
             met != UNKNOWN
-            and (moved or nodes.meets[node, who])
-            and sees_agent(space, poses, nodes, parent, eye, met)
+            and (moved or weighing.meets[node, who])
+            and sees_agent(space, poses, nodes.codes[parent], eye, met)
         ):
-            nodes.met[node, who] = UNKNOWN
-        nodes.meets[node, who] = False
+            weighing.met[node, who] = UNKNOWN
+        weighing.meets[node, who] = False
 
 
 @inner
 def _note_watched_places(
     facts: Facts,
     nodes: Nodes,
+    weighing: Weighing,
     changes: Changes,
     span: Span,
     entry: int,
@@ -442,7 +437,7 @@ def _note_watched_places(
         if changes.perceived[event - first_event, node]:
             for spot in range(len(nodes.tracked)):
                 if nodes.tracked[spot] == cell:
-                    _copy(nodes.missed[node], nodes.watch_missed[node, spot])
+                    _copy(weighing.missed[node], weighing.watch_missed[node, spot])
 
 
 @merged
@@ -451,6 +446,7 @@ def _update_node(
     poses: Poses,
     facts: Facts,
     nodes: Nodes,
+    weighing: Weighing | None,
     changes: Changes,
     span: Span,
     entry: int,
@@ -465,13 +461,14 @@ def _update_node(
     # An edit lies between two ticks: what was current before it was so at this tick too.
     last = tick - 1 if span.happens else tick
     _settle(nodes, node, last)
-    if space.senses.weighs:
-        _count_to(nodes, node, last)
+    if weighing is not None:
+        _count_to(nodes, weighing, node, last)
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
     if not nodes.current[parent, me]:
         _update_absent(space.senses, facts, nodes, changes, span, entry, node)
-        if space.senses.weighs:
-            _count_to(nodes, node, tick)
+        if weighing is not None:
+            weighing.meets[node, :] = False
+            _count_to(nodes, weighing, node, tick)
         return
     pose = whole(nodes.pose[parent, me])
     eye = eye_of(space, poses, pose)
@@ -483,10 +480,10 @@ def _update_node(
         _observe_blocks(space, nodes, changes, entry, tick, node, eye)
     _perceive_events(space, poses, facts, nodes, changes, span, entry, node)
     _propagate_bases(space, nodes, node, eye, moved)
-    if space.senses.weighs:
-        _observe_meetings(space, poses, nodes, node, moved)
-        _count_to(nodes, node, tick)
-        _note_watched_places(facts, nodes, changes, span, entry, node)
+    if weighing is not None:
+        _observe_meetings(space, poses, nodes, weighing, node, moved)
+        _count_to(nodes, weighing, node, tick)
+        _note_watched_places(facts, nodes, weighing, changes, span, entry, node)
 
 
 @compiled
@@ -495,6 +492,7 @@ def fold(
     poses: Poses,
     facts: Facts,
     nodes: Nodes,
+    weighing: Weighing | None,
     changes: Changes,
     span: Span,
     which: npt.NDArray[np.bool_],
@@ -506,6 +504,8 @@ def fold(
         poses: Poses that the facts and the nodes refer to.
         facts: Entries of the stretch.
         nodes: States of all nodes, changed in place.
+        weighing: Arrays by which hearers weigh claims, changed in place; None if they weigh none.
+            The kernel is compiled for either, without these rules if they are not needed.
         changes: Receives who perceived which event, and changes at containers.
         span: Entries to fold.
         which: bool (N,), nodes to update. The parent of a marked node is marked too or is up to
@@ -528,5 +528,5 @@ def fold(
                 changes.perceived[event - first_event, 0] = True
         for node in range(1, len(nodes.parent)):
             if which[node]:
-                _update_node(space, poses, facts, nodes, changes, span, entry, node)
+                _update_node(space, poses, facts, nodes, weighing, changes, span, entry, node)
     return span.stop

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import UNKNOWN, Nodes
+from beliefnest.belief.arrays import UNKNOWN, Nodes, Weighing
 from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.grounds import Basis
 from beliefnest.belief.poses import PoseDetails, PoseTable
@@ -47,7 +47,6 @@ class SavedNode:
     weighing: dict[str, bytes] = field(default_factory=dict)
 
 
-_WEIGHING = ("counted", "missed", "met", "meets", "met_missed", "watched", "watch_missed")
 _SAVED = (
     *("blocks", "pose", "equipment", "seen_at", "current"),
     *("basis_at", "basis_source", "basis_current"),
@@ -72,13 +71,11 @@ class NodeTable:
         self.edited_cells: set[tuple[int, int]] = set()
         self.index: dict[BeliefPath, int] = {}
         self.count = 0
-        self._linked = self._marked = 1
+        self._linked = 1
         known = set(context.tracked)
         others = [cell for cell in extra if cell not in known]
         tracked = self._tracked = np.array([*context.tracked, *others], dtype=np.int32)
         agents, cells, spots = len(context.agents), context.cells, len(tracked)
-        # Arrays for weighing claims have no columns where hearers weigh none.
-        weighed = agents if context.space.senses.weighs else 0
         # Not initialized: `_grow` fills the row of each node that is added.
         self._rows: dict[str, Row] = {
             "parent": np.empty(2, np.int32),
@@ -100,32 +97,36 @@ class NodeTable:
             "basis_at": np.empty((2, spots), np.int32),
             "basis_source": np.empty((2, spots), np.uint8),
             "basis_current": np.empty((2, spots), np.bool_),
-            "counted": np.empty(2, np.int32),
-            "missed": np.empty((2, weighed), np.int32),
-            "met": np.empty((2, weighed), np.int32),
-            "meets": np.empty((2, weighed), np.bool_),
-            "met_missed": np.empty((2, weighed, weighed), np.int32),
-            "watch_missed": np.empty((2, spots, weighed), np.int32),
         }
+        if context.weighs:
+            self._rows |= {
+                "counted": np.empty(2, np.int32),
+                "missed": np.empty((2, agents), np.int32),
+                "met": np.empty((2, agents), np.int32),
+                "meets": np.empty((2, agents), np.bool_),
+                "met_missed": np.empty((2, agents, agents), np.int32),
+                "watch_missed": np.empty((2, spots, agents), np.int32),
+            }
         self._child_at = np.zeros(1, dtype=np.int32)
         self._child = np.zeros(0, dtype=np.int32)
         self._nodes: Nodes | None = None
+        self._weighing: Weighing | None = None
         self._coded: tuple[npt.NDArray[Any], Row] | None = None
 
     def nodes(self) -> Nodes:
-        """Return the arrays for the kernel, with the pending bits of all linked nodes."""
+        """Return the arrays for the kernel."""
         if self._nodes is None:
             rows = {name: row[: self.count] for name, row in self._rows.items()}
-            self._nodes = Nodes(
-                child_at=self._child_at, child=self._child, tracked=self._tracked, **rows
-            )
-        if self._marked < self._linked:
-            from beliefnest.belief import kernel
-
-            for node in range(self._marked, self._linked):
-                kernel.refresh_pending(self._nodes, node)
-            self._marked = self._linked
+            rows |= {"child_at": self._child_at, "child": self._child, "tracked": self._tracked}
+            self._nodes = Nodes(*(rows[name] for name in Nodes._fields))
+            if self.context.weighs:
+                self._weighing = Weighing(*(rows[name] for name in Weighing._fields))
         return self._nodes
+
+    def weighing(self) -> Weighing | None:
+        """Return the arrays for weighing claims; None if hearers weigh none."""
+        self.nodes()
+        return self._weighing
 
     def add(self, path: BeliefPath, parent: int) -> int:
         """Add a node that knows nothing and return its number.
@@ -141,12 +142,13 @@ class NodeTable:
 
     def enter(self, poses: PoseTable) -> None:
         """Move to another pose table, and copy the poses in use to it."""
-        numbers = [self._rows[name][: self.count].ravel() for name in _POSE_IDS]
+        names = [name for name in _POSE_IDS if name in self._rows]
+        numbers = [self._rows[name][: self.count].ravel() for name in names]
         used = np.unique(np.concatenate(numbers))
         used = used[used >= 0]
         table = np.full(len(self.poses) + 1, UNKNOWN, dtype=np.int32)
         table[used] = poses.take(self.poses, used)
-        for name in _POSE_IDS:
+        for name in names:
             # -1, which is no pose, indexes the last place of the table, where -1 stands.
             self._rows[name][: self.count] = table[self._rows[name][: self.count]]
         self.poses = poses
@@ -176,7 +178,7 @@ class NodeTable:
                 row[node] = other._rows[name][source]
         for name in ("eye", "seen_geometry", "tried"):
             self._rows[name][node] = UNKNOWN
-        for name in ("pose", "equipment", "met"):
+        for name in {"pose", "equipment", "met"} & self._rows.keys():
             row = self._rows[name][node]
             row[row >= 0] = self.poses.take(other.poses, row[row >= 0], recorded=recorded)
         self._rows["geometry"][node] = 0
@@ -204,7 +206,17 @@ class NodeTable:
             np.int32
         )
         self._nodes = None
+        for node in range(self._linked, self.count):
+            self._set_pending(node)
         self._linked = max(self.count, 1)
+
+    def _set_pending(self, node: int) -> None:
+        """Compute all pending bits of a node from its blocks and those of its parent."""
+        own, held = self._rows["blocks"][node], self._rows["blocks"][self.parent(node)]
+        pending = np.zeros(self._rows["pending"].shape[1] * 64, dtype=np.bool_)
+        pending[: len(own)] = (held != UNKNOWN) & (held != own)
+        self._rows["pending"][node] = np.packbits(pending, bitorder="little").view("<u8")
+        self._rows["fresh"][node] |= pending.any()
 
     def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
         """Set all blocks of a node, and its geometry. Do not change the array afterwards."""
@@ -309,7 +321,7 @@ class NodeTable:
             return
         self._tracked = np.array([*self._tracked.tolist(), *new], dtype=np.int32)
         size = len(self._rows["parent"])
-        for name in _BY_SPOT:
+        for name in self._rows.keys() & _BY_SPOT:
             row = self._rows[name]
             wide = np.full((size, len(new), *row.shape[2:]), _filler(row), dtype=row.dtype)
             self._rows[name] = np.concatenate([row, wide], axis=1)
@@ -321,7 +333,7 @@ class NodeTable:
         """Return the state of a node as plain data, without the kernel's caches."""
         row = {name: self._rows[name][node].tobytes() for name in _SAVED}
         edited = sorted(cell for other, cell in self.edited_cells if other == node)
-        names = _WEIGHING if self.context.space.senses.weighs else ()
+        names = (*Weighing._fields, "watched") if self.context.weighs else ()
         weighing = {name: self._rows[name][node].tobytes() for name in names}
         return SavedNode(self.path(node), **row, edited_cells=edited, weighing=weighing)
 
@@ -421,9 +433,8 @@ class NodeTable:
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
         wanted = np.array([*cells], dtype=np.int64)
-        seen = seeing.sees_cells(
-            self.context.space, self.poses.arrays(), self.nodes(), parent, eye, wanted
-        )
+        codes = self._rows["codes"][parent]
+        seen = seeing.sees_cells(self.context.space, self.poses.arrays(), codes, eye, wanted)
         return set(wanted[seen].tolist())
 
     def sees_point(self, node: int, point: Point) -> bool:
@@ -432,9 +443,8 @@ class NodeTable:
 
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
-        return seeing.sees_point(
-            self.context.space, self.poses.arrays(), self.nodes(), parent, eye, point
-        )
+        codes = self._rows["codes"][parent]
+        return seeing.sees_point(self.context.space, self.poses.arrays(), codes, eye, point)
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Return True if a node's block is current (semantics, section 5.4)."""
@@ -476,7 +486,9 @@ class NodeTable:
                 self._rows[name][:size] = row
         for row in self._rows.values():
             row[node] = _filler(row)
-        self._rows["geometry"][node] = self._rows["missed"][node] = 0
+        self._rows["geometry"][node] = 0
+        if self.context.weighs:
+            self._rows["missed"][node] = 0
         self.count += 1
         self._nodes = None
         return node

@@ -8,13 +8,12 @@ import numpy.typing as npt
 from beliefnest.belief.arrays import UNKNOWN, Nodes, Poses, Space
 from beliefnest.perception.compiling import allocating, compiled, inlined, inner
 from beliefnest.perception.eyes import Eye, eye_at, eye_sees_agent, eye_sees_block, eye_sees_point
-from beliefnest.perception.rays import Cell, Scene
+from beliefnest.perception.rays import Cell, Codes, Scene
 from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = [
     "eye_of",
     "grid_cell",
-    "scene_of",
     "sees_agent",
     "sees_cell",
     "sees_cells",
@@ -53,24 +52,22 @@ def eye_of(space: Space, poses: Poses, pose: int) -> Eye:
 
 
 @inlined
-def scene_of(space: Space, nodes: Nodes, node: int) -> Scene:
-    """Return the blocks of a node as the ray kernels take them."""
-    return Scene(nodes.codes[node], space.sizes, space.starts, space.boxes)
+def _scene(space: Space, codes: Codes) -> Scene:
+    return Scene(codes, space.sizes, space.starts, space.boxes)
 
 
 @inner
-def sees_agent(space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, pose: int) -> bool:
-    """Return True if an eye in a node sees an agent at a pose."""
+def sees_agent(space: Space, poses: Poses, codes: Codes, eye: Eye, pose: int) -> bool:
+    """Return True if an eye sees an agent at a pose, through the blocks of a row of codes."""
     x, y, z = poses.feet[pose]
     feet = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    return eye_sees_agent(scene_of(space, nodes, node), eye, feet)
+    return eye_sees_agent(_scene(space, codes), eye, feet)
 
 
 @inner
-def sees_cell(space: Space, nodes: Nodes, node: int, eye: Eye, cell: int) -> bool:
-    """Return True if an eye in a node sees a cell."""
-    place = grid_cell(space, cell)
-    return eye_sees_block(scene_of(space, nodes, node), eye, place, space.beam, space.shadows)
+def sees_cell(space: Space, codes: Codes, eye: Eye, cell: int) -> bool:
+    """Return True if an eye sees a cell, through the blocks of a row of codes."""
+    return eye_sees_block(_scene(space, codes), eye, grid_cell(space, cell), space.beam)
 
 
 @allocating
@@ -91,7 +88,7 @@ def sees_place(
         parent, eye = whole(nodes.parent[node]), whole(nodes.eye[node])
         if eye != UNKNOWN:
             look = eye_of(space, poses, eye)
-            seen[number] = sees_agent(space, poses, nodes, parent, look, whole(pose))
+            seen[number] = sees_agent(space, poses, nodes.codes[parent], look, whole(pose))
     return seen
 
 
@@ -99,16 +96,15 @@ def sees_place(
 def sees_cells(
     space: Space,
     poses: Poses,
-    nodes: Nodes,
-    node: int,
+    codes: Codes,
     pose: int,
     cells: npt.NDArray[np.int64],
 ) -> npt.NDArray[np.bool_]:
-    """Return, by cell of `cells`, if an eye at a pose sees it in a node."""
+    """Return, by cell of `cells`, if an eye at a pose sees it, through a row of codes."""
     eye = eye_of(space, poses, pose)
     seen = np.zeros(len(cells), dtype=np.bool_)
     for number in range(len(cells)):
-        seen[number] = sees_cell(space, nodes, node, eye, cells[number])
+        seen[number] = sees_cell(space, codes, eye, cells[number])
     return seen
 
 
@@ -116,13 +112,12 @@ def sees_cells(
 def sees_point(
     space: Space,
     poses: Poses,
-    nodes: Nodes,
-    node: int,
+    codes: Codes,
     pose: int,
     point: tuple[float, float, float],
 ) -> bool:
-    """Return True if an eye at a pose sees a point (scenario coordinates) in a node."""
+    """Return True if an eye at a pose sees a point (scenario coordinates)."""
     eye = eye_of(space, poses, pose)
     x, y, z = point
     place = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    return eye_sees_point(scene_of(space, nodes, node), eye, place)
+    return eye_sees_point(_scene(space, codes), eye, place)

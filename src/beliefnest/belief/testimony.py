@@ -274,14 +274,17 @@ class Testimony:
             Three arrays by node: a place is known; the owner perceives the matter there; number of
             ticks without the speaker since the owner last watched that place.
         """
-        now = nodes.missed[which, speaker].astype(np.int64)
+        weighing = self._table.weighing()
+        if weighing is None:
+            raise AssertionError("hearers weigh claims under `informed` only")
+        now = weighing.missed[which, speaker].astype(np.int64)
         if claim.agent is not None:
             subject = self._context.numbers[claim.agent]
-            known = nodes.met[which, subject] != UNKNOWN
-            seen = nodes.meets[which, subject]
-            return known, known & seen, now - nodes.met_missed[which, subject, speaker]
+            known = weighing.met[which, subject] != UNKNOWN
+            seen = weighing.meets[which, subject]
+            return known, known & seen, now - weighing.met_missed[which, subject, speaker]
         spots = self._known_spots(which, claim)
-        watched = nodes.watch_missed[which, spots, speaker]
+        watched = weighing.watch_missed[which, spots, speaker]
         known = (spots >= 0) & (watched >= 0)
         if claim.kind is ClaimKind.BLOCK:
             seen = nodes.watched[which, spots]

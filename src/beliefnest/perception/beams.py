@@ -39,6 +39,7 @@ __all__ = [
     "in_reach",
     "new_beam",
     "sees_block",
+    "sees_past",
 ]
 
 Eye = tuple[Vector, Vector, float, float]
@@ -50,8 +51,8 @@ class Beam(NamedTuple):
     """The rays from an eye to the sample points of one block.
 
     Attributes:
-        slopes: float64 (4, rays). Rows 0 to 2: 1 / d along x, y and z. Row 3: the length of
-            1e-9 blocks in units of t.
+        slopes: float64 (4, rays). Rows 0 to 2: 1 / d along x, y and z. First of row 3: the length
+            of 1e-9 blocks in units of t, for all rays.
         opens: int64 (rays,), -1 while no block is found to hide the end of the ray, then 0.
     """
 
@@ -130,14 +131,14 @@ def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
     slopes, opens = beam
     x0, y0, z0 = low[0] - eye[0], low[1] - eye[1], low[2] - eye[2]
     x1, y1, z1 = high[0] - eye[0], high[1] - eye[1], high[2] - eye[2]
-    left = 0
+    left, least = 0, slopes[3, 0]
     for n in range(_SAMPLES):
         xa, xb = x0 * slopes[0, n], x1 * slopes[0, n]
         ya, yb = y0 * slopes[1, n], y1 * slopes[1, n]
         za, zb = z0 * slopes[2, n], z1 * slopes[2, n]
         t0 = max(min(xa, xb), min(za, zb), min(ya, yb), 0.0)
         t1 = min(max(xa, xb), max(za, zb), max(ya, yb), 1.0)
-        opens[n] = 0 if t1 - t0 > slopes[3, n] else opens[n]
+        opens[n] = 0 if t1 - t0 > least else opens[n]
         left |= opens[n]
     return left != 0
 
@@ -248,7 +249,7 @@ def _take_middles(opens: npt.NDArray[np.int64], levels: int) -> int:
     return taken
 
 
-@merged
+@inner
 def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
     """Set up the beam from an eye to a block.
 
@@ -259,9 +260,8 @@ def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
     # One length serves for all rays: lengths to the sample points differ by less than a block.
-    least = LEAST_LENGTH / max(math.sqrt(x * x + z * z + y * y), 0.5)
+    slopes[3, 0] = LEAST_LENGTH / max(math.sqrt(x * x + z * z + y * y), 0.5)
     for n in range(_SAMPLES):
-        slopes[3, n] = least
         opens[n] = -1
     levels = 0
     for axis in range(3):
@@ -280,34 +280,51 @@ def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
     return _take_middles(opens, levels) if levels != 0 else 0
 
 
-@inner
-def sees_block(
-    scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows, index: int
-) -> bool:
-    """Return True if a block, within the visible distance, is seen.
+@inlined
+def _is_open(beam: Beam) -> bool:
+    """Return True if any ray of a beam is open."""
+    left = 0
+    for n in range(_SAMPLES):
+        left |= beam.opens[n]
+    return left != 0
 
-    `index` is the index of the cell in `shadows`, which `cast_shadows` made; -1: no shadows.
-    """
+
+@inlined
+def _sees_in_plane(scene: Scene, eye: Eye, cell: Cell, rays: int) -> bool:
+    """Return True if one of the rays, given as bits, that `_aim` left out is free."""
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
-    in_plane = _aim(eye, cell, beam)
-    left = False
-    for n in range(_SAMPLES):
-        left |= beam.opens[n] != 0
-    known = shadows.counts[index] if index >= 0 else ROOM + 1
-    if index >= 0:
-        for n in range(min(known, ROOM)):
-            if left:
-                by = cell_at(scene.sizes, shadows.suspects[index, n])
-                left = _block_cell(scene, place, by, beam)
-    if left and known > ROOM:
-        left = _beam_ends(scene, place, cell, beam)
-    if left:
-        return True
-    for number in range(_SAMPLES):
-        if (in_plane >> number) & 1:
+    for number in range(_SAMPLES if rays != 0 else 0):
+        if (rays >> number) & 1:
             offset = _offset(place, cell, number)
             d = (x + offset[0], y + offset[1], z + offset[2])
             if hidden_by(scene, cell, place, d)[0] < 0:
                 return True
     return False
+
+
+@inner
+def sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam) -> bool:
+    """Return True if a block, within the visible distance, is seen; `beam` is scratch memory."""
+    in_plane = _aim(eye, cell, beam)
+    if _is_open(beam) and _beam_ends(scene, eye[0], cell, beam):
+        return True
+    return _sees_in_plane(scene, eye, cell, in_plane)
+
+
+@inner
+def sees_past(scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows, index: int) -> bool:
+    """Return what `sees_block` returns, from the suspects that `cast_shadows` noted.
+
+    `index` is the index of the cell in `shadows`.
+    """
+    in_plane = _aim(eye, cell, beam)
+    left = _is_open(beam)
+    count = shadows.counts[index]
+    for n in range(min(count, ROOM)):
+        if left:
+            by = cell_at(scene.sizes, shadows.suspects[index, n])
+            left = _block_cell(scene, eye[0], by, beam)
+    if left and (count <= ROOM or _beam_ends(scene, eye[0], cell, beam)):
+        return True
+    return _sees_in_plane(scene, eye, cell, in_plane)

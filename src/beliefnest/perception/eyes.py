@@ -18,7 +18,6 @@ from beliefnest.perception.rays import (
     is_inside,
     neighbour,
 )
-from beliefnest.perception.shadows import Shadows
 from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
 
 __all__ = ["Eye", "eye_at", "eye_sees_agent", "eye_sees_block", "eye_sees_point", "set_code"]
@@ -27,12 +26,12 @@ _HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)
 
 
 @merged
-def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows) -> bool:
-    """Return True if a block is seen; `beam` is scratch memory, `shadows` is `no_shadows()`."""
+def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam) -> bool:
+    """Return True if a block is seen; `beam` is scratch memory."""
     x, y, z = eye[0]
     if not in_reach(eye, cell[0] + 0.5 - x, cell[1] + 0.5 - y, cell[2] + 0.5 - z):
         return False
-    return sees_block(scene, eye, cell, beam, shadows, -1)
+    return sees_block(scene, eye, cell, beam)
 
 
 @merged

@@ -92,11 +92,9 @@ def at(sizes: Cell, cell: Cell) -> int:
 @inlined
 def cell_at(sizes: Cell, index: int) -> Cell:
     """Return the cell of an index in a flat array over a grid of these sizes."""
-    return (
-        index // (sizes[1] * sizes[2]),
-        index // sizes[2] % sizes[1],
-        index % sizes[2],
-    )
+    row = index // sizes[2]
+    i = row // sizes[1]
+    return i, row - i * sizes[1], index - row * sizes[2]
 
 
 @inlined

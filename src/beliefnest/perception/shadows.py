@@ -8,14 +8,14 @@ stored; their count goes up to `ROOM` + 1, which means "too many".
 """
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, Reaches
 from beliefnest.perception.compiling import allocating, compiled, inlined, inlined_allocating
-from beliefnest.perception.rays import Cell, Scene, Vector, at, sloped, span, turned, turned_back
+from beliefnest.perception.rays import Cell, Scene, Vector, at, turned
 
 __all__ = [
     "CLEAR",
@@ -24,17 +24,22 @@ __all__ = [
     "UNSURE",
     "Shadows",
     "cast_shadows",
-    "no_shadows",
 ]
+
+N = TypeVar("N", int, float)
+Part = tuple[float, float]
+"""Part of a ray, from one fraction of its length to another."""
 
 
 class Shadows(NamedTuple):
-    """Result of shadow casting for the cells of a grid; empty arrays if none was done.
+    """Result of shadow casting for the cells of a grid.
 
     Attributes:
         marks: int8 (cells,), `CLEAR`, `HIDDEN` or `UNSURE`.
-        counts: uint8 (cells,), number of blocks that may hide parts of the cell.
-        suspects: int32 (cells, `ROOM`), cell indices of these blocks.
+        counts: uint8 (cells,), number of blocks that may hide parts of the cell; `ROOM` + 1 for a
+            hidden cell.
+        suspects: int32 (cells, `ROOM` + 2), cell indices of these blocks. Only the first `ROOM` of
+            a row count; the others take what there is no room for.
     """
 
     marks: npt.NDArray[np.int8]
@@ -45,7 +50,7 @@ class Shadows(NamedTuple):
 CLEAR = 0
 UNSURE = 1
 HIDDEN = 2
-ROOM = 8
+ROOM = 14
 
 # Full shadows are made this much smaller and partial shadows larger. Rays that barely enter a box
 # or lie in the plane of a face thus stay `UNSURE`, and the exact test decides them.
@@ -105,24 +110,41 @@ def _cells_within(
 
 
 @inlined
-def _may_enter(eye: Vector, cell: Cell, low: Vector, high: Vector) -> bool:
-    """Return True if the ray to a cell's middle enters a box or may lie in a plane of it."""
-    d = (cell[0] + 0.5 - eye[0], cell[1] + 0.5 - eye[1], cell[2] + 0.5 - eye[2])
-    if d[0] == 0.0 or d[1] == 0.0 or d[2] == 0.0:
-        return True
-    ray = sloped(eye, d)
-    t0, t1 = span(ray, low, high)
-    return t1 - t0 > ray[3]
+def _clipped(t: Part, low: float, high: float, d: float) -> Part:
+    """Return the part (t0, t1) of a ray that is also between two planes; t0 > t1: there is none.
+
+    `d` is the ray's component across the planes. A ray in a plane counts as between the planes,
+    because it may lie in a face.
+    """
+    if d == 0.0:
+        return t
+    ta, tb = low / d, high / d
+    return max(t[0], min(ta, tb)), min(t[1], max(ta, tb))
 
 
 @inlined
 def _suspect(shadows: Shadows, cell: int, block: int) -> None:
-    """Add a block to the suspects of a cell; without room for it, only count it."""
-    counts = shadows.counts
-    if cell != block and counts[cell] <= ROOM:
-        if counts[cell] < ROOM:
-            shadows.suspects[cell, counts[cell]] = block
-        counts[cell] += 1
+    """Add a block to the suspects of a cell; without room for it, only count it.
+
+    There are no branches, because a processor could not predict them.
+    """
+    place = shadows.counts[cell]
+    shadows.suspects[cell, place] = block
+    shadows.counts[cell] = min(place + 1, ROOM + 1)
+
+
+@inlined
+def _prefer(shadows: Shadows, cell: int) -> None:
+    """Move the last suspect of a cell, which hides its middle, to the first place."""
+    suspects, last = shadows.suspects, shadows.counts[cell] - 1
+    suspects[cell, last], suspects[cell, 0] = suspects[cell, 0], suspects[cell, last]
+
+
+@inlined
+def _hide(shadows: Shadows, cell: int) -> None:
+    """Mark a cell as hidden. Nothing more is to be noted about it."""
+    shadows.marks[cell] = HIDDEN
+    shadows.counts[cell] = ROOM + 1
 
 
 @inlined
@@ -136,13 +158,14 @@ def _doubt_all(shadows: Shadows, index: int) -> None:
 
 
 @inlined
-def _prefer(shadows: Shadows, cell: int, block: int) -> None:
-    """Move the last suspect of a cell, which hides its middle, to the first place."""
-    counts, suspects = shadows.counts, shadows.suspects
-    if cell != block:
-        if counts[cell] <= ROOM:
-            suspects[cell, counts[cell] - 1] = suspects[cell, 0]
-        suspects[cell, 0] = block
+def _across(vector: tuple[N, N, N], axis: int) -> tuple[N, N, N]:
+    """Return a vector's component along an axis, then the others, so that loops end with z."""
+    x, y, z = vector
+    if axis == 0:
+        return x, y, z
+    if axis == 1:
+        return y, x, z
+    return z, x, y
 
 
 @inlined
@@ -173,11 +196,11 @@ def _cast_box(
     if near < _TOUCHING:
         _doubt_all(shadows, index)
         return
-    ea, eb, ec = turned(eye, axis)
-    la, lb, lc = turned(low, axis)
-    ha, hb, hc = turned(high, axis)
-    size_a, size_b, size_c = turned(sizes, axis)
-    stride_a, stride_b, stride_c = turned((sizes[1] * sizes[2], sizes[2], 1), axis)
+    ea, eb, ec = _across(eye, axis)
+    la, lb, lc = _across(low, axis)
+    ha, hb, hc = _across(high, axis)
+    size_a, size_b, size_c = _across(sizes, axis)
+    stride_a, stride_b, stride_c = _across((sizes[1] * sizes[2], sizes[2], 1), axis)
     far = near + ha - la
     lb, hb, lc, hc = lb - eb, hb - eb, lc - ec, hc - ec
     # Edges of the shadow, per block of distance from the eye along the axis.
@@ -195,27 +218,25 @@ def _cast_box(
         c0, c1 = _cells_touched(ec, part_c0, part_c1, d0, d1, size_c)
         if b0 > b1 or c0 > c1:
             break
+        # Parts inside the box of the rays to the middles of these cells, first along the axis.
+        in_layer = (near / d, min(far / d, 1.0)) if d > 0.0 else (1.0, 0.0)
         for b in range(b0, b1 + 1):
-            is_b = part_b0 * d - _GROW <= b + 0.5 - eb <= part_b1 * d + _GROW
+            in_row = _clipped(in_layer, lb, hb, b + 0.5 - eb)
+            row = layer * stride_a + b * stride_b
             for c in range(c0, c1 + 1):
-                n = layer * stride_a + b * stride_b + c * stride_c
-                if marks[n] == HIDDEN:
-                    continue
+                n = row + c * stride_c
                 _suspect(shadows, n, index)
-                if (
-                    is_b
-                    and marks[n] == CLEAR
-                    and part_c0 * d - _GROW <= c + 0.5 - ec <= part_c1 * d + _GROW
-                    and _may_enter(eye, turned_back(layer, b, c, axis), low, high)
-                ):
-                    marks[n] = UNSURE
-                    _prefer(shadows, n, index)
+                if marks[n] == CLEAR and in_row[0] <= in_row[1] + _GROW:
+                    inside = _clipped(in_row, lc, hc, c + 0.5 - ec)
+                    if inside[0] <= inside[1] + _GROW:
+                        marks[n] = UNSURE
+                        _prefer(shadows, n)
         if casts_full and d0 >= near:
             b0, b1 = _cells_within(eb, full_b0, full_b1, d0, d1, size_b)
             c0, c1 = _cells_within(ec, full_c0, full_c1, d0, d1, size_c)
             for b in range(b0, b1 + 1):
                 for c in range(c0, c1 + 1):
-                    marks[layer * stride_a + b * stride_b + c * stride_c] = HIDDEN
+                    _hide(shadows, layer * stride_a + b * stride_b + c * stride_c)
         layer += step
 
 
@@ -245,19 +266,20 @@ def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
     codes, sizes, starts, boxes = scene
     size = sizes[0] * sizes[1] * sizes[2]
     marks = np.zeros(size, dtype=np.int8)
-    shadows = Shadows(marks, np.zeros(size, dtype=np.uint8), np.empty((size, ROOM), dtype=np.int32))
+    shadows = Shadows(
+        marks, np.zeros(size, dtype=np.uint8), np.empty((size, ROOM + 2), dtype=np.int32)
+    )
+    along_y, along_z = _outward(eye[1], sizes[1]), _outward(eye[2], sizes[2])
     for i in _outward(eye[0], sizes[0]):
-        for j in _outward(eye[1], sizes[1]):
-            for k in _outward(eye[2], sizes[2]):
+        side_x = _side(eye[0], i, sizes[1] * sizes[2])
+        for j in along_y:
+            side_y = _side(eye[1], j, sizes[2])
+            for k in along_z:
                 index = at(sizes, (i, j, k))
-                sides = (
-                    _side(eye[0], i, sizes[1] * sizes[2]),
-                    _side(eye[1], j, sizes[2]),
-                    _side(eye[2], k, 1),
-                )
+                sides = (side_x, side_y, _side(eye[2], k, 1))
                 if marks[index] != HIDDEN and _is_enclosed(scene, shadows, sides, index):
-                    marks[index] = HIDDEN
-                mark = marks[index]
+                    _hide(shadows, index)
+                mark, count = marks[index], shadows.counts[index]
                 code = codes[index] & OWN
                 if code == EMPTY or (mark == HIDDEN and reaches[code] == 0):
                     continue
@@ -265,20 +287,12 @@ def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
                 first, last = 0, 1
                 if code != FULL:
                     first, last = starts[code - FIRST_SHAPE], starts[code - FIRST_SHAPE + 1]
+                # A block does not hide itself: what is noted about its own cell is undone.
+                marks[index] = UNSURE
                 for row in range(first, last):
                     if code != FULL:
                         low = (i + boxes[row, 0], j + boxes[row, 1], k + boxes[row, 2])
                         high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
                     _cast_box(shadows, sizes, eye, low, high, index, reaches[code] == 0)
-                # A block does not hide itself.
-                marks[index] = mark
+                marks[index], shadows.counts[index] = mark, count
     return shadows
-
-
-def no_shadows() -> Shadows:
-    """Return an empty result, for lookups without shadow casting."""
-    return Shadows(
-        np.empty(0, dtype=np.int8),
-        np.empty(0, dtype=np.uint8),
-        np.empty((0, ROOM), dtype=np.int32),
-    )

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import InputError, UnknownNameError
-from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, CodeGrid, code_grid
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, CodeGrid, code_grid
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Point, Position
@@ -35,6 +35,11 @@ __all__ = ["Geometry", "Sight"]
 
 BoolArray = npt.NDArray[np.bool_]
 Points = npt.NDArray[np.float64]
+
+_DENSE = 0.25
+"""Share of full cubes above which light does not get far: measured, at 30 % both ways are equal."""
+_NEAR = 5
+"""Number of layers around the eye whose lit cells show how far light gets."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,14 +162,22 @@ class Geometry:
         return Geometry(self.sight, self.origin, codes)
 
     def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
-        """Return a mask of the visible blocks of the grid: bool (nx, ny, nz)."""
+        """Return a mask of the visible blocks of the grid: bool (nx, ny, nz).
+
+        Both ways give the same result. Where light does not get far it is faster to test the few
+        cells that it reaches than to cast the shadows of all blocks.
+        """
         from beliefnest.perception import eye_loops, shadows
 
         seer = self._eye(eye, yaw, pitch)
-        noted = shadows.cast_shadows(self._scene, self.sight.reaches, seer[0])
-        no_cells = np.empty((0, 3), dtype=np.int64)
-        seen = eye_loops.seen_blocks(self._scene, seer, no_cells, noted)
-        return seen.reshape(self.codes.shape)[1:-1, 1:-1, 1:-1]
+        lit = self._lit(seer[0])
+        if lit is not None:
+            seen = np.zeros(self.codes.shape, dtype=np.bool_)
+            seen[lit] = eye_loops.seen_blocks(self._scene, seer, np.argwhere(lit))
+        else:
+            noted = shadows.cast_shadows(self._scene, self.sight.reaches, seer[0])
+            seen = eye_loops.seen_grid(self._scene, seer, noted)
+        return seen[1:-1, 1:-1, 1:-1]
 
     def sees_blocks(
         self, eye: Point, yaw: float, pitch: float, positions: npt.ArrayLike
@@ -180,14 +193,13 @@ class Geometry:
         Raises:
             InputError: `positions` are not rows of three integers.
         """
-        from beliefnest.perception import eye_loops, shadows
+        from beliefnest.perception import eye_loops
 
         rows = _rows(positions)
         if rows.dtype.kind not in "iu" and len(rows):
             raise InputError(f"block positions are of type {rows.dtype}; give integers")
         cells = rows.astype(np.int64) + (1 - np.array(self.origin))
-        seer = self._eye(eye, yaw, pitch)
-        return eye_loops.seen_blocks(self._scene, seer, cells, shadows.no_shadows())
+        return eye_loops.seen_blocks(self._scene, self._eye(eye, yaw, pitch), cells)
 
     def has_free_line(self, eye: Point, position: Position) -> bool:
         """Return True if an eye that looks straight at the middle of a block sees the block."""
@@ -244,6 +256,23 @@ class Geometry:
             self.codes.reshape(-1), (nx, ny, nz), registry.shape_start, registry.shape_boxes
         )
 
+    @functools.cached_property
+    def _is_dense(self) -> bool:
+        return _share_of_cubes(self.codes[1:-1, 1:-1, 1:-1]) > _DENSE
+
+    def _lit(self, eye: tuple[float, float, float]) -> BoolArray | None:
+        """Return a mask of the cells that light may reach; None if it seems to get far."""
+        shape = self.codes.shape
+        inside = all(1 <= e <= size - 1 for e, size in zip(eye, shape, strict=True))
+        if not inside or not self._is_dense:
+            return None
+        from beliefnest.perception import light
+
+        near = light.lit_cells(self._scene, eye, _NEAR)
+        if _share_of_cubes(self.codes[near]) <= _DENSE:
+            return None
+        return light.lit_cells(self._scene, eye, max(shape))
+
     def _local(self, points: Points) -> Points:
         """Return points in the coordinates of the code grid, which has a margin of one cell."""
         return points + (1.0 - np.array(self.origin))
@@ -253,6 +282,10 @@ class Geometry:
 
         x, y, z = (float(e) + (1 - o) for e, o in zip(eye, self.origin, strict=True))
         return beams.eye_of((x, y, z), yaw, pitch, *self.sight.limits)
+
+
+def _share_of_cubes(codes: CodeGrid) -> float:
+    return float(np.mean(codes & OWN == FULL))
 
 
 def _rows(points: npt.ArrayLike) -> npt.NDArray[np.generic]:

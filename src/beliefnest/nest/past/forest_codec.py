@@ -24,7 +24,10 @@ def saved(forest: Forest) -> bytes:
     state, nodes = forest.saved()
     # Nodes hold all blocks of the box, so each is compressed by itself to bound the memory in use.
     packer = zstandard.ZstdCompressor(level=_LEVEL)
-    packed = [(node.row.path, packer.compress(codec.encode(node))) for node in nodes]
+    # Compressed bytes keep the memory of uncompressed ones until they are copied.
+    packed = [
+        (node.row.path, bytes(memoryview(packer.compress(codec.encode(node))))) for node in nodes
+    ]
     return codec.encode(_Saved(state, packed))
 
 
