@@ -11,7 +11,8 @@ from tests.servers import serving
 
 from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
-from beliefnest.scenarios.writing import cuboids, scenario_text
+from beliefnest.scenarios.cuboids import cuboids
+from beliefnest.scenarios.writing import scenario_text
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.values import Box
 

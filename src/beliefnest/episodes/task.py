@@ -159,6 +159,9 @@ class Task:
             form = msgspec.convert(content, TaskForm)
         except msgspec.ValidationError as fault:
             raise ScenarioError(f"task: {fault}") from None
+        if "map" in form.scenario:
+            drawn = Scenario.from_mapping(form.scenario, source=f"task {form.name}: scenario")
+            form = msgspec.structs.replace(form, scenario=dict(drawn.written))
         try:
             scene = msgspec.convert(form.scenario, _Scene)
         except msgspec.ValidationError as fault:

@@ -41,10 +41,13 @@ class YamlNode:
     Attributes:
         value: A scalar, a list of nodes, or a dict from key to node.
         line: Line of the value or of its key; 0: the value is not from a file.
+        origin: Place of the value for messages, if it is written at another place than its keys
+            say; empty: the keys say it.
     """
 
     value: Any
     line: int = 0
+    origin: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +75,13 @@ class Document:
 
     def key_at(self, path: KeyPath) -> str:
         """Return the start of a message about a key: file, line and key."""
-        return f"{self.where(path)}: {_key_text(path)}"
+        node: YamlNode | None = self.root
+        origin, rest = "", path
+        for number, key in enumerate(path):
+            node = None if node is None else _child(node, key)
+            if node is not None and node.origin:
+                origin, rest = node.origin, path[number + 1 :]
+        return f"{self.where(path)}: {_key_text(rest, origin)}"
 
     def where(self, path: KeyPath) -> str:
         """Return file and line of a value, or of its innermost written parent."""
@@ -95,8 +104,8 @@ class Document:
             raise self.fault(path, str(error)) from error
 
 
-def _key_text(path: KeyPath) -> str:
-    text = ""
+def _key_text(path: KeyPath, origin: str = "") -> str:
+    text = origin
     for key in path:
         text += f"[{key}]" if isinstance(key, int) else f".{key}"
     return f"{text.removeprefix('.')}: " if text else ""

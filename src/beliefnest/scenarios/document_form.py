@@ -7,32 +7,48 @@ import msgspec
 
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain
-from beliefnest.scenarios.format import ScenarioFile
+from beliefnest.scenarios.format import ScenarioFile, WrittenFile
 from beliefnest.scenarios.json_schema import allowed_keys, allowed_values
 from beliefnest.world.texts import is_well_formed
 
-__all__ = ["check_form"]
+__all__ = ["check_form", "check_written"]
 
 _FAULT = re.compile(r"(?P<what>.*?)(?: - at (?P<key>`key` in )?`(?P<path>\$.*)`)?", re.DOTALL)
 _FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\])")
 _UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
 _MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
 
+_Form = type[ScenarioFile] | type[WrittenFile]
+
 _MOST_BITS = 64
 """Bits of whole numbers that messages repeat; Python refuses to format very long ones."""
 
 
 def check_form(document: Document) -> ScenarioFile:
-    """Return the content of a document as typed values.
+    """Return the content of a document without a map as typed values.
 
     Raises:
         ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
     """
-    _check_texts(document, document.root, ())
-    error = _error_of(document.root)
-    if error:
-        raise _fault(document, error)
+    _check(document, ScenarioFile)
     return msgspec.convert(plain(document.root), ScenarioFile)
+
+
+def check_written(document: Document) -> WrittenFile:
+    """Return the content of a document as written, with or without a map, as typed values.
+
+    Raises:
+        ScenarioError: A key is unknown or missing, or a value is of the wrong kind.
+    """
+    _check(document, WrittenFile if "map" in document.root.value else ScenarioFile)
+    return msgspec.convert(plain(document.root), WrittenFile)
+
+
+def _check(document: Document, form: _Form) -> None:
+    _check_texts(document, document.root, ())
+    error = _error_of(document.root, form)
+    if error:
+        raise _fault(document, error, form)
 
 
 def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
@@ -49,9 +65,9 @@ def _check_texts(document: Document, node: YamlNode, path: KeyPath) -> None:
         raise document.fault(path, "has half a character in it; write whole ones")
 
 
-def _error_of(root: YamlNode) -> str:
+def _error_of(root: YamlNode, form: _Form) -> str:
     try:
-        msgspec.convert(plain(root), ScenarioFile)
+        msgspec.convert(plain(root), form)
     except msgspec.ValidationError as error:
         return str(error)
     except InputError as error:  # Options of perception are checked as in code.
@@ -59,13 +75,13 @@ def _error_of(root: YamlNode) -> str:
     return ""
 
 
-def _fault(document: Document, error: str) -> ScenarioError:
+def _fault(document: Document, error: str, form: _Form) -> ScenarioError:
     match = _FAULT.fullmatch(error)
     if match is None:
         return document.fault((), error)
     what = match["what"]
     steps = [step.groupdict() for step in _FAULT_STEP.finditer(match["path"] or "$")]
-    path = _locate(document.root, steps, error)
+    path = _locate(document.root, steps, error, form)
     if unknown := _UNKNOWN_FIELD.fullmatch(what):
         name = unknown["name"]
         return document.fault((*path, name), f"unknown key{_hint(name, path)}")
@@ -73,7 +89,8 @@ def _fault(document: Document, error: str) -> ScenarioError:
         return document.fault(path, f"the key {missing['name']!r} is missing")
     what = what[:1].lower() + what[1:].replace("`", "'")
     if match["key"]:
-        return document.fault(path, f"a key in it: {what}")
+        quotes = "; put it into quotes" if what.startswith("expected 'str'") else ""
+        return document.fault(path, f"a key in it: {what}{quotes}")
     return document.fault(path, what + _found(document.root, path, what) + _allowed(path, what))
 
 
@@ -105,7 +122,7 @@ def _hint(name: str, path: KeyPath) -> str:
     return f"; did you mean {close[0]!r}?" if close else f"; keys are {', '.join(allowed)}"
 
 
-def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str) -> KeyPath:
+def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str, form: _Form) -> KeyPath:
     """Return the place of an error, for which msgspec writes `[...]` instead of mapping keys.
 
     For each `[...]`, try the mapping with only one entry at a time. The entry that still causes
@@ -119,7 +136,7 @@ def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str) -> K
             path.append(int(step["index"]))
         else:
             cuts = {key: _with_only(root, path, key) for key in _node_at(root, path).value}
-            key = next((key for key, cut in cuts.items() if _error_of(cut) == error), None)
+            key = next((key for key, cut in cuts.items() if _error_of(cut, form) == error), None)
             if key is None:
                 break
             root = cuts[key]

@@ -22,16 +22,20 @@ __all__ = [
     "ContainerEntry",
     "DoubtEntry",
     "EquipmentEntry",
+    "FloorEntry",
     "GridEntry",
     "InferEntry",
     "InitialBeliefEntry",
     "InstanceEntry",
+    "LegendEntry",
     "LevelsEntry",
+    "MapEntry",
     "ParameterEntry",
     "ProbeEntry",
     "ScenarioFile",
     "SignEntry",
     "StepEntry",
+    "WrittenFile",
 ]
 
 
@@ -45,6 +49,11 @@ _Senses = Literal["world", "percepts"]
 _SENSES = note("Facts that programs read: all, or what their agents perceive or remember.")
 _Angle = Annotated[float, msgspec.Meta(ge=-_WIDEST, le=_WIDEST)]
 _ItemsField = Annotated[dict[str, int], note("Item name to count.")]
+_LabelField = Annotated[str, note("Its name in tables and pictures.")]
+_LooksField = Annotated[str, note("What it seems to contain, in words; see the key `labels`.")]
+_HIGHEST = 384
+"""Height of a Minecraft world in blocks."""
+_Height = Annotated[int, msgspec.Meta(ge=1, le=_HIGHEST)]
 
 
 class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -71,8 +80,8 @@ class ContainerEntry(_Entry, frozen=True):
     at: Annotated[Position, note("Position of its block.")]
     block: Annotated[str, note("A block state of a container.")] = "chest"
     items: _ItemsField = {}
-    label: Annotated[str, note("Its name in tables and pictures.")] = ""
-    looks: Annotated[str, note("What it seems to contain, in words; see the key `labels`.")] = ""
+    label: _LabelField = ""
+    looks: _LooksField = ""
 
 
 _SignText = Annotated[
@@ -126,10 +135,9 @@ class EquipmentEntry(_Entry, frozen=True):
     off_hand: Annotated[str | None, note("Item in the other hand.")] = None
 
 
-class AgentEntry(_Entry, frozen=True):
-    """An agent: a Mineflayer bot in a Minecraft world, or a person."""
+class _AgentAttributes(_Entry, frozen=True):
+    """Attributes of an agent apart from its name and place."""
 
-    position: Annotated[world.Point, note("Middle of the feet, in blocks.")]
     facing: Annotated[
         Literal["north", "east", "south", "west"] | Point | None,
         note("A direction, or a point to look at; instead of yaw and pitch."),
@@ -147,6 +155,73 @@ class AgentEntry(_Entry, frozen=True):
         Literal["bot", "human"],
         note("A bot that runs programs, or a person who joins with the agent's name."),
     ] = "bot"
+
+
+class AgentEntry(_AgentAttributes, frozen=True, kw_only=True):
+    """An agent: a Mineflayer bot in a Minecraft world, or a person."""
+
+    position: Annotated[world.Point, note("Middle of the feet, in blocks.")]
+
+
+class LegendEntry(_AgentAttributes, frozen=True, kw_only=True):
+    """Meaning of a character on a map: a block, door, container or sign; an agent; a place.
+
+    One character can mean several of them, such as an agent at a place. `facing` is that of the
+    agent or door.
+    """
+
+    block: Annotated[str | None, note("A block state; one block, unless `height` is given.")] = None
+    height: Annotated[_Height | None, note("Height of `block` in blocks.")] = None
+    door: Annotated[
+        str | None, note("A door of two blocks, such as oak; by default it faces across its wall.")
+    ] = None
+    open: Annotated[bool, note("True if the door is open.")] = False
+    container: Annotated[str | None, note("A block state of a container.")] = None
+    items: _ItemsField = {}
+    label: _LabelField = ""
+    looks: _LooksField = ""
+    sign: Annotated[_SignText | None, note("A sign with this text.")] = None
+    claims: Annotated[list[ClaimEntry], note("Claims of the sign's text, for its readers.")] = []
+    agent: Annotated[str | None, note("Name of an agent that stands here.")] = None
+    place: Annotated[str | None, note("Name of this place.")] = None
+    floor: Annotated[str | None, note("The block below, instead of the floor of the map.")] = None
+    above: Annotated[
+        str | None, note("The blocks above it, as high as the floor of the map is.")
+    ] = None
+
+
+_Rows = Annotated[
+    str | list[str],
+    note("Rows of characters, from north to south; each from west to east."),
+]
+
+
+class FloorEntry(_Entry, frozen=True):
+    """A floor of a map with a height of its own."""
+
+    rows: _Rows
+    height: Annotated[_Height, note("Height of this floor in blocks.")] = 1
+
+
+class MapEntry(_Entry, frozen=True):
+    """A drawing of the scene: floors as rows of characters, each explained by the legend."""
+
+    floors: Annotated[
+        str | list[str | list[str] | FloorEntry],
+        note("The floors, the lowest first; or the rows of the only one."),
+    ]
+    legend: Annotated[
+        dict[str, str | LegendEntry],
+        note(
+            "Character to meaning; a text is a block as high as the floor. `.` is air unless "
+            "stated otherwise."
+        ),
+    ] = {}
+    origin: Annotated[
+        Position, note("Block of the first character of the first row of the lowest floor.")
+    ] = (0, 1, 0)
+    floor: Annotated[str | None, note("Block below the lowest floor; null: none.")] = "stone"
+    height: Annotated[_Height, note("Height of each floor in blocks.")] = 3
 
 
 class _BelievedContainerEntry(_Entry, frozen=True):
@@ -348,17 +423,10 @@ class InstanceEntry(_Entry, frozen=True):
     differs_from: Annotated[list[str], note("Parameters that have other values.")] = []
 
 
-class ScenarioFile(_Entry, frozen=True):
-    """A scenario: a world, agents, a script, and expected beliefs."""
+class _File(_Entry, frozen=True, kw_only=True):
+    """All keys of a scenario file that are the same with and without a map."""
 
     name: Annotated[str, note("Short name, for tables and folders.")]
-    box: Annotated[
-        tuple[Position, Position], note("Two inclusive corners of the scenario's space.")
-    ]
-    agents: Annotated[
-        dict[str, AgentEntry],
-        msgspec.Meta(min_length=1, description="Agents by name."),
-    ]
     description: Annotated[str, note("Description of the scenario.")] = ""
     reported_by: Annotated[
         str, note("Source of the expectations, as in 'as the paper reports'.")
@@ -370,7 +438,7 @@ class ScenarioFile(_Entry, frozen=True):
         list[str], note("Expressions over parameters that must hold, such as `gap < 4`.")
     ] = []
     instances: Annotated[
-        dict[str, InstanceEntry],
+        dict[str, InstanceEntry | None],
         note("Parameters whose values the seed of a task draws, each with its rules."),
     ] = {}
     blocks: Annotated[list[BlockEntry], note("Blocks in the box; the rest is air.")] = []
@@ -413,4 +481,33 @@ class ScenarioFile(_Entry, frozen=True):
             "Overrides by number: a mapping is merged key by key, any other value replaces. For a "
             "list of labelled entries, a mapping changes the entries with these labels."
         ),
+    ] = {}
+
+
+_BOX = note("Two inclusive corners of the scenario's space.")
+
+
+class ScenarioFile(_File, frozen=True, kw_only=True):
+    """A scenario: a world, agents, a script, and expected beliefs."""
+
+    box: Annotated[tuple[Position, Position], _BOX]
+    agents: Annotated[
+        dict[str, AgentEntry],
+        msgspec.Meta(min_length=1, description="Agents by name."),
+    ]
+
+
+class WrittenFile(_File, frozen=True, kw_only=True):
+    """A scenario as people write it: with a map, or with `box` and `agents`."""
+
+    map: Annotated[
+        MapEntry | msgspec.UnsetType,
+        note(
+            "A drawing of the scene. Other keys add to it, and `box` and `agents` may be missing."
+        ),
+    ] = msgspec.UNSET
+    box: Annotated[tuple[Position, Position] | msgspec.UnsetType, _BOX] = msgspec.UNSET
+    agents: Annotated[
+        dict[str, dict[str, Any]],
+        note("Agents by name. What is stated here counts for agents on the map, too."),
     ] = {}

@@ -9,7 +9,7 @@ import itertools
 import math
 import random
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -57,6 +57,7 @@ def drawn_instance(document: Document, seed: int, given: Mapping[str, object]) -
     drawing = _Drawing.of(document, given)
     # A draw that makes no scenario is rejected; what is wrong in every draw is said at once.
     written = scenario_in(document, None, given)
+    drawing.check_agents(written.setting.snapshot.agents)
     chance = random.Random(f"{written.setting.name} {seed}")
     refused: Counter[str] = Counter()
     for _ in range(_MOST_DRAWS):
@@ -109,6 +110,15 @@ class _Drawing:
         }
         conditions = tuple(dict.fromkeys((None, *condition_numbers(document))))
         return cls(document, conditions, drawn, declared, cells)
+
+    def check_agents(self, agents: Collection[str]) -> None:
+        """Refuse rules that name unknown agents."""
+        for name, rule in self.rules.items():
+            for key in ("seen_by", "hidden_from", "reached_by"):
+                for agent in getattr(rule, key):
+                    if agent not in agents:
+                        told = f"there is no agent {agent!r}; agents are {', '.join(agents)}"
+                        raise self.document.fault((_KEY, name, key), told)
 
     def draw(self, chance: random.Random) -> dict[str, Any]:
         """Return values of all drawn parameters, which may break rules."""
@@ -273,13 +283,6 @@ def _rule(
             raise document.fault(
                 path, "has nothing to draw from; give `within`, or `values` of the parameter"
             )
-    agents = document.root.value.get("agents")
-    names = list(agents.value) if agents is not None and isinstance(agents.value, dict) else []
-    for key in ("seen_by", "hidden_from", "reached_by"):
-        for agent in getattr(rule, key):
-            if agent not in names:
-                told = f"there is no agent {agent!r}; agents are {', '.join(map(str, names))}"
-                raise document.fault((*path, key), told)
     return rule
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.scenarios.document import LABELLED
-from beliefnest.scenarios.format import ScenarioFile
+from beliefnest.scenarios.format import ScenarioFile, WrittenFile
 
 __all__ = ["allowed_keys", "allowed_values", "schema"]
 
@@ -67,12 +67,15 @@ def _holes_inside(form: dict[str, Any]) -> dict[str, Any]:
 
 def _form() -> dict[str, Any]:
     """Return the JSON schema of a scenario file after parameters are filled in."""
-    published: dict[str, Any] = msgspec.json.schema(ScenarioFile)
-    definitions = published["$defs"]
+    _, definitions = msgspec.json.schema_components(
+        (ScenarioFile, WrittenFile), ref_template="#/$defs/{name}"
+    )
     for entry in definitions.values():
         # Python 3.13 removes the indentation of docstrings; older versions keep it.
         # Attributes have descriptions of their own.
         entry["description"] = cleandoc(entry["description"]).partition("\n\nAttributes:")[0]
+    strict, written = definitions["ScenarioFile"], definitions.pop("WrittenFile")
+    definitions["ScenarioFile"] = {**strict, "properties": written["properties"]}
     overriding = {
         key: dict(value)
         for key, value in definitions["ScenarioFile"]["properties"].items()
@@ -80,14 +83,30 @@ def _form() -> dict[str, Any]:
     }
     overriding["agents"] = _mapping_of(_override_of("AgentEntry", definitions))
     overriding["perception"] = _override_of("Perception", definitions)
+    overriding["map"] = _override_of("MapEntry", definitions)
     for key in LABELLED:
         entry = overriding[key]["items"]["$ref"].rpartition("/")[2]
         by_label = _mapping_of(_override_of(entry, definitions))
         overriding[key] = {"anyOf": [overriding[key], by_label]}
     condition = _override_of("ScenarioFile", definitions)
     definitions["ScenarioFileOverride"]["properties"] = overriding
-    definitions["ScenarioFile"]["properties"]["conditions"]["additionalProperties"] = condition
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **published}
+    properties = dict(written["properties"])
+    properties["conditions"] = {**properties["conditions"], "additionalProperties": condition}
+    # A map can show where agents stand; without one, each agent has a position.
+    properties["agents"] = overriding["agents"]
+    placed = {"agents": {"additionalProperties": {"required": ["position"]}, "minProperties": 1}}
+    definitions["ScenarioFile"] = {
+        **strict,
+        "properties": properties,
+        "required": written["required"],
+        "if": {"required": ["map"]},
+        "else": {"required": ["box", "agents"], "properties": placed},
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$ref": "#/$defs/ScenarioFile",
+        "$defs": definitions,
+    }
 
 
 def _override_of(name: str, definitions: dict[str, Any]) -> dict[str, str]:

@@ -7,7 +7,8 @@ from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.build import build_scenario
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, merged, wrapped
-from beliefnest.scenarios.document_form import check_form
+from beliefnest.scenarios.document_form import check_form, check_written
+from beliefnest.scenarios.drawn_map import with_map
 from beliefnest.scenarios.parameters import text_of, with_parameters
 
 __all__ = [
@@ -40,7 +41,7 @@ def condition_numbers(document: Document) -> tuple[int | None, ...]:
     Raises:
         ScenarioError: The document does not have the right form.
     """
-    return tuple(sorted(check_form(with_parameters(document, {})).conditions)) or (None,)
+    return tuple(sorted(check_written(with_parameters(document, {})).conditions)) or (None,)
 
 
 def scenario_in(
@@ -62,8 +63,8 @@ def scenario_in(
         ScenarioError: The document is wrong, or a condition or parameter does not exist.
     """
     filled = with_parameters(document, parameters or {}, condition)
-    written = check_form(filled)
-    chosen = filled if condition is None else merged(filled, condition)
+    written = check_written(filled)
+    chosen = with_map(filled if condition is None else merged(filled, condition))
     if change is None:
         if parameters:
             chosen = replace(chosen, text=text_of(filled.root))

@@ -5,19 +5,19 @@ from io import StringIO
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from beliefnest.errors import InputError, ScenarioError
+from beliefnest.scenarios.cuboids import cuboids
 from beliefnest.scenarios.loading import scenario_in
 from beliefnest.scenarios.yaml_reading import parse_yaml
-from beliefnest.world.frames import BlockGrid, Snapshot, places_of
+from beliefnest.world.frames import Snapshot, places_of
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, Position
 
-__all__ = ["content_text", "cuboids", "scenario_text"]
+__all__ = ["content_text", "scenario_text"]
 
 _VISITOR = "visitor"
 _WIDTH = 100
@@ -75,29 +75,6 @@ def _by_line(value: Any) -> Any:
     if isinstance(value, list | tuple) and any(isinstance(each, Mapping) for each in value):
         return CommentedSeq(_flow(part) for part in value)
     return _flow(value)
-
-
-def cuboids(grid: BlockGrid, skipped: npt.NDArray[np.bool_]) -> Iterator[tuple[int, Box]]:
-    """Yield cuboids of one block state each, which together are all cells that are not skipped.
-
-    Each cuboid extends greedily along z, then along x, then along y. Indices begin at 0.
-    """
-    open_cells = ~skipped
-    for i, j, k in np.argwhere(open_cells).tolist():
-        if not open_cells[i, j, k]:
-            continue
-        state = int(grid[i, j, k])
-        low, high = [i, j, k], [i, j, k]
-        for axis in (2, 0, 1):
-            while high[axis] + 1 < grid.shape[axis]:
-                part = [slice(a, b + 1) for a, b in zip(low, high, strict=True)]
-                part[axis] = slice(high[axis] + 1, high[axis] + 2)
-                there = tuple(part)
-                if not (open_cells[there].all() and (grid[there] == state).all()):
-                    break
-                high[axis] += 1
-        open_cells[tuple(slice(a, b + 1) for a, b in zip(low, high, strict=True))] = False
-        yield state, Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
 
 def _blocks(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:

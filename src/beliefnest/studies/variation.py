@@ -9,6 +9,8 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document, plain
+from beliefnest.scenarios.drawn_map import with_map
+from beliefnest.scenarios.parameters import with_parameters
 from beliefnest.studies.changes import MovedBySymmetry, Renamed
 from beliefnest.studies.scene_changes import Kind, SceneChange, changed_scene
 from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
@@ -73,7 +75,8 @@ class Variation:
         Raises:
             InputError: The template cannot be changed with certainty, or a name is unknown.
         """
-        for change in self._changes(document):
+        drawn = with_map(with_parameters(document, self.parameters))
+        for change in self._changes(drawn):
             text = change.value("template", text)
         return text
 
