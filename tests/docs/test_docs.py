@@ -39,7 +39,7 @@ def test_the_scenario_of_the_guide_does_as_it_expects(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     guide = (ROOT / "docs" / "scenarios.md").read_text(encoding="utf-8")
-    text, beliefs, computed, _ = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
+    text, drawn, beliefs, computed, _ = re.findall(r"```yaml\n(.*?)```", guide, re.DOTALL)
     monkeypatch.chdir(tmp_path)
     Path("boxes.yaml").write_text(text, encoding="utf-8")
     assert run_command_line(["run", "boxes.yaml", "--out", "run"]) == 0
@@ -56,6 +56,13 @@ def test_the_scenario_of_the_guide_does_as_it_expects(
         nest.play()
         (question,) = resolved(nest, asking.probes[0]).questions
     assert question.right == ("he does not know",)
+    shut, opened = (
+        Scenario.from_mapping(yaml.safe_load(drawn), condition=number) for number in (1, 2)
+    )
+    assert shut.setting.snapshot.containers == {(1, 1, 1): {"diamond": 1}}
+    for scenario, sees in ((shut, False), (opened, True)):
+        with Nest.open(scenario, world="scripted") as nest:
+            assert nest["/ann"].state.agents["bob"].current == sees
 
 
 def test_the_readme_begins_with_the_two_commands() -> None:

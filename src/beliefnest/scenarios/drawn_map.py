@@ -18,7 +18,6 @@ from beliefnest.scenarios.cuboids import cuboids
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, wrapped
 from beliefnest.scenarios.document_form import check_written
 from beliefnest.scenarios.format import FloorEntry, LegendEntry, MapEntry, WrittenFile
-from beliefnest.scenarios.space import box_between
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import box_fault
 from beliefnest.world.values import Box, Position
@@ -242,7 +241,7 @@ class _Drawing:
         """The box of the scenario."""
         if isinstance(self._file.box, msgspec.UnsetType):
             return self._drawn_box
-        return box_between(*self._file.box)
+        return Box.between(*self._file.box)
 
     def _cells(self) -> Iterator[_Cell]:
         """Yield the cells, floor by floor, in the order of reading."""
@@ -443,7 +442,7 @@ class _Drawing:
     def _line(self, floor: _Floor, row: int) -> int:
         """Return the line of a row in the file; the line of the floor if the row is not there."""
         if isinstance(floor.node.value, list):
-            return floor.node.value[row].line
+            return int(floor.node.value[row].line)
         # A block of text begins on the line after its key.
         line = floor.node.line + row
         is_there = floor.node.line > 0 and line < len(self._lines)
