@@ -131,7 +131,7 @@ class StudyRecord:
         if len(levels) > 1 and not compared:
             raise InputError(
                 f"no two rows differ in {between!r} alone, which is {levels[0]!r}, {levels[1]!r}; "
-                "compare groups that share no variations by `fit`"
+                "compare groups that share no variations by a regression (`fit`, or --effect)"
             )
         return [
             {
