@@ -14,6 +14,7 @@ program's. Where the semantics leave something open, the choice made here is:
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any
 
 from tests.semantics.reference_rules import UNKNOWN, Node, Rules, known_block
@@ -148,7 +149,7 @@ class Reference:
     def everything(self, path: Path) -> dict[str, Any]:
         """All that the node holds, in the form of `comparing.everything`."""
         node, now = self.tree(path).node, self.head(path)
-        text = self.rules.registry.text
+        text = cache(self.rules.registry.text)  # a node has few states in many places
         blocks: dict[Position, Any] = dict.fromkeys(
             self._start.box.positions(), (None, False, None)
         )
