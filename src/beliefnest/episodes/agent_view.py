@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from beliefnest.belief.view import State
 from beliefnest.episodes.considered import SearchTrace
@@ -136,6 +136,8 @@ class AgentView:
         imagine: Function that returns the belief at a tick as a separate world, down to a depth.
         noting: Function that wraps a model so that the run records its requests.
         before: The agent's programs of earlier rounds.
+        memo: Cache that the policies of a round share; None: the view has its own. It may contain
+            only results of pure functions, with everything that they depend on as keys.
 
     Attributes:
         agent: Name of the agent.
@@ -143,6 +145,7 @@ class AgentView:
         round: Number of the round that begins, from 0.
         last: End of the agent's latest program.
         before: The agent's programs of earlier rounds, of any policy; an empty text: no program.
+        memo: Cache that the policies of a round share.
         considered: Courses that the policy noted for the record of the run; None: none.
     """
 
@@ -156,6 +159,7 @@ class AgentView:
         imagine: Callable[[int, int | None], Imagination],
         noting: "Callable[[Model], Model]",
         before: Sequence[str],
+        memo: dict[object, Any] | None = None,
     ) -> None:
         self.agent = agent
         self.brief = brief
@@ -165,6 +169,7 @@ class AgentView:
         self._imagine = imagine
         self._noting = noting
         self.before = before
+        self.memo = {} if memo is None else memo
         self.considered: SearchTrace | None = None
 
     @property

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from beliefnest.episodes.agent_view import AgentView, Brief, Policy
 from beliefnest.episodes.choosing import check_resumable, chosen, name_of
@@ -114,6 +114,7 @@ class Episode:
         self._owns_nest = True
         self._start = 0
         self._parts: list[Part] = []
+        self._memo: dict[object, Any] = {}
         self._watching = Watch(task, 0)
         self._help: Help | None = None
 
@@ -429,6 +430,7 @@ class Episode:
             lambda depth, tick: own.imagination(depth, self.task.form.pace, tick),
             own.noting,
             programs_of(self._parts, agent),
+            self._memo,
         )
 
     def at(self, round: int) -> "RoundStart[Self]":
@@ -520,6 +522,7 @@ class Episode:
     def _decide(self) -> None:
         """Ask for the programs of a part, and record them before they run."""
         slot = self._slots[len(self._parts) % len(self._slots)]
+        self._memo.clear()
         self._parts.append(Part({agent: self._asker.ask(self.view(agent)) for agent in slot}))
         self._keep()
 

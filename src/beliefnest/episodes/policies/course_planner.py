@@ -137,17 +137,24 @@ class Planner:
     Args:
         brief: Common knowledge about the task.
         spoken: Texts that were said so far, by speaker.
+        guesses: Cache of the assumed plans of other agents, shared with planners of the same brief;
+            None: it has its own.
 
     Attributes:
         tried: Number of branches tried so far.
         guesses: Cache of the assumed plans of other agents, by their assumed beliefs.
     """
 
-    def __init__(self, brief: Brief, spoken: Mapping[str, Collection[str]] | None = None) -> None:
+    def __init__(
+        self,
+        brief: Brief,
+        spoken: Mapping[str, Collection[str]] | None = None,
+        guesses: dict[object, tuple[Call, ...]] | None = None,
+    ) -> None:
         self._brief = brief
         self.spoken = spoken or {}
         self.tried = 0
-        self.guesses: dict[tuple[object, ...], tuple[Call, ...]] = {}
+        self.guesses = {} if guesses is None else guesses
 
     def plan(
         self,
@@ -306,7 +313,9 @@ class _Planning:
         """Return the assumed plan of another agent, planned in its assumed belief."""
         order, left = self._order - 1, self._horizon - elapsed
         known, seen = self._planner.guesses, mind.print_of(other, order)
-        key = (other, order, left, self._bounds, seen)
+        # Planners of order 0 do not speak.
+        spoken = tuple(sorted(self._planner.spoken.items())) if order else ()
+        key = (other, order, left, self._bounds, seen, spoken)
         if seen is None or key not in known:
             below = mind.below(other, order)
             plan = self._planner.plan(below, other, order, left, self._bounds.lower())

@@ -42,7 +42,8 @@ class Search:
         if view.brief.hides_goals:
             return Expecting(view, self.order, self.bounds).program(uniform(view.brief))
         mind = view.imagine(self.order)
-        planner = Planner(view.brief, view.spoken)
+        # All agents know all goals here, so that their planners have the same brief.
+        planner = Planner(view.brief, view.spoken, view.memo)
         # The search imagines a scripted world, in which a block on foot takes one tick.
         ticks = view.ticks_left // view.brief.pace
         # What has just failed in the same way would fail again.

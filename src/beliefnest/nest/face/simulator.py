@@ -1,7 +1,7 @@
 """Live simulator of a nest, as users work with it."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
 from beliefnest.errors import BranchError, InputError, WorldError
 from beliefnest.nest.acting.engine import Engine
@@ -18,6 +18,7 @@ from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import is_well_formed
 from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
 from beliefnest.worlds.protocol import ProgramPast, ProgramResult
+from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.nest_world import ScriptedBody, ScriptedNestWorld
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -329,7 +330,15 @@ class Simulator(ShownSimulator):
             forest = recording.history.walk(moment.timeline, paths)
             recording.history.advance(moment.timeline, forest, moment.entries)
         speech = -(-forest.context.options.speech_ticks // pace)
-        return Imagination.of(forest, self._path, depth, moment.tick, speech_ticks=speech)
+        grounds = recording.remembered.setdefault("grounds of imaginations", {})
+        return Imagination.of(
+            forest,
+            self._path,
+            depth,
+            moment.tick,
+            cast(dict[bytes, Ground], grounds),
+            speech_ticks=speech,
+        )
 
 
 def check_senses(senses: object) -> None:
