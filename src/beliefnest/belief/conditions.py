@@ -156,6 +156,11 @@ class Fact(ABC):
         return None
 
     @property
+    def holder(self) -> str | None:
+        """Return the agent that is to have the items; None: none."""
+        return None
+
+    @property
     def blocks(self) -> tuple[Position, ...]:
         """Return the blocks that the fact compares; the first is to be changed."""
         return ()
@@ -339,6 +344,10 @@ class ItemsWith(Fact):
 
     def __str__(self) -> str:
         return f"{self.agent} has {self.count} {self.item}"
+
+    @property
+    def holder(self) -> str | None:
+        return self.agent
 
     def holds(self, facts: GoalFacts) -> bool:
         return facts.items_of(self.agent).get(self.item, 0) >= self.count

@@ -1,5 +1,6 @@
 """Candidate acts of an agent: calls of skills with arguments that it believes to exist."""
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 
 from beliefnest.belief.conditions import Fact, agrees
@@ -12,6 +13,9 @@ from beliefnest.world.doors import is_door, is_open, is_switch
 from beliefnest.world.registry import Registry, block_name, parse_state
 from beliefnest.world.values import Position, block_at
 from beliefnest.worlds.scripted.powered import switches_in
+
+_MOST_PARTNERS = 3
+"""Number of agents to whom items may be handed in a crowd."""
 
 __all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
 
@@ -99,7 +103,7 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
     world = mind.world
     if agent not in world.agents:
         return
-    mine, others = world.agents[agent].inventory, [n for n in sorted(world.agents) if n != agent]
+    mine, others = world.agents[agent].inventory, _partners(mind, agent, goals)
     near = [
         (at, held) for at, held in sorted(world.containers.items()) if mind.may_reach(agent, at)
     ]
@@ -123,6 +127,18 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
                 yield Call("giveItemToOther", (other, item, 1))
             else:
                 yield Call("goToPosition", (block_at(world.agents[other].position), 2))
+
+
+def _partners(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str]:
+    """Return agents to hand items to: all, or of many those named in goals and the nearest."""
+    agents = mind.world.agents
+    others = [name for name in sorted(agents) if name != agent]
+    if len(others) <= _MOST_PARTNERS:
+        return others
+    named = {fact.holder for fact in _facts(goals)}
+    here = agents[agent].position
+    others.sort(key=lambda name: (name not in named, math.dist(agents[name].position, here), name))
+    return sorted(others[:_MOST_PARTNERS])
 
 
 def _places(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:

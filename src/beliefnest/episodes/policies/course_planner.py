@@ -37,6 +37,12 @@ REACHED, OPEN, VIOLATED = 0.0, 1.0, 2.0
 """First part of a score; the second is a tick, a distance, and minus a tick."""
 
 
+_FEW = 3
+"""Number of other agents that may all replan as often as the bounds say."""
+_MOST_CHANGES = 3
+"""Number of times that all other agents together replan within a plan, if they are more."""
+
+
 @dataclass(frozen=True, slots=True)
 class Bounds:
     """Bounds of the search.
@@ -110,6 +116,7 @@ class _Node:
         calls: The calls.
         reached: Tick at which the goal was reached; None: it was not.
         violated: Tick at which the goal was violated; None: it was not.
+        changes: Number of times that others together may still replan; None: as often as each may.
     """
 
     mind: Imagination
@@ -118,6 +125,7 @@ class _Node:
     calls: tuple[Call, ...] = ()
     reached: int | None = None
     violated: int | None = None
+    changes: int | None = None
     score: Score = field(default=())
 
     def fork(self) -> "_Node":
@@ -128,6 +136,7 @@ class _Node:
             self.calls,
             self.reached,
             self.violated,
+            self.changes,
         )
 
 
@@ -222,6 +231,8 @@ class _Planning:
         self._speaks = agent in brief.talk and order > 0
         self._doubted: frozenset[Position] = frozenset()
         self._avoided: Collection[str] = ()
+        conditions = [each for goal in brief.goals.values() for each in goal.conditions]
+        self._holders = {each.fact.holder for each in conditions}
 
     def best(
         self,
@@ -284,6 +295,8 @@ class _Planning:
             )
             for name in self._imagined(mind)
         }
+        if len(first.others) > _FEW:
+            first.changes = _MOST_CHANGES
         if self._is_reached(first.mind):
             first.reached = 0
         return mind, first
@@ -418,17 +431,23 @@ class _Planning:
 
     def _change_minds(self, node: _Node) -> None:
         """Let those other agents replan that are done or may have perceived something new."""
-        for name, course in node.others.items():
-            if not self._may_change(node, name):
+        named = self._holders
+        for name in sorted(node.others, key=lambda name: (name not in named, name)):
+            course = node.others[name]
+            if node.changes == 0 or not self._may_change(node, name):
                 continue
             course.read = len(node.mind.happened)
             calls = self._guess(node.mind, name, node.elapsed)
+            if node.changes is not None:
+                node.changes -= 1
             if calls != tuple(course.performer.calls):
                 course.performer = Performer(calls)
                 course.changes -= 1
 
     def _may_change(self, node: _Node, name: str) -> bool:
         course = node.others[name]
+        if node.changes == 0:
+            return False
         since = node.mind.happened[course.read :]
         news = any(event.actor != name and _is_notable(event) for _, event in since)
         done = course.performer.is_done and bool(since)
