@@ -56,12 +56,14 @@ class Performer:
         calls: The remaining calls, the present one first.
         failed: True if the latest call failed.
         doing: Generator of the present call, one step a tick; None: no call is under way.
+        skips: Ticks that the present call asks to skip before its next step.
     """
 
     def __init__(self, calls: Iterable[Call] = ()) -> None:
         self.calls = list(calls)
         self.failed = False
         self.doing: Doing | None = None
+        self.skips = 0
 
     @property
     def is_done(self) -> bool:
@@ -122,6 +124,7 @@ class Imagination:
         self._speech_ticks = speech_ticks
         self._columns: Columns | None = None
         self._held = 0
+        self._stride = 1
         if forest is not None:
             context = forest.context
             self._columns = Columns(context)
@@ -266,6 +269,8 @@ class Imagination:
             self._speech_ticks,
         )
         made.happened += self.happened
+        # They hold as long as the blocks are the same.
+        made._ground, made._geometry = self._ground, self._geometry
         return made
 
     def doubting(self, speakers: Collection[str]) -> tuple["Imagination", frozenset[Position]]:
@@ -320,10 +325,17 @@ class Imagination:
         passed = 0
         for name, performer in performers.items():
             self._begin(name, performer)
+        # A single agent whom nobody watches can take many steps at once.
+        is_alone = self._forest is None and len(performers) == 1
         while passed < ticks and not stop():
+            self._stride = ticks - passed if is_alone and self.world.is_still else 1
             passed += 1
             with self.world.tick():
                 ended = [name for name, each in performers.items() if _advance(each)]
+            if is_alone:
+                skipped = _skipped(performers)
+                self.world.skip(skipped)
+                passed += skipped
             for name in ended:
                 performer = performers[name]
                 performer.doing = None
@@ -347,6 +359,7 @@ class Imagination:
                 signs=lambda: self.world.signs,
                 ground=self._standing,
                 speech_ticks=self._speech_ticks,
+                stride=lambda: self._stride,
                 # Other skills walk to where the line is free; their walks need not know the place.
                 has_free_line=self._has_free_line if call.skill == OPEN_CONTAINER.name else None,
             )
@@ -430,12 +443,21 @@ def _print(view: NodeView) -> tuple[object, ...]:
     return (view.numbers.tobytes(), tuple(contents), tuple(agents))
 
 
+def _skipped(performers: Mapping[str, Performer]) -> int:
+    """Return the ticks that performers ask to skip, and count them as skipped."""
+    total = 0
+    for each in performers.values():
+        total += each.skips
+        each.skips = 0
+    return total
+
+
 def _advance(performer: Performer) -> bool:
     """Do one tick of the present call. Return True if the call has ended."""
     if performer.doing is None:
         return False
     try:
-        next(performer.doing)
+        performer.skips = next(performer.doing)
     except StopIteration:
         return True
     except BeliefNestError:

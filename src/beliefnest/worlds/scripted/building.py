@@ -28,7 +28,7 @@ def switch_lever(*, powered: bool) -> Callable[..., Doing]:
         yield from walk_to_use(hand, place)
         if _is_powered(hand, place, "lever") is powered:
             return
-        yield
+        yield 0
         # Another agent may have switched it in this very tick.
         if _is_powered(hand, place, "lever") is not powered:
             hand.world.use_lever(hand.name, place, powered=powered)
@@ -40,11 +40,11 @@ def press_button(hand: Hand, position: Any) -> Doing:
     """Press a button; if it is pressed already, first wait until it comes out."""
     place = block_in(position)
     yield from walk_to_use(hand, place)
-    yield
+    yield 0
     for _ in range(_MOST_WAITED):
         if not _is_powered(hand, place, "_button"):
             break
-        yield
+        yield 0
     hand.world.press_button(hand.name, place)
 
 
@@ -52,7 +52,7 @@ def mine_block(hand: Hand, position: Any, name: Any) -> Doing:
     """Break a block and take its drops."""
     place, wanted = block_in(position), text_in(name)
     yield from walk_to_use(hand, place)
-    yield
+    yield 0
     there = _name_at(hand, place)
     if there != wanted:
         raise SkillError(f"there is no {wanted} at {place}, but {there}. Look where it is.")
@@ -65,7 +65,7 @@ def place_item(hand: Hand, name: Any, position: Any) -> Doing:
     if not hand.world.agents[hand.name].inventory.get(item, 0):
         raise SkillError(f"there is no {item} in the inventory")
     yield from walk(hand, place, hand.reach(place, beside=True), "the position")
-    yield
+    yield 0
     hand.world.put(hand.name, item, place)
 
 

@@ -3,8 +3,10 @@
 Walking takes one tick for each cell.
 """
 
+import itertools
 import math
-from collections.abc import Callable, Generator, Mapping
+from collections import deque
+from collections.abc import Callable, Generator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from typing import Any
@@ -33,10 +35,11 @@ __all__ = [
     "walk_to_use",
 ]
 
+_SHORTEST_STRIDE = 3
 REACH = 4.0
 """Largest distance, in blocks, between the eyes and the middle of a block in use."""
-Doing = Generator[None, None, Any]
-"""Skill in progress: advanced once in each tick, until it returns."""
+Doing = Generator[int, None, Any]
+"""Skill in progress, advanced once in each tick until it returns; it yields ticks to skip, or 0."""
 
 
 class SkillError(BeliefNestError):
@@ -49,6 +52,10 @@ class SkillError(BeliefNestError):
     def __init__(self, message: str, reason: str | None = None) -> None:
         super().__init__(message)
         self.reason = reason
+
+
+def _one_tick() -> int:
+    return 1
 
 
 @dataclass(frozen=True)
@@ -67,6 +74,9 @@ class Hand:
         heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
         has_free_line: Function of eyes and a block that returns whether no known block lies
             between; None if the agent reaches through everything.
+        stride: Function that returns the number of ticks, from the current one on, in which nothing
+            but this agent acts and nobody watches. Steps of so many ticks are taken at once, and
+            the walk then yields the number of ticks to skip.
     """
 
     name: str
@@ -79,6 +89,7 @@ class Hand:
     mouth: list[object] = field(default_factory=list)
     heard: list[tuple[str, str, str | None]] = field(default_factory=list)
     has_free_line: FreeLine | None = None
+    stride: Callable[[], int] = _one_tick
 
     def reach(self, place: Position, *, beside: bool = False) -> InReach:
         """Return the goal of standing where the agent reaches a block; `beside` as in `InReach`."""
@@ -150,7 +161,7 @@ def _bring(hand: Hand, cell: Position, *, opens: bool) -> Doing:
         return is_doorway(name) and moves_by_hand(name) and is_open(registry, state) is not opens
 
     if is_to_move():
-        yield
+        yield 0
         # Another agent may have moved it in this very tick.
         if is_to_move():
             world.use_door(hand.name, cell, open=opens)
@@ -169,23 +180,45 @@ def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_D
                 f"{hand.feet}, {far:.1f} blocks away. Go somewhere else, or clear the way first.",
                 NO_WAY,
             )
-        for cell in way:
+        steps = deque(way)
+        while steps:
             if doors.opens:
-                yield from _bring(hand, cell, opens=True)
-            yield
-            if not hand.ground().stands(cell):
-                bumped.add(cell)
+                yield from _bring(hand, steps[0], opens=True)
+            yield 0
+            if not hand.ground().stands(steps[0]):
+                bumped.add(steps[0])
                 break
-            moved, behind = True, hand.cell
-            _step_to(hand, cell)
+            skipped = _skipped(hand, steps)
+            behind = hand.cell
+            for _ in range(skipped):
+                behind = steps.popleft()
+            moved = True
+            _step_to(hand, behind, steps.popleft())
+            if skipped:
+                yield skipped
             if doors.closes:
                 yield from _bring(hand, behind, opens=False)
     return moved
 
 
-def _step_to(hand: Hand, cell: Position) -> None:
-    """Take one step, with the view ahead."""
-    x, _, z = hand.feet
+def _skipped(hand: Hand, steps: Sequence[Position]) -> int:
+    """Return the number of next steps, but for the last, that can be taken at once."""
+    stride = min(hand.stride(), len(steps))
+    if stride < _SHORTEST_STRIDE:
+        return 0
+    blocks, box, ground = hand.world.blocks, hand.world.box, hand.ground()
+    free = 0
+    # Doors are opened one by one, and an unknown floor may turn out to be none.
+    for cell in itertools.islice(steps, stride):
+        if cell not in box or int(blocks[box.index(cell)]) != AIR or not ground.stands(cell):
+            break
+        free += 1
+    return max(0, free - 1)
+
+
+def _step_to(hand: Hand, behind: Position, cell: Position) -> None:
+    """Take a step between two cells, with the view ahead."""
+    x, _, z = hand.feet if behind == hand.cell else feet_in(behind)
     feet = feet_in(cell)
     yaw = math.atan2(-(feet[0] - x), -(feet[2] - z))
     hand.world.place_agent(hand.name, feet, yaw=yaw, pitch=0.0)

@@ -42,14 +42,14 @@ def _go_to_position(hand: Hand, position: Any, dist: Any = 2, doors: Any = None)
     doors = doors_in(doors)
     moved = yield from walk(hand, target, Near(block_at(target), near), "the position", doors)
     if not moved:
-        yield
+        yield 0
     hand.world.arrive(hand.name, target)
 
 
 def _get_item_from_chest(hand: Hand, position: Any, items: Any) -> Doing:
     place, wanted = block_in(position), items_in(items)
     yield from _open(hand, place)
-    yield
+    yield 0
     there = hand.world.contents(place)
     moved = {name: min(n, there.get(name, 0)) for name, n in wanted.items() if there.get(name, 0)}
     if moved:
@@ -66,7 +66,7 @@ def _get_item_from_chest(hand: Hand, position: Any, items: Any) -> Doing:
 def _deposit_item_into_chest(hand: Hand, position: Any, items: Any) -> Doing:
     place, wanted = block_in(position), items_in(items)
     yield from _open(hand, place)
-    yield
+    yield 0
     hand.world.deposit(hand.name, place, wanted)
 
 
@@ -84,7 +84,7 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
         there = int(world.blocks[world.box.index(place)]) if place in world.box else AIR
         if is_open(Registry.load(), there) is to_open:
             return
-        yield
+        yield 0
         world.use_door(hand.name, place, open=to_open)
 
     return use
@@ -98,7 +98,7 @@ def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doin
     if fault := sign_fault(text):
         raise SkillError(f"text is {fault}")
     yield from walk_to_use(hand, place)
-    yield
+    yield 0
     hand.world.write_sign(hand.name, place, text, told)
 
 
@@ -108,7 +108,7 @@ def _is_lines(value: Any) -> bool:
 
 def _look_at(hand: Hand, position: Any) -> Doing:
     target = point_in("position", position)
-    yield
+    yield 0
     x, y, z = hand.feet
     away = (target[0] - x, target[1] - y - EYE_HEIGHT, target[2] - z)
     hand.world.place_agent(
@@ -125,7 +125,7 @@ def _read_sign(hand: Hand, position: Any) -> Doing:
         raise SkillError(f"there is no sign at {place}. Give the position of a sign.")
     x, y, z = place
     yield from _look_at(hand, (x + 0.5, y + 0.5, z + 0.5))
-    yield
+    yield 0
     if not hand.known().is_sign(place):
         raise SkillError(f"no sign is to be seen at {place}. Go nearer, or look somewhere else.")
     return hand.signs().get(place, "")
@@ -154,19 +154,19 @@ def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
 def _speak(hand: Hand) -> Doing:
     """Wait for the ticks that an utterance takes; several utterances take turns."""
     if not hand.speech_ticks:
-        yield
+        yield 0
         return
     words = object()
     hand.mouth.append(words)
     while hand.mouth[0] is not words:
-        yield
+        yield 0
     for _ in range(hand.speech_ticks):
-        yield
+        yield 0
     hand.mouth.remove(words)
 
 
 def _think(hand: Hand, text: Any) -> Doing:
-    yield
+    yield 0
     hand.world.think(hand.name, text_in(text))
 
 
@@ -177,18 +177,18 @@ def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
         raise SkillError(f"{name!r} is no agent that is known to be here; it is {sorted(others)}")
     where = others[name].position
     yield from walk(hand, where, Near(block_at(where), _NEAR), name)
-    yield
+    yield 0
     hand.world.give(hand.name, name, items_in({text_in(item): count}))
 
 
 def _wait_ticks(hand: Hand, ticks: Any) -> Doing:
     for _ in range(math.ceil(number_in("ticks", ticks))):
-        yield
+        yield 0
 
 
 def _wait_for_chat(hand: Hand, ticks: Any = 100) -> Doing:
     for _ in range(math.ceil(number_in("ticks", ticks))):
-        yield
+        yield 0
         for speaker, text, to in hand.heard:
             if speaker != hand.name:
                 return {"speaker": speaker, "text": text, "whispered": to is not None}
@@ -196,7 +196,7 @@ def _wait_for_chat(hand: Hand, ticks: Any = 100) -> Doing:
 
 
 def _do_nothing(hand: Hand) -> Doing:
-    yield
+    yield 0
 
 
 SKILLS: Mapping[str, Callable[..., Doing]] = {
@@ -248,7 +248,7 @@ def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
                 f"there is no container at {place}. Give the position of a chest or barrel."
             )
         yield from walk_to_use(hand, place)
-    yield
+    yield 0
     if not hand.reach(place).is_met(hand.cell):
         raise SkillError(f"{place} is too far away, or hidden, to open what is there; go nearer")
     _check_container(hand, place)

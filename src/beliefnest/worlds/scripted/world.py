@@ -191,6 +191,21 @@ class ScriptedWorld(PoweredState):
             with self.tick():
                 pass
 
+    @property
+    def is_still(self) -> bool:
+        """True if nothing happens by itself: no block is about to change or senses a step."""
+        return not (self._facts.due or self._facts.plates)
+
+    def skip(self, ticks: int) -> None:
+        """Let ticks pass at once in a world that is still; listeners do not hear of them.
+
+        Raises:
+            WorldError: Something would happen by itself, or a tick is under way.
+        """
+        if self._pending is not None or not self.is_still:
+            raise WorldError("ticks in which something may happen cannot be skipped; use step()")
+        self._tick += ticks
+
     def place_agent(
         self, name: str, position: Point, yaw: float | None = None, pitch: float | None = None
     ) -> None:
