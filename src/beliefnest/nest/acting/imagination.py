@@ -332,8 +332,7 @@ class Imagination:
             passed += 1
             with self.world.tick():
                 ended = [name for name, each in performers.items() if _advance(each)]
-            if is_alone:
-                skipped = _skipped(performers)
+            if is_alone and (skipped := _skipped(performers)):
                 self.world.skip(skipped)
                 passed += skipped
             for name in ended:
