@@ -88,7 +88,7 @@ def frames(nest):
 
 
 def world_of(nest):
-    return nest._engine.bodies.world._world
+    return nest._engine.bodies.world.inner
 
 
 @contextmanager
