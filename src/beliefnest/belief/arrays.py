@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.perception.options import SenseLimits
+
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Beam
 
 __all__ = [
-    "HEAR_ALL",
-    "HEAR_NEAR",
-    "HEAR_SEEN",
     "NOBODY",
     "READ",
     "SOURCE_SEEN",
@@ -26,7 +25,6 @@ __all__ = [
     "Ints",
     "Nodes",
     "Poses",
-    "Senses",
     "Space",
     "Span",
     "Weighing",
@@ -47,27 +45,6 @@ READ = -2
 
 SOURCE_SEEN = 1
 """Row of `Source.SEEN` in `belief.entries.SOURCES`."""
-
-HEAR_ALL, HEAR_SEEN, HEAR_NEAR = range(3)
-"""Hearing modes: global, sight, radius."""
-
-
-class Senses(NamedTuple):
-    """Limits of what agents can perceive.
-
-    Attributes:
-        far: Greatest visible distance, blocks, infinite if there is no limit.
-        cos_half: Cosine of half the field of view; -2: in all directions.
-        hearing: One of `HEAR_ALL`, `HEAR_SEEN`, `HEAR_NEAR`.
-        radius: Greatest distance of hearing, blocks, for `HEAR_NEAR`.
-        negative: True if a pose becomes unknown when its place is seen empty.
-    """
-
-    far: float
-    cos_half: float
-    hearing: int
-    radius: float
-    negative: bool
 
 
 class Space(NamedTuple):
@@ -92,7 +69,7 @@ class Space(NamedTuple):
     codes: npt.NDArray[np.uint16]
     holds: Flags
     origin: Floats
-    senses: Senses
+    senses: SenseLimits
     beam: "Beam"
 
 

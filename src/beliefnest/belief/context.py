@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import HEAR_ALL, HEAR_NEAR, HEAR_SEEN, NOBODY, Senses, Space
+from beliefnest.belief.arrays import NOBODY, Space
 from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.grounds import SOURCES, Basis, Source
 from beliefnest.errors import InputError
-from beliefnest.perception.options import Perception, Radius
+from beliefnest.perception.options import Perception
 from beliefnest.perception.sight import Sight
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import BlockGrid, places_of
@@ -112,22 +112,8 @@ class BeliefContext:
             codes,
             self.holds,
             1.0 - np.array(self.box.low, dtype=np.float64),
-            self._senses,
+            self.options.limits,
             beams.beam_room(),
-        )
-
-    @cached_property
-    def _senses(self) -> Senses:
-        """The options of perception, as the kernel takes them."""
-        options = self.options
-        cos_half, far = self.sight.limits
-        hearing = {"global": HEAR_ALL, "sight": HEAR_SEEN}.get(str(options.hearing), HEAR_NEAR)
-        return Senses(
-            far,
-            cos_half,
-            hearing,
-            options.hearing.blocks if isinstance(options.hearing, Radius) else 0.0,
-            options.negative_evidence,
         )
 
     @property

@@ -26,8 +26,6 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import (
-    HEAR_ALL,
-    HEAR_SEEN,
     NOBODY,
     SOURCE_SEEN,
     UNKNOWN,
@@ -35,7 +33,6 @@ from beliefnest.belief.arrays import (
     Facts,
     Nodes,
     Poses,
-    Senses,
     Space,
     Span,
     Weighing,
@@ -43,6 +40,7 @@ from beliefnest.belief.arrays import (
 from beliefnest.belief.seeing import eye_of, grid_cell, sees_agent, sees_cell, whole
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.eyes import Eye, set_code
+from beliefnest.perception.options import HEAR_ALL, HEAR_SEEN, SenseLimits
 from beliefnest.world.event_kinds import Sense
 
 __all__ = ["fold", "put", "put_all"]
@@ -261,7 +259,7 @@ def _observe_blocks(
 
 
 @inlined
-def _is_common_ground(senses: Senses, facts: Facts, event: int, me: int) -> bool:
+def _is_common_ground(senses: SenseLimits, facts: Facts, event: int, me: int) -> bool:
     """Return True if everybody who perceives an utterance credits agent `me` with hearing it.
 
     Presence does not matter then (section 5.5).
@@ -273,7 +271,7 @@ def _is_common_ground(senses: Senses, facts: Facts, event: int, me: int) -> bool
 
 
 @inlined
-def _hears(senses: Senses, poses: Poses, nodes: Nodes, node: int, speaker: int) -> bool:
+def _hears(senses: SenseLimits, poses: Poses, nodes: Nodes, node: int, speaker: int) -> bool:
     """Return True if the present owner of a node hears another agent that speaks aloud.
 
     The test runs on the speaker's pose in the parent, under `sight` or `radius` (section 5.5).
@@ -332,7 +330,7 @@ def _perceive_events(
 
 @inner
 def _update_absent(
-    senses: Senses,
+    senses: SenseLimits,
     facts: Facts,
     nodes: Nodes,
     changes: Changes,

@@ -1,8 +1,9 @@
 """Options of the observation function, which decides what agents perceive (semantics, 3)."""
 
+import math
 import re
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import msgspec
 
@@ -10,7 +11,18 @@ from beliefnest.errors import InputError
 from beliefnest.world.forms import note
 from beliefnest.world.limits import FARTHEST
 
-__all__ = ["ContainerMode", "Hearing", "Perception", "Radius", "Testimony"]
+__all__ = [
+    "HEAR_ALL",
+    "HEAR_NEAR",
+    "HEAR_SEEN",
+    "ContainerMode",
+    "Hearing",
+    "Perception",
+    "Radius",
+    "SenseLimits",
+    "Testimony",
+    "sight_limits",
+]
 
 ContainerMode = Literal["opaque", "transparent"]
 Testimony = Literal["none", "accept", "informed"]
@@ -27,6 +39,28 @@ class Radius(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename={"b
 
 
 Hearing = Literal["global", "sight"] | Radius
+
+HEAR_ALL, HEAR_SEEN, HEAR_NEAR = range(3)
+"""Numbers of the ways of hearing in kernels: global, sight, radius."""
+
+
+class SenseLimits(NamedTuple):
+    """Options of `Perception` that kernels read, as numbers.
+
+    Attributes:
+        far: Greatest visible distance, blocks, infinite if there is no limit.
+        cos_half: Cosine of half the field of view; -2: in all directions.
+        hearing: One of `HEAR_ALL`, `HEAR_SEEN`, `HEAR_NEAR`.
+        radius: Greatest distance of hearing, blocks, for `HEAR_NEAR`.
+        negative: True if a pose becomes unknown when its place is seen empty.
+    """
+
+    far: float
+    cos_half: float
+    hearing: int
+    radius: float
+    negative: bool
+
 
 if TYPE_CHECKING:  # In code these options have further forms, which `__post_init__` makes one.
     _Hearing = Hearing | Mapping[str, float] | str
@@ -132,3 +166,25 @@ class Perception(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         msgspec.structs.force_setattr(
             self, "transparent_blocks", tuple(sorted(set(self.transparent_blocks)))
         )
+
+    @property
+    def limits(self) -> SenseLimits:
+        """The options that kernels read."""
+        hearing = self.hearing
+        far, cos_half = sight_limits(self.max_visible_distance, self.field_of_view)
+        return SenseLimits(
+            far,
+            cos_half,
+            {"global": HEAR_ALL, "sight": HEAR_SEEN}.get(str(hearing), HEAR_NEAR),
+            hearing.blocks if isinstance(hearing, Radius) else 0.0,
+            self.negative_evidence,
+        )
+
+
+def sight_limits(max_visible_distance: float | None, field_of_view: float) -> tuple[float, float]:
+    """Return the greatest visible distance and the cosine of half the field of view.
+
+    These are the first two `SenseLimits`; the arguments are those of `Perception`.
+    """
+    cos_half = -2.0 if field_of_view >= 360 else math.cos(math.radians(field_of_view) / 2)
+    return math.inf if max_visible_distance is None else float(max_visible_distance), cos_half

@@ -23,6 +23,7 @@ import numpy.typing as npt
 
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, CodeGrid, code_grid
+from beliefnest.perception.options import sight_limits
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Point, Position
@@ -81,13 +82,6 @@ class Sight:
         _check_grid(blocks, self.registry.states)
         codes = code_grid(blocks, self.state_codes, self.reaches)
         return Geometry(self, origin, codes)
-
-    @property
-    def limits(self) -> tuple[float, float]:
-        """Cosine of half the field of view (-2: no limit) and greatest distance (may be inf)."""
-        angle, far = self.field_of_view, self.max_visible_distance
-        cos_half = -2.0 if angle >= 360 else math.cos(math.radians(angle) / 2)
-        return cos_half, math.inf if far is None else float(far)
 
     @functools.cached_property
     def _transparent(self) -> BoolArray:
@@ -281,7 +275,8 @@ class Geometry:
         from beliefnest.perception import beams
 
         x, y, z = (float(e) + (1 - o) for e, o in zip(eye, self.origin, strict=True))
-        return beams.eye_of((x, y, z), yaw, pitch, *self.sight.limits)
+        far, cos_half = sight_limits(self.sight.max_visible_distance, self.sight.field_of_view)
+        return beams.eye_of((x, y, z), yaw, pitch, cos_half, far)
 
 
 def _share_of_cubes(codes: CodeGrid) -> float:
