@@ -82,7 +82,7 @@ def test_a_kernel_is_compiled_again_when_one_that_it_calls_changed(tmp_path, mon
 
 def test_damaged_files_are_compiled_and_written_again(tmp_path, folder, monkeypatch):
     assert loaded(installed(tmp_path / "first"), monkeypatch)(2) == 8
-    for content in (b"", b"no machine code"):
+    for content in (b"", b"no machine code", b"cbeliefnest.perception.codes\nNoSuchType\n."):
         for file in folder.rglob("*.nb?"):
             file.write_bytes(content)
         assert loaded(tmp_path / "first", monkeypatch)(2) == 8

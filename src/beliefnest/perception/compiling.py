@@ -8,7 +8,7 @@ other. Numba itself distinguishes processors and types of arguments within such 
 
 import os
 import pickle
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from enum import EnumType
 from hashlib import blake2b
@@ -40,7 +40,8 @@ _BORROWING: dict[str, Any] = {**_KERNEL, "_nrt": False}
 # Kernels that only kernels call need no wrapper for Python, which would double their compilation.
 _INNER: dict[str, Any] = {"no_cpython_wrapper": True}
 
-_UNREADABLE = (OSError, EOFError, pickle.UnpicklingError)
+# Damaged files, and those of a version whose types of arguments have other names.
+_UNREADABLE = (OSError, EOFError, pickle.UnpicklingError, AttributeError, ImportError)
 
 
 def compiled(function: F) -> F:
@@ -208,7 +209,7 @@ class _Cache(caching.FunctionCache):
 
 
 def _digest(kernel: Any) -> str:
-    """Return a digest of a kernel, the kernels that it calls and the constants that they read."""
+    """Return a digest of a kernel, the kernels that it calls, their types and their constants."""
     return blake2b("\n".join(_parts(kernel, set())).encode(), digest_size=8).hexdigest()
 
 
@@ -219,6 +220,7 @@ def _parts(kernel: Any, seen: set[object]) -> Iterator[str]:
     constants = [each for each in code.co_consts if each != function.__doc__]
     yield repr((function.__name__, code.co_code, constants, code.co_names, code.co_varnames))
     yield repr(sorted(kernel.targetoptions.items()))
+    yield from _types(function.__annotations__.values())
     for name in code.co_names:
         value = function.__globals__.get(name)
         match value:
@@ -233,3 +235,11 @@ def _parts(kernel: Any, seen: set[object]) -> Iterator[str]:
                 yield repr(getattr(value, "_fields", name))
             case _:
                 yield repr(value)
+
+
+def _types(annotations: Iterable[object]) -> Iterator[str]:
+    """Yield the names of types of arguments, and of their fields, by which numba stores them."""
+    for each in annotations:
+        yield repr(each)
+        if hasattr(each, "_fields"):
+            yield from _types(each.__annotations__.values())

@@ -38,7 +38,7 @@ BoolArray = npt.NDArray[np.bool_]
 Points = npt.NDArray[np.float64]
 
 _DENSE = 0.25
-"""Share of full cubes above which light does not get far: measured, at 30 % both ways are equal."""
+"""Share of full cubes above which light does not get far. Both ways are equal at 30 % solid."""
 _NEAR = 5
 """Number of layers around the eye whose lit cells show how far light gets."""
 
