@@ -115,14 +115,14 @@ def at_a_frame(monkeypatch, act, number=1) -> Iterator[None]:
 def killed_in(monkeypatch, op, times=1) -> Iterator[list[int]]:
     """Kill Node when it has been asked for something, so many times."""
     asked, killed = [], []
-    request, answer = Channel.request, Channel._answer
+    begin, answer = Channel.begin, Channel._answer
 
-    def asking(self, name, *handlers, **arguments):
+    def asking(self, name, **arguments):
         asked.append(name)
         if name == op and len(killed) < times:
             # However long this process waits for its turn, Node does not get as far as an answer.
             os.kill(self.pid, signal.SIGSTOP)
-        return request(self, name, *handlers, **arguments)
+        begin(self, name, **arguments)
 
     def answering(self, *handlers):
         if asked[-1] == op and len(killed) < times:
@@ -132,7 +132,7 @@ def killed_in(monkeypatch, op, times=1) -> Iterator[list[int]]:
         return answer(self, *handlers)
 
     with monkeypatch.context() as patched:
-        patched.setattr(Channel, "request", asking)
+        patched.setattr(Channel, "begin", asking)
         patched.setattr(Channel, "_answer", answering)
         yield killed
 
