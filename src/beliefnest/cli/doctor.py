@@ -46,7 +46,7 @@ def examine(server: str | None = None, *, as_json: bool, warm: bool = False) -> 
     if server is not None and not is_server(server):
         raise InputError(f"{server!r} is no address of a server; give minecraft://HOST:PORT")
     if warm:
-        _one_inference()
+        _use_kernels()
     found = []
     for name, check in (*_CHECKS, *(() if server is None else _server_checks(server))):
         finding = _find(name, check)
@@ -134,10 +134,15 @@ def _kernels() -> str:
     )
 
 
-def _one_inference() -> None:
-    """Compute a belief and infer from it, so that all kernels of both are compiled."""
+def _use_kernels() -> None:
+    """Compute beliefs, infer from one and look around, so that all kernels are compiled."""
+    import numpy as np
+
     from beliefnest.minds.mind_model import MindModel
     from beliefnest.nest.face.nest import Nest
+    from beliefnest.perception.options import Perception
+    from beliefnest.perception.sight import Sight
+    from beliefnest.world.registry import Registry
     from beliefnest.worlds.scripted.world import ScriptedWorld
 
     sys.stderr.write(
@@ -152,6 +157,14 @@ def _one_inference() -> None:
         model = MindModel("bob", {"gold": {"block": "gold_block"}}, {"gold": [0, 5]}, doubt)
         # Only the prediction needs a plan: the course is too short.
         nest["/"].infer(model).predict()
+    # Hearers who weigh claims need kernels of their own, and so do looks in open and dense places.
+    weighing = Perception(testimony="informed")
+    with Nest(ScriptedWorld(box, floor, agents), weighing, static_blocks=["stone"]) as nest:
+        nest["/ann/bob"].state.blocks.named(frozenset({"stone"}))
+    registry = Registry.load()
+    for block in ("air", "stone"):
+        blocks = np.full((3, 3, 3), registry.state_id(block), dtype=np.int32)
+        Sight(registry).geometry(blocks, (0, 0, 0)).visible_blocks((1.5, 1.5, 1.5), 0.0, 0.0)
 
 
 def _world() -> str:

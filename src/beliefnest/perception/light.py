@@ -150,6 +150,6 @@ def lit_cells(scene: Scene, eye: Vector, layers: int) -> Flags:
     for axis in range(3):
         _, size_b, size_c = turned(scene.sizes, axis)
         light = np.empty((2, size_b, size_c, 4))
-        _flood(scene, eye, axis, 1, layers, light, lit.reshape(-1))
-        _flood(scene, eye, axis, -1, layers, light, lit.reshape(-1))
+        for step in (-1, 1):
+            _flood(scene, eye, axis, step, layers, light, lit.reshape(-1))
     return lit
