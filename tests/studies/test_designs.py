@@ -84,6 +84,7 @@ def simulated(seed, groups=80, size=6, effect=0.8):
             yield {**row, "ok": bool(chance.random() < p), "cell": f"{group}-{number}"}
 
 
+@pytest.mark.extra("statsmodels")
 def test_a_mixed_model_finds_the_parameters_of_simulated_rows():
     fits = [fit_rows(list(simulated(seed)), ["level"], "mixed", "binomial") for seed in range(8)]
     estimates = [fit.terms[1].estimate for fit in fits]
@@ -93,6 +94,7 @@ def test_a_mixed_model_finds_the_parameters_of_simulated_rows():
     assert all(0.15 < fit.terms[1].se < 0.35 for fit in fits)
 
 
+@pytest.mark.extra("statsmodels")
 def test_gee_of_a_linear_model_agrees_with_the_difference_of_accuracies():
     rows = list(simulated(1))
     copies = [{**row, "cell": f"again {row['cell']}", "copy_of": row["cell"]} for row in rows[:50]]
