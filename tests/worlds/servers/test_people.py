@@ -1,7 +1,9 @@
 """People as agents: what they do in a Minecraft client is what a bot does, for all beliefs."""
 
+import io
 import re
 import socket
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -270,6 +272,20 @@ def test_worlds_that_nobody_can_join_refuse_people(scenario):
         Nest.open(scenario(1), realtime=True, listen=str(nest.address))
 
 
+class Told(io.StringIO):
+    """Text that another thread writes; it tells when a part of it has come."""
+
+    def __init__(self, part: str) -> None:
+        super().__init__()
+        self.part, self.has_come = part, threading.Event()
+
+    def write(self, text: str) -> int:
+        written = super().write(text)
+        if self.part in self.getvalue():
+            self.has_come.set()
+        return written
+
+
 def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
     """The page's own example: what it prints, and what it writes down."""
     page = (Path(__file__).parents[3] / "docs" / "people.md").read_text(encoding="utf-8")
@@ -282,13 +298,13 @@ def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
     (tmp_path / "mine.yaml").write_text(written, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     code = compile(example.replace("25565", str(port)), "people.md", "exec")
-    with ThreadPoolExecutor(1) as experimenter:
+    told = Told("join as anne")
+    with ThreadPoolExecutor(1) as experimenter, monkeypatch.context() as patched:
+        patched.setattr("sys.stderr", told)
         played = experimenter.submit(exec, code, {"__name__": "example"})
-        told = ""
         # A player who joins before the script has begun is sent away.
-        while "join as anne" not in told:
+        while not told.has_come.wait(0.1):
             assert not played.done(), played.result()
-            told += capsys.readouterr().err
         with Person(f"127.0.0.1:{port}", "anne") as anne:
             anne.does(
                 "await new Promise(turn => bot.on('message', m => /your turn/.test(m) && turn()))"
