@@ -215,8 +215,11 @@ class ServeOptions:
 
     what: Annotated[
         str,
-        typer.Argument(help="Run folder, or a scenario to run.", metavar="RUN|SCENARIO"),
+        typer.Argument(help="Run folder, or a scenario to run or edit.", metavar="RUN|SCENARIO"),
     ]
+    edit: Annotated[
+        bool, typer.Option("--edit", help="Edit the scenario file on its plan; it may be new.")
+    ] = False
     port: Annotated[int | None, typer.Option(help="Port; default: 8642, or a free one.")] = None
     address: Annotated[
         str, typer.Option(help="Address to listen on; other machines need the token in the URL.")

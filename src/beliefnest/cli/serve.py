@@ -4,7 +4,7 @@ import secrets
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from ipaddress import ip_address
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beliefnest.cli.console import stdout
+from beliefnest.cli.editing import FileEditor
 from beliefnest.cli.folder import STORE, stores_in
 from beliefnest.cli.options import ServeOptions
 from beliefnest.cli.page import about_run
@@ -31,7 +32,7 @@ _PORT = 8642
 
 
 def serve(options: ServeOptions) -> None:
-    """Serve the page until the user interrupts it.
+    """Serve the page of a run, or the editor of a file, until the user interrupts it.
 
     Raises:
         InputError: The extra is not installed, there is no such run, scenario or condition, the
@@ -40,41 +41,56 @@ def serve(options: ServeOptions) -> None:
     try:
         import uvicorn
 
+        from beliefnest.viewer.serving.editor import editor_app
         from beliefnest.viewer.serving.routes import page_app
     except ImportError:
         raise InputError(
             "serve needs starlette and uvicorn: run `pip install 'beliefnest[serve]'`"
         ) from None
     check_depth(options.depth)
-    with listening(options) as listener, _running(options) as folder:
+
+    def show(listener: socket.socket, app: Callable[[set[str], str | None], "Starlette"]) -> None:
+        """Tell the address and serve the application."""
         port = listener.getsockname()[1]
         token = None if _is_loopback(options.address) else secrets.token_urlsafe(24)
-        host = Host(lambda: _stores(folder), _open, options.depth)
-        for fault in host.discover():
-            sys.stderr.write(f"beliefnest: missing on the page until it can be read: {fault}\n")
-        host.follow()
         query = "" if token is None else f"?token={token}"
         address = f"http://{_host(options.address)}:{port}/{query}"
         stdout().print(
             f"The page is at {address} (stop with Ctrl-C)", highlight=False, soft_wrap=True
         )
-
-        def app() -> "Starlette":
-            names = _names(options.address, port)
-            return page_app(host, names, token, lambda: server.should_exit)
-
-        server = uvicorn.Server(
-            uvicorn.Config(
-                app,
-                factory=True,
-                log_level="warning",
-                access_log=False,
-                timeout_graceful_shutdown=1,
+        names = _names(options.address, port)
+        server.append(
+            uvicorn.Server(
+                uvicorn.Config(
+                    lambda: app(names, token),
+                    factory=True,
+                    log_level="warning",
+                    access_log=False,
+                    timeout_graceful_shutdown=1,
+                )
             )
         )
         # Users end the server with Ctrl-C; uvicorn raises KeyboardInterrupt again after its end.
         with suppress(KeyboardInterrupt):
-            server.run(sockets=[listener])
+            server[0].run(sockets=[listener])
+
+    server: list[uvicorn.Server] = []
+    if options.edit:
+        if options.condition or options.out is not None:
+            raise InputError("--edit runs nothing; leave --condition and --out out")
+        editor = FileEditor(Path(options.what))
+        with listening(options) as listener:
+            show(listener, lambda names, token: editor_app(editor, names, token))
+        return
+    with listening(options) as listener, _running(options) as folder:
+        host = Host(lambda: _stores(folder), _open, options.depth)
+        for fault in host.discover():
+            sys.stderr.write(f"beliefnest: missing on the page until it can be read: {fault}\n")
+        host.follow()
+        show(
+            listener,
+            lambda names, token: page_app(host, names, token, lambda: server[0].should_exit),
+        )
 
 
 @contextmanager

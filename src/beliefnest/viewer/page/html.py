@@ -36,20 +36,21 @@ _SHELL = """<!doctype html>
 """
 
 
-def page_html(title: str, content: Mapping[str, Any], *, served: bool) -> str:
+def page_html(title: str, content: Mapping[str, Any], *, served: bool, name: str = "page") -> str:
     """Return the page.
 
     Args:
         title: Title of the browser's tab.
         content: Data of the page; it is compressed with deflate and encoded as base64.
         served: True if the page communicates with the server that sent it.
+        name: Name of its program.
 
     Raises:
         InputError: The page was not built with the package.
     """
     text = visible_json(json.dumps(content, separators=(",", ":"), ensure_ascii=False))
     packed = base64.b64encode(zlib.compress(text.encode(), 9)).decode()
-    style, program = _part("page.css"), _part("page.js")
+    style, program = _part("page.css"), _part(f"{name}.js")
     return _SHELL.format(
         policy=html.escape(_policy(style, program, served=served)),
         title=html.escape(on_one_line(title)),

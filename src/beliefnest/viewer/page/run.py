@@ -138,6 +138,7 @@ class RunData:
             "agents": [asdict(looks[name]) for name in reader.agents],
             "marks": {mark.value: asdict(look) for mark, look in MARKS.items()},
             "box": {"low": box.low, "shape": box.shape},
+            "places": [[*place, name] for name, place in sorted(reader.setting.places.items())],
             "labels": [[*place, label] for place, label in sorted(about.labels.items())],
             "asked": [path_text(path) for path in about.paths],
             "inferences": about.inferences(),

@@ -10,7 +10,7 @@ const DEFAULT_OUTDIR = path.join(HERE, '..', '..', '..', '_page')
 async function build (outdir) {
   fs.rmSync(outdir, { recursive: true, force: true })
   const result = await esbuild.build({
-    entryPoints: { page: path.join(HERE, 'src', 'main.js') },
+    entryPoints: { page: path.join(HERE, 'src', 'main.js'), editor: path.join(HERE, 'src', 'editor.js') },
     outdir,
     bundle: true,
     format: 'iife',

@@ -3,7 +3,7 @@ import { createRequire } from 'node:module'
 const require = createRequire(import.meta.url)
 const [, { rules }] = require('../../../worlds/minecraft/node/eslint.config.js')
 
-const BROWSER = ['Blob', 'CSS', 'DecompressionStream', 'EventSource', 'ResizeObserver', 'Response', 'URLSearchParams', 'addEventListener', 'atob',
+const BROWSER = ['Blob', 'CSS', 'DecompressionStream', 'EventSource', 'FormData', 'ResizeObserver', 'Response', 'URLSearchParams', 'addEventListener', 'atob',
   'clearTimeout', 'devicePixelRatio', 'document', 'fetch', 'history', 'innerWidth', 'location', 'matchMedia', 'navigator', 'performance',
   'requestAnimationFrame', 'setTimeout']
 const NODE = ['process']

@@ -25,7 +25,7 @@ export class Plan {
 
   /**
    * Draw a scene.
-   * @param {object} scene - run, track, tick, things, storey, seen (Uint8Array or null), ray, chosen, dark
+   * @param {object} scene - run, track, tick, things, storey, seen (Uint8Array or null), ray, chosen, dark, and `named` to name containers
    */
   draw (scene) {
     const { run } = scene
@@ -108,11 +108,13 @@ export class Plan {
     }, svg('title', {}, words), ...parts)
   }
 
-  containers ({ run, things, chosen, storey }) {
+  containers ({ run, things, chosen, storey, named = false }) {
     return things.containers.filter(each => each.place[1] === storey && (each.contents || each.marks.length)).map(each => {
       const [x, y] = this.at(each.place[0], each.place[2])
       const s = this.size
-      const text = [contentsLabel(each.contents), signsText(run, each.marks, each.age)].filter(Boolean).join(' ')
+      const name = named ? run.label(each.place) : null
+      const held = [contentsLabel(each.contents), signsText(run, each.marks, each.age)].filter(Boolean).join(' ')
+      const text = name === null ? held : `${name}: ${held}`
       const words = `${each.name}: ${contentsText(each.contents)}${each.marks.length ? ` (${each.marks.join(', ')})` : ''}`
       const wrong = each.marks.includes('false')
       return this.target(each.thing, words, chosen,

@@ -123,6 +123,7 @@ export class Space {
     for (const each of scene.things.containers) this.addContainer(scene, each)
     for (const each of scene.things.agents) if (each.pose !== null) this.addAgent(scene, each)
     for (const each of scene.things.signs) this.addSign(scene, each)
+    for (const each of scene.run.head.places ?? []) this.addPlace(scene, each)
     for (const cell of scene.things.wrongBlocks.slice(0, 100)) this.outline(scene.run.place(cell), WRONG)
     for (const [, , x, y, z] of scene.things.items) this.add(CUBE, '#3fa7a7', [x, y + 0.15, z], { size: 0.22 })
     if (scene.ray !== null) this.addRay(scene.ray)
@@ -186,7 +187,15 @@ export class Space {
     else if (scene.chosen === each.thing) this.outline(each.place, 0x2b2a33)
     if (each.contents === null && scene.track.grid(scene.tick)[each.cell] < 0) this.outline(each.place, 0x8a8890)
     const sign = signsText(scene.run, each.marks, each.age)
-    this.label(each.thing, [x + 0.5, y + 1.35, z + 0.5], [contentsLabel(each.contents), sign].filter(Boolean).join(' '), wrong)
+    const named = scene.run.label(each.place)
+    const held = [contentsLabel(each.contents), sign].filter(Boolean).join(' ')
+    this.label(each.thing, [x + 0.5, y + 1.35, z + 0.5], named === null ? held : `${named}: ${held}`, wrong)
+  }
+
+  /** Show the name of a place; names are no buttons, because nobody believes anything about them. */
+  addPlace (scene, [x, y, z, name]) {
+    if (y > scene.storey + 1) return
+    this.label(`place-${name}`, [x + 0.5, y + 0.3, z + 0.5], name, false)
   }
 
   addSign (scene, each) {
@@ -222,7 +231,7 @@ export class Space {
 
   label (thing, place, text, wrong, look = null) {
     const made = this.tag(thing)
-    const classes = `tag${wrong ? ' false' : ''}`
+    const classes = `tag${wrong ? ' false' : ''}${thing.startsWith('place-') ? ' place' : ''}`
     if (made.className !== classes) made.className = classes
     if (made.textContent !== text) made.textContent = text
     made.style.borderColor = look?.colour ?? ''
@@ -231,7 +240,9 @@ export class Space {
 
   tag (thing) {
     if (!this.tags.has(thing)) {
-      const made = element('button', { type: 'button', tabindex: '-1', onclick: () => this.choose({ thing, note: null }) })
+      const made = thing.startsWith('place-')
+        ? element('span', {})
+        : element('button', { type: 'button', tabindex: '-1', onclick: () => this.choose({ thing, note: null }) })
       this.labels.append(made)
       this.tags.set(thing, made)
     }

@@ -1,0 +1,166 @@
+"""Editor of a scenario file: `beliefnest serve FILE --edit`."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.files import read_regular_text
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.editing import drawn_starter, edited
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.sources import builtin_names
+from beliefnest.scenarios.yaml_reading import parse_yaml
+from beliefnest.viewer.page.run import About, RunData
+from beliefnest.world.registry import Registry
+
+__all__ = ["FileEditor"]
+
+_SUFFIXES = (".yaml", ".yml")
+_LARGEST = 200_000
+"""Greatest number of blocks of a scene that is edited."""
+
+
+class FileEditor:
+    """Editor of one scenario file, which need not exist before it is saved.
+
+    Args:
+        file: The file.
+
+    Raises:
+        InputError: The file is no YAML file, or cannot be read.
+    """
+
+    def __init__(self, file: Path) -> None:
+        if file.suffix not in _SUFFIXES or str(file) in builtin_names():
+            raise InputError(f"{file} cannot be edited; give a .yaml file, which may be new")
+        self._file = file
+        self._turn = Lock()
+        self._saved = self._on_disk()
+        if self._saved is None and not file.parent.is_dir():
+            raise InputError(f"the folder of {file} does not exist; create it first")
+
+    @property
+    def title(self) -> str:
+        """Name of the file."""
+        return self._file.name
+
+    def begin(self) -> dict[str, Any]:
+        """Return the text of the file, and what the page needs before the first edit."""
+        with self._turn:
+            self._saved = self._on_disk()
+            text = drawn_starter(_name_of(self._file)) if self._saved is None else self._saved
+        registry = Registry.load()
+        return {
+            "file": self._file.name,
+            "is_new": self._saved is None,
+            "text": text,
+            "blocks": sorted(registry.block_names),
+            "items": sorted(registry.item_names),
+        }
+
+    def shown(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Return the text after edits, with its scene or what is wrong with it.
+
+        Args:
+            request: `text`, `edits` (see `edited`), and `viewer`: the agent whose sight is shown,
+                or None.
+
+        Raises:
+            InputError: The request has a wrong form.
+        """
+        text, edits = _text(request), request.get("edits", [])
+        if not isinstance(edits, list) or not all(isinstance(each, dict) for each in edits):
+            raise InputError("edits is no list of objects")
+        try:
+            for edit in edits:
+                text = edited(text, edit)
+        except BeliefNestError as error:
+            return {"text": _text(request), "refused": str(error)}
+        try:
+            return {"text": text, "scene": self._scene(text, request.get("viewer"))}
+        except BeliefNestError as error:
+            return {"text": text, "problem": str(error)}
+
+    def save(self, request: dict[str, Any]) -> dict[str, Any]:
+        """Write a text into the file, if no other program has changed it.
+
+        Raises:
+            InputError: Another program has changed the file, or it cannot be written.
+        """
+        text = _text(request)
+        with self._turn:
+            if self._on_disk() != self._saved:
+                raise InputError(
+                    f"{self._file} was changed by another program; copy your text and load anew"
+                )
+            try:
+                self._file.write_text(text, encoding="utf-8")
+            except OSError as error:
+                raise InputError(f"{self._file} cannot be written: {error.strerror}") from None
+            self._saved = text
+        return {"saved": self._file.name}
+
+    def _on_disk(self) -> str | None:
+        """Return the text of the file; None if there is no file."""
+        try:
+            return read_regular_text(self._file)
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError) as error:
+            raise InputError(f"{self._file} cannot be read: {error}") from None
+
+    def _scene(self, text: str, viewer: object) -> dict[str, Any]:
+        """Return the first tick of a scenario as data of the page, and who sees what in it."""
+        source = Scenario.varied(self._document(text), None)
+        snapshot = source.setting.snapshot
+        if snapshot.blocks.size > _LARGEST:
+            raise InputError(
+                f"the box has {snapshot.blocks.size} blocks; the editor shows up to {_LARGEST}"
+            )
+        with Nest.open(source, world="scripted") as nest:
+            about = About(title=source.name, labels=source.labels)
+            told = RunData(nest.reader, about, 0).update()
+            sees = {name: self._seen_by(nest, name) for name in nest.agents}
+            seen = nest["/"].visible_blocks(viewer) if viewer in sees else None
+        return {
+            "run": told,
+            "sees": sees,
+            "seen": None if seen is None else [int(each) for each in seen.ravel()],
+            "drawn": "map" in self._document(text).root.value,
+        }
+
+    def _seen_by(self, nest: Nest, viewer: str) -> list[str]:
+        """Return what an agent sees at the first tick: agents, and cells of containers."""
+        box = nest.reader.setting.snapshot.box
+        state, mask = nest[f"/{viewer}"].state, nest["/"].visible_blocks(viewer)
+        names = nest.reader.agents
+        found = [
+            f"agent-{names.index(name)}"
+            for name, believed in state.agents.items()
+            if name != viewer and believed.current
+        ]
+        _, height, depth = box.shape
+        for place in nest.reader.setting.snapshot.containers:
+            i, j, k = box.index(place)
+            if mask[i, j, k]:
+                found.append(f"container-{(i * height + j) * depth + k}")
+        return found
+
+    def _document(self, text: str) -> Document:
+        # Templates of prompts that the file names stand beside it.
+        return replace(parse_yaml(text, self._file.name), folder=self._file.parent)
+
+
+def _text(request: dict[str, Any]) -> str:
+    text = request.get("text")
+    if not isinstance(text, str):
+        raise InputError("the request lacks the text of the file")
+    return text
+
+
+def _name_of(file: Path) -> str:
+    return re.sub(r"[^A-Za-z0-9_-]", "-", file.stem)[:64] or "scenario"
