@@ -121,7 +121,9 @@ class FileEditor:
             raise InputError(
                 f"the box has {snapshot.blocks.size} blocks; the editor shows up to {_LARGEST}"
             )
-        with Nest.open(source, world="scripted") as nest:
+        # Nobody joins here: people stand where the file puts them.
+        alone = replace(source, setting=replace(source.setting, people=frozenset()))
+        with Nest.open(alone, world="scripted") as nest:
             about = About(title=source.name, labels=source.labels)
             told = RunData(nest.reader, about, 0).update()
             sees = {name: self._seen_by(nest, name) for name in nest.agents}

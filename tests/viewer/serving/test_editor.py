@@ -120,6 +120,8 @@ def test_only_the_page_edits_and_no_change_of_others_is_overwritten(served):
         assert file.read_text(encoding="utf-8") == SCENE
         wrong = client.post("api/scene", json={"text": SCENE.replace("bricks", "brikcs")}).json()
         assert wrong["problem"].startswith("rooms.yaml:4: map.legend.#: no block 'brikcs'")
+        person = SCENE.replace("facing: west", "type: human")
+        assert "scene" in client.post("api/scene", json={"text": person, "viewer": "bob"}).json()
         file.write_text(changed, encoding="utf-8")
         answer = client.post("api/save", json={"text": SCENE})
         assert "was changed by another program" in answer.json()["problem"]
