@@ -78,7 +78,7 @@ def test_each_probe_has_its_prompt_answer_program_and_reasons(page: str) -> None
 
 def test_what_happened_is_told_in_words(page: str) -> None:
     told = html.unescape(page)
-    assert "bob opens the </svg><script>alert(1)</script>" in told
+    assert "bob opens </svg><script>alert(1)</script>" in told
     assert "bob takes 1 apple out of the </svg>" in told
     assert "open container" not in told
     # The report leaves out the lid of a barrel.
@@ -128,7 +128,10 @@ def test_a_question_is_told_with_its_answer_and_no_program(tmp_path: Path) -> No
     assert "<h4>Program</h4>" not in page
     assert "Where is the apple? Options: " in page
     assert "Answer: red box" in page
-    assert "Judged by the model's answer to the question; that is as expected." in page
+    assert (
+        "Judged by the model's answer to the question; right is 'red box'; that is as expected."
+        in page
+    )
     with bn.Nest.read(store_in(tmp_path / "out")) as nest:
         (prompt,) = nest.prompts()
     assert prompt.detail["task"] == "Where is the apple?"
