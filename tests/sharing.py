@@ -7,7 +7,7 @@ __all__ = ["ByFile", "rank"]
 _LONGEST = (
     "tests/worlds/minecraft/test_node_suite.py::test_javascript[test/tcp/",
     "tests/worlds/servers/test_realtime.py",
-    "tests/worlds/minecraft/test_node_suite.py::test_javascript[test/process.",
+    "tests/worlds/minecraft/test_node_suite.py::test_javascript[test/long/",
     "tests/worlds/servers/test_people.py",
     "tests/viewer/page/test_page.py",
     "tests/studies/test_models.py",

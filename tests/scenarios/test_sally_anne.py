@@ -143,7 +143,6 @@ def test_the_same_seed_gives_the_same_frames_under_load_as_well(tmp_path: Path) 
 
     first = record("first")
     assert len(set(first)) == 3
-    assert record("second") == first
     load = subprocess.Popen([sys.executable, "-c", "while True: pass"])
     try:
         assert record("loaded") == first

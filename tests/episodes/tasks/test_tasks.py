@@ -50,6 +50,7 @@ def test_a_task_of_any_size_makes_sense(name: str, key: str, value: int) -> None
         assert not episode.success
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", KNOWN)
 def test_a_task_of_another_size_needs_its_order_too(name: str) -> None:
     # One size of each, the smallest, at night all of them.

@@ -9,6 +9,7 @@ from functools import partial
 
 import pytest
 from tests.nest.comparing import everything
+from tests.profiles import few_by_day
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
@@ -206,7 +207,10 @@ def test_node_dies_between_two_calls(opened, undisturbed):
         assert (go_on(nest), held(nest), frames(nest)) == undisturbed
 
 
-@pytest.mark.parametrize("op", ["create_region", "apply", "step", "snapshot", "destroy_region"])
+OPS = ["create_region", "step", "apply", "snapshot", "destroy_region"]
+
+
+@pytest.mark.parametrize("op", few_by_day(OPS, 2))
 def test_other_calls_are_made_again(opened, monkeypatch, op):
     def acts(nest):
         nest["/ann"].switch("own")
@@ -260,6 +264,7 @@ def test_a_call_that_is_interrupted_has_not_happened(opened, monkeypatch, undist
         assert (go_on(nest), held(nest), frames(nest)) == undisturbed
 
 
+@pytest.mark.long
 def test_a_script_is_played_to_its_end(worlds, monkeypatch, tmp_path):
     scenario = bn.Scenario.load("sally-anne", condition=1)
     with bn.Nest.open(scenario, worlds=worlds) as nest:

@@ -111,7 +111,8 @@ def acted_by_a_person(scenario, world, **options):
         return contents(nest), {e.kind for e in nest["/"].state.events if e.actor == "anne"}
 
 
-@pytest.mark.parametrize("condition", [1, pytest.param(3, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("condition", [1, 3])
 def test_a_person_moves_the_diamond_and_all_believe_as_if_a_bot_had(condition, scenario, server):
     with Nest.open(Scenario.load("sally-anne", condition), "embedded") as nest:
         nest.play()

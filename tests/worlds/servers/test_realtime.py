@@ -165,6 +165,7 @@ def test_the_example_of_the_page_runs(server, tmp_path, monkeypatch, capsys):
     assert believed == "{'diamond': 1}"
 
 
+@pytest.mark.long
 def test_what_others_do_between_calls_is_recorded_with_the_next(console, tmp_path):
     store = tmp_path / "run.bn"
     heard = []
@@ -193,6 +194,7 @@ def test_what_others_do_between_calls_is_recorded_with_the_next(console, tmp_pat
         assert ticks == sorted(ticks)
 
 
+@pytest.mark.long
 def test_a_fork_of_the_real_world_goes_back_to_where_it_was(server):
     with Nest.open(Scenario.load("sally-anne", 1), server.address()) as nest:
         first = nest["/"].branch

@@ -179,6 +179,7 @@ def test_what_stands_in_the_box_is_not_touched_unless_asked_and_put_back(server)
     server.type("setblock 5 2 5 minecraft:air")
 
 
+@pytest.mark.long
 def test_an_agent_whose_name_is_taken_is_not_let_in(server):
     first, second = (
         open_world(server.address(), 0),
