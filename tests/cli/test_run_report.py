@@ -79,7 +79,7 @@ def test_each_probe_has_its_prompt_answer_program_and_reasons(page: str) -> None
 def test_what_happened_is_told_in_words(page: str) -> None:
     told = html.unescape(page)
     assert "bob opens </svg><script>alert(1)</script>" in told
-    assert "bob takes 1 apple out of the </svg>" in told
+    assert "bob takes 1 apple out of </svg>" in told
     assert "open container" not in told
     # The report leaves out the lid of a barrel.
     assert "is now at" not in told
