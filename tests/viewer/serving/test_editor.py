@@ -5,7 +5,7 @@ import re
 import subprocess
 import sys
 
-import httpx
+import httpx2
 import pytest
 import yaml
 from tests.viewer.page.test_page import assert_accessible, assert_clean
@@ -106,7 +106,7 @@ def test_only_the_page_edits_and_no_change_of_others_is_overwritten(served):
     file, address = served
     changed = SCENE.replace("rooms", "other")
     told = {"text": changed}
-    with httpx.Client(base_url=address) as client:
+    with httpx2.Client(base_url=address) as client:
         for refused in (
             client.post("api/save", content=f"text={changed}"),
             client.post("api/save", json=told, headers={"sec-fetch-site": "cross-site"}),
