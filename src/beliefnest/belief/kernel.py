@@ -230,6 +230,16 @@ def _observe_agents(
             nodes.pose[node, who] = UNKNOWN
 
 
+@inlined
+def _in_range(place: float, far: float, size: int) -> tuple[int, int]:
+    """Return the first cell of an axis that may be within a distance, and the one after the last.
+
+    The place is in coordinates of the grid, which has a margin of one cell.
+    """
+    low, high = place - 2.0 - far, place + far
+    return int(min(max(low, 0.0), float(size))), int(min(max(high, 0.0), float(size)))
+
+
 @merged
 def _observe_blocks(
     space: Space,
@@ -242,19 +252,31 @@ def _observe_blocks(
 ) -> None:
     """Take over the pending blocks that the owner of a node sees.
 
-    Words of 64 bits without a set bit are skipped. `put` clears the bit of each block taken over.
+    The loop visits the columns of the box that may be within the visible distance, and there the
+    words of 64 bits with a set bit. Words lie in the order of columns, so a word that two columns
+    share is visited once. `put` clears the bit of each block taken over.
     """
     parent = whole(nodes.parent[node])
-    for word in range(nodes.pending.shape[1]):
-        bits = nodes.pending[node, word]
-        if bits == 0:
-            continue
-        for place in range(_WORD):
-            if (bits >> np.uint64(place)) & np.uint64(1):
-                cell = word * _WORD + place
-                if sees_cell(space, nodes.codes[parent], eye, cell):
-                    state = whole(nodes.blocks[parent, cell])
-                    _put_noted(space, nodes, changes, entry, tick, node, cell, state)
+    ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
+    (px, py, pz), _, _, far = eye
+    x0, x1 = _in_range(px, far, space.sizes[0] - 2)
+    y0, y1 = _in_range(py, far, ny)
+    word = 0
+    for x in range(x0, x1):
+        for y in range(y0, y1):
+            dx, dy = x + 1.5 - px, y + 1.5 - py
+            z0, z1 = _in_range(pz, math.sqrt(max(far * far - dx * dx - dy * dy, 0.0)), nz)
+            row = (x * ny + y) * nz
+            word = max(word, (row + z0) // _WORD)
+            while word * _WORD < row + z1:
+                bits = nodes.pending[node, word]
+                for place in range(_WORD if bits != 0 else 0):
+                    if (bits >> np.uint64(place)) & np.uint64(1):
+                        cell = word * _WORD + place
+                        if sees_cell(space, nodes.codes[parent], eye, cell):
+                            state = whole(nodes.blocks[parent, cell])
+                            _put_noted(space, nodes, changes, entry, tick, node, cell, state)
+                word += 1
     nodes.fresh[node] = False
 
 

@@ -6,8 +6,8 @@ Coordinates and codes are those of `rays`, an `Eye` is that of `beams`.
 import numpy as np
 
 from beliefnest.perception.beams import Beam, Eye, eye_at, in_field, in_reach, sees_block
-from beliefnest.perception.codes import INTRUDED, OWN, Reaches
-from beliefnest.perception.compiling import compiled, inlined, merged
+from beliefnest.perception.codes import FULL, INTRUDED, OWN, Reaches
+from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.rays import (
     Cell,
     Codes,
@@ -22,7 +22,42 @@ from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
 
 __all__ = ["Eye", "eye_at", "eye_sees_agent", "eye_sees_block", "eye_sees_point", "set_code"]
 
+_MARGIN = 1e-3
 _HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)
+
+
+@inlined
+def _side(e: float, low: int) -> int:
+    """Return the side of a cell, along one axis, on which an eye is: -1, 0 (level with it), or 1.
+
+    2: the eye is so near to the plane of a face that rays in this plane might count.
+    """
+    if e < low - _MARGIN:
+        return -1
+    if e > low + 1 + _MARGIN:
+        return 1
+    return 0 if low + _MARGIN < e < low + 1 - _MARGIN else 2
+
+
+@inner
+def _is_enclosed(scene: Scene, eye: Vector, cell: Cell) -> bool:
+    """Return True if full cubes hide a cell from the eye; False if that is not certain.
+
+    These are the neighbours on the eye's side, across faces, edges and corners, because a ray may
+    come through an edge without entering the neighbours beside it. The test takes few looks at the
+    grid. It spares the rays to what lies inside the ground, which nobody sees.
+    """
+    i, j, k = _side(eye[0], cell[0]), _side(eye[1], cell[1]), _side(eye[2], cell[2])
+    if i == 2 or j == 2 or k == 2 or (i == 0 and j == 0 and k == 0):
+        return False
+    for n in range(1, 8):
+        if (n & 1 and i == 0) or (n & 2 and j == 0) or (n & 4 and k == 0):
+            continue
+        by = (i if n & 1 else 0, j if n & 2 else 0, k if n & 4 else 0)
+        other = (cell[0] + by[0], cell[1] + by[1], cell[2] + by[2])
+        if not is_inside(scene.sizes, other) or scene.codes[at(scene.sizes, other)] & OWN != FULL:
+            return False
+    return True
 
 
 @merged
@@ -31,7 +66,7 @@ def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam) -> bool:
     x, y, z = eye[0]
     if not in_reach(eye, cell[0] + 0.5 - x, cell[1] + 0.5 - y, cell[2] + 0.5 - z):
         return False
-    return sees_block(scene, eye, cell, beam)
+    return not _is_enclosed(scene, eye[0], cell) and sees_block(scene, eye, cell, beam)
 
 
 @merged
@@ -80,6 +115,9 @@ def _update_intruded(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell) ->
 @compiled
 def set_code(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell, code: int) -> None:
     """Put the code of another block into a cell of the grid; the margin stays as it is."""
-    codes[at(sizes, cell)] = codes[at(sizes, cell)] & INTRUDED | code
+    old = codes[at(sizes, cell)]
+    codes[at(sizes, cell)] = old & INTRUDED | code
+    if reaches[old & OWN] == 0 and reaches[code] == 0:
+        return
     for side in range(6):
         _update_intruded(codes, sizes, reaches, neighbour(cell, side))
