@@ -15,6 +15,7 @@ from typing import Any, Literal
 from rich.console import Console
 from rich.table import Table
 
+from beliefnest.belief.kernels_ahead import kernels_ahead
 from beliefnest.cli.accounts import accounts
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
@@ -90,7 +91,7 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
     cells = plan_run_cells(scenarios, options.named_models, options.repeat, options.seed)
     status: Status = "failed"
     try:
-        with Worlds(options.seed, launch=launch) as worlds:
+        with Worlds(options.seed, launch=launch) as worlds, kernels_ahead():
             for cell in cells:
                 run.do(cell, worlds)
         if len(run.pictures) == len(cells) > 1:
