@@ -15,7 +15,14 @@ from tests.llm.conftest import FakeClock, FakeOpenAI
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import ModelError
-from beliefnest.llm import Connection, Message, RetryPolicy, Sampling, open_model
+from beliefnest.llm import (
+    Connection,
+    Message,
+    RetryPolicy,
+    Sampling,
+    SystemClock,
+    open_model,
+)
 from beliefnest.llm.secrets import MASK, Secrets, without_password
 
 KEY = "sk-a-very-secret-key"
@@ -150,7 +157,9 @@ def test_a_run_and_a_study_show_and_keep_no_secret(
     monkeypatch.chdir(tmp_path)
     for name, value in environment(fake).items():
         monkeypatch.setenv(name, value)
-    monkeypatch.setattr("beliefnest.llm.resolve.SystemClock", FakeClock)
+    clock = FakeClock()
+    monkeypatch.setattr(SystemClock, "now", lambda _: clock.now())
+    monkeypatch.setattr(SystemClock, "wait", lambda _, seconds: clock.wait(seconds))
     fake.will(behaviour)  # type: ignore[arg-type] # a behaviour
     options = ["--world", "scripted", "--model", "compatible:m"]
     run_command_line(["run", "sally-anne", "--condition", "3", *options, "--out", "run"])
