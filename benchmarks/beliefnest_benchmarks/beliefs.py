@@ -2,7 +2,6 @@
 
 import math
 import random
-import resource
 import statistics
 import subprocess
 import sys
@@ -21,6 +20,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest_benchmarks.figures import Metric
+from beliefnest_benchmarks.memory import peak_megabytes
 
 __all__ = ["keep_up", "measure"]
 
@@ -213,5 +213,4 @@ def keep_up() -> float:
         crowd.walk_one()
         if tick % 100 == 0:
             crowd.nest[paths[-1]].state  # noqa: B018 - brings all nodes up to date
-    unit = 1e6 if sys.platform == "darwin" else 1e3
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+    return peak_megabytes()

@@ -3,7 +3,6 @@
 import itertools
 import math
 import random
-import resource
 import sqlite3
 import tempfile
 import time
@@ -24,6 +23,7 @@ from beliefnest.world.paths import parse_path
 from beliefnest.world.values import AgentState
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest_benchmarks.figures import Metric, median_seconds
+from beliefnest_benchmarks.memory import peak_megabytes
 
 __all__ = ["measure"]
 
@@ -147,13 +147,9 @@ def _recorded(path: Path, walk: Sequence[Frame]) -> _Recorded:
             history.note(_MAIN)
             followed += time.perf_counter() - started
             if start <= _TICKS // 10:
-                memory = _peak_megabytes()
+                memory = peak_megabytes()
         history.close()
-    return _Recorded(_TICKS / alone, _TICKS / followed, _peak_megabytes() - memory)
-
-
-def _peak_megabytes() -> float:
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+    return _Recorded(_TICKS / alone, _TICKS / followed, peak_megabytes() - memory)
 
 
 def _drop_checkpoints(path: Path) -> None:

@@ -1,0 +1,24 @@
+"""Peak memory of this process."""
+
+import re
+import resource
+import sys
+from pathlib import Path
+
+__all__ = ["peak_megabytes"]
+
+_STATUS = Path("/proc/self/status")
+
+
+def peak_megabytes() -> float:
+    """Return the most memory that this process has held at once, in MB (10^6 bytes).
+
+    On Linux `ru_maxrss` of a started process begins with what its parent held, so the kernel's
+    own account of the process is read there.
+    """
+    if _STATUS.is_file():
+        peak = re.search(r"VmHWM:\s+(\d+) kB", _STATUS.read_text(encoding="ascii"))
+        if peak is not None:
+            return int(peak[1]) * 1024 / 1e6
+    unit = 1e6 if sys.platform == "darwin" else 1e3
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
