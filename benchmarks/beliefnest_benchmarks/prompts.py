@@ -1,5 +1,6 @@
 """Benchmarks of prompts: the paper's template late in a long run, and the ice cream van."""
 
+import gc
 import math
 import subprocess
 import sys
@@ -32,6 +33,8 @@ def measure() -> Sequence[Metric]:
     asked = nest["/anne/sally"]
     asked.render(template, task="Go.")
     known = median_seconds(lambda: asked.render(template, task="Go."), _RENDERS)
+    # A search of all objects for garbage takes 0.1 s; the next one is not to begin in what follows.
+    gc.collect()
     started = time.perf_counter()
     nest["/bob/tom/anne"].render(template, task="Go.")
     new = time.perf_counter() - started
