@@ -144,10 +144,14 @@ def compare(
     Blocks come first, then containers, agents and inventories, each in order.
     """
     one, other = recording.state(a, tick), recording.state(b, tick)
-    blocks = _different_blocks(one, other, recording.context)
-    found = itertools.chain(blocks, _different_things(one, other))
-    known = (each for each in found if each.a is not None and each.b is not None)
-    return Differences(found if unknown else known, path_text(a), path_text(b))
+    wanted = one.numbers != other.numbers
+    if not unknown:
+        wanted &= (one.numbers >= 0) & (other.numbers >= 0)
+    blocks = _blocks_in(wanted, one, other, recording.context)
+    things = _different_things(one, other)
+    known = (each for each in things if each.a is not None and each.b is not None)
+    found = itertools.chain(blocks, things if unknown else known)
+    return Differences(found, path_text(a), path_text(b))
 
 
 def false_beliefs(
@@ -170,9 +174,10 @@ def false_beliefs(
     """
     belief = recording.state(path, tick)
     real = recording.state(against, tick if against_tick is None else against_tick)
-    blocks = _different_blocks(real, belief, recording.context)
-    known = (each for each in blocks if each.b is not None)
-    found = itertools.chain(known, false_things(real, belief))
+    # In a large box most blocks are unknown, so that single ones are looked at only if they count.
+    wanted = (belief.numbers >= 0) & (real.numbers != belief.numbers)
+    blocks = _blocks_in(wanted, real, belief, recording.context)
+    found = itertools.chain(blocks, false_things(real, belief))
     return Differences(found, path_text(against), path_text(path))
 
 
@@ -225,8 +230,11 @@ def are_false(real: Contents | None, belief: Contents) -> bool:
     return too_much or (belief.complete and dict(claimed) != dict(true))
 
 
-def _different_blocks(a: NodeView, b: NodeView, context: BeliefContext) -> Iterator[Difference]:
-    for place, index in places_of(a.numbers != b.numbers, context.box):
+def _blocks_in(
+    mask: npt.NDArray[np.bool_], a: NodeView, b: NodeView, context: BeliefContext
+) -> Iterator[Difference]:
+    """Yield the blocks of two nodes where a mask of the box is True."""
+    for place, index in places_of(mask, context.box):
         texts = (context.block_text(int(view.numbers[index])) for view in (a, b))
         yield Difference("block", place, *texts)
 

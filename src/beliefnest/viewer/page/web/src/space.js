@@ -1,22 +1,26 @@
 /** Simulator in three dimensions: boxes for blocks, figures for agents, labels as text on top. */
 
 import {
-  BoxGeometry, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight, InstancedMesh,
+  BoxGeometry, BufferAttribute, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight, InstancedMesh,
   Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Quaternion,
   Raycaster, Scene, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { element } from './elements.js'
 import { apart } from './labels.js'
+import { Kinds, boxedCells, changedChunks, facesOf } from './surfaces.js'
 import { contentsLabel, shortened, signsText } from './things.js'
 
 const WRONG = 0xd55e00
 const EYE = 1.62
-const MOST = 60000
 const TALL = 23
 const LETTER = 6.6
 const SHARPEST = 1.5
 const HURRIED = 0.5
+const DARKER = 0.97
+const OPACITY = { solid: 1, clear: 0.35, liquid: 0.6 }
+/** Corners of the two triangles of a rectangle. */
+const CORNERS = [0, 1, 2, 0, 2, 3]
 const CUBE = new BoxGeometry(1, 1, 1)
 const EDGES = new EdgesGeometry(CUBE)
 const BODY = new CapsuleGeometry(0.28, 0.75, 4, 12)
@@ -57,6 +61,9 @@ export class Space {
     this.controls.update()
     this.controls.addEventListener('change', moved)
     this.built = null
+    this.run = null
+    this.chunks = new Map()
+    this.blocksBuilt = null
     this.marks = []
     this.hurried = false
     // Keep materials for later pictures: creating a material costs more than drawing with it.
@@ -110,10 +117,53 @@ export class Space {
     const version = `${scene.track.gridVersion(scene.tick)} ${scene.storey} ${scene.seenVersion} ${scene.dark}`
     if (version === this.built) return
     this.built = version
-    for (const mesh of this.blocks.children) mesh.dispose?.()
+    if (this.run !== scene.run) this.dropChunks()
+    this.run = scene.run
+    const blocks = blocksOf(scene)
+    for (const number of changedChunks(this.blocksBuilt, blocks)) this.buildChunk(scene.run, blocks, number)
+    // The arrays are overwritten when the track moves on.
+    this.blocksBuilt = { ...blocks, grid: blocks.grid.slice(), seen: blocks.seen?.slice() ?? null }
+  }
+
+  /** Replace the meshes of one chunk. */
+  buildChunk (run, blocks, number) {
+    for (const mesh of this.chunks.get(number) ?? []) {
+      this.blocks.remove(mesh)
+      // Geometry of single boxes is shared.
+      if (mesh.userData.isMerged) mesh.geometry.dispose()
+      else mesh.dispose()
+    }
+    const faces = facesOf(blocks, number, (state, isSeen) => shadeOf(run.states[state], isSeen).toArray())
+    const boxes = { solid: [], clear: [] }
+    for (const cell of boxedCells(blocks, number)) {
+      const block = run.states[blocks.grid[cell]]
+      const isSeen = blocks.seen === null || blocks.seen[cell] === 1
+      const place = run.place(cell)
+      const colour = shadeOf(block, isSeen).clone()
+      if (isSeen && (place[0] + place[2] - run.head.box.low[0] - run.head.box.low[2]) % 2 === 0) colour.multiplyScalar(DARKER)
+      const list = block.glassy && !block.container ? boxes.clear : boxes.solid
+      for (const box of block.boxes) list.push({ box, cell, colour, place })
+    }
+    const made = [
+      ...['solid', 'liquid'].filter(part => faces[part].places.length).map(part => merged(faces[part], this.material(`merged ${part}`, () => chequered(OPACITY[part])))),
+      ...['solid', 'clear'].filter(part => boxes[part].length).map(part => instances(boxes[part], this.material(`boxes ${part}`, () => plainMaterial(OPACITY[part]))))
+    ]
+    for (const mesh of made) {
+      if (mesh.userData.isMerged) mesh.position.set(...run.head.box.low)
+      this.blocks.add(mesh)
+    }
+    this.chunks.set(number, made)
+  }
+
+  /** Remove all blocks, before those of another run are built. */
+  dropChunks () {
+    for (const mesh of this.blocks.children) {
+      if (mesh.userData.isMerged) mesh.geometry.dispose()
+      else mesh.dispose()
+    }
     this.blocks.clear()
-    const { solid, clear } = boxesOf(scene)
-    this.blocks.add(instances(solid, 1), instances(clear, 0.35))
+    this.chunks.clear()
+    this.blocksBuilt = null
   }
 
   buildFigures (scene) {
@@ -268,54 +318,69 @@ export class Space {
     caster.setFromCamera(point, this.camera)
     const [hit] = caster.intersectObjects([...this.figures.children.filter(each => each.userData.thing), ...this.blocks.children])
     if (hit === undefined) return
-    const cell = hit.instanceId === undefined ? null : hit.object.userData.cells[hit.instanceId]
-    this.choose({ thing: hit.object.userData.thing ?? cell, note: null })
+    this.choose({ thing: hit.object.userData.thing ?? this.blockAt(hit), note: null })
+  }
+
+  /** Return the block or container that a ray hit. @returns {string} */
+  blockAt ({ object, instanceId, point, face }) {
+    const run = this.run
+    const cell = object.userData.isMerged ? run.cell(point.clone().addScaledVector(face.normal, -0.5).toArray()) : object.userData.cells[instanceId]
+    return `${run.states[this.blocksBuilt.grid[cell]].container ? 'container' : 'block'}-${cell}`
   }
 }
 
-/**
- * Return the boxes of blocks up to a storey's head height; blocks that are hidden on all sides are left out.
- * @returns {object}
- */
-function boxesOf ({ run, track, tick, storey, seen }) {
-  const grid = track.grid(tick)
-  const [width, height, depth] = run.shape
-  const top = Math.min(height, storey - run.head.box.low[1] + 2)
-  const found = { solid: [], clear: [] }
-  const full = cell => grid[cell] >= 0 && isFull(run.states[grid[cell]])
-  for (let i = 0; i < width; i++) {
-    for (let j = 0; j < top; j++) {
-      for (let k = 0; k < depth; k++) {
-        const cell = (i * height + j) * depth + k
-        const block = grid[cell] >= 0 ? run.states[grid[cell]] : null
-        if (block === null || block.air) continue
-        const inside = i > 0 && i < width - 1 && j < top - 1 && k > 0 && k < depth - 1 && full(cell - height * depth) &&
-          full(cell + height * depth) && full(cell + depth) && full(cell - 1) && full(cell + 1)
-        if (inside) continue
-        const list = block.glassy && !block.container ? found.clear : found.solid
-        const colour = new Color(block.colour)
-        if (seen !== null && !seen[cell]) colour.lerp(UNSEEN, 0.6)
-        else if ((i + k) % 2 === 0) colour.multiplyScalar(0.97)
-        for (const box of block.boxes) if (list.length < MOST) list.push({ box, cell, colour, container: block.container, place: run.place(cell) })
-      }
-    }
-  }
-  return found
+/** Return the blocks that a scene shows, up to a storey's head height. @returns {object} */
+function blocksOf ({ run, track, tick, storey, seen }) {
+  if (run.kinds?.count !== run.states.length) run.kinds = new Kinds(run.states)
+  const top = Math.max(0, Math.min(run.shape[1], storey - run.head.box.low[1] + 2))
+  return { grid: track.grid(tick), shape: run.shape, top, kinds: run.kinds, seen }
 }
 
-function isFull (block) {
-  if (block.full === undefined) {
-    const [box] = block.boxes
-    block.full = block.boxes.length === 1 && !block.glassy && box.every((edge, at) => edge === (at < 3 ? 0 : 32))
-  }
-  return block.full
+/** Return the colour of a block; the next call may return the same object. */
+function shadeOf (block, isSeen) {
+  block.shade ??= new Color(block.colour)
+  block.unseen ??= block.shade.clone().lerp(UNSEEN, 0.6)
+  return isSeen ? block.shade : block.unseen
 }
 
-function instances (boxes, opacity) {
-  const material = new MeshLambertMaterial({ transparent: opacity < 1, opacity })
+function plainMaterial (opacity) {
+  return new MeshLambertMaterial({ transparent: opacity < 1, opacity })
+}
+
+/** Return a material that draws every second block a little darker, as a chequerboard. */
+function chequered (opacity) {
+  const material = new MeshLambertMaterial({ vertexColors: true, transparent: opacity < 1, opacity })
+  material.onBeforeCompile = shader => {
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', '#include <common>\nattribute float plain;\nvarying float vPlain;\nvarying vec3 vInner;')
+      .replace('#include <begin_vertex>', '#include <begin_vertex>\nvPlain = plain;\nvInner = position - 0.5 * normal;')
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', '#include <common>\nvarying float vPlain;\nvarying vec3 vInner;')
+      .replace('#include <color_fragment>', `#include <color_fragment>\nif (vPlain < 0.5 && mod(floor(vInner.x) + floor(vInner.z), 2.0) < 0.5) diffuseColor.rgb *= ${DARKER};`)
+  }
+  return material
+}
+
+/** Return the mesh of merged faces. */
+function merged ({ places, normals, colours, plain }, material) {
+  const count = places.length / 12
+  const corners = Uint32Array.from({ length: 6 * count }, (_, at) => 4 * Math.floor(at / 6) + CORNERS[at % 6])
+  const geometry = new BufferGeometry()
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(places), 3))
+  geometry.setAttribute('normal', new BufferAttribute(new Int8Array(normals), 3))
+  geometry.setAttribute('color', new BufferAttribute(new Float32Array(colours), 3))
+  geometry.setAttribute('plain', new BufferAttribute(new Uint8Array(plain), 1))
+  geometry.setIndex(new BufferAttribute(corners, 1))
+  const mesh = new Mesh(geometry, material)
+  mesh.userData.isMerged = true
+  return mesh
+}
+
+/** Return the mesh of single boxes. */
+function instances (boxes, material) {
   const mesh = new InstancedMesh(CUBE, material, boxes.length)
   const still = new Quaternion()
-  mesh.userData.cells = boxes.map(({ cell, container }) => `${container ? 'container' : 'block'}-${cell}`)
+  mesh.userData.cells = boxes.map(({ cell }) => cell)
   boxes.forEach(({ box: [x0, y0, z0, x1, y1, z1], colour, place: [x, y, z] }, number) => {
     const middle = new Vector3(x + (x0 + x1) / 64, y + (y0 + y1) / 64, z + (z0 + z1) / 64)
     mesh.setMatrixAt(number, new Matrix4().compose(middle, still, new Vector3((x1 - x0) / 32, (y1 - y0) / 32, (z1 - z0) / 32)))

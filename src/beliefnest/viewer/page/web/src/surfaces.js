@@ -1,0 +1,198 @@
+/**
+ * Surfaces of the blocks of a grid, chunk by chunk. Faces of full cubes that touch are left out, and equal neighbouring
+ * faces become one rectangle ("greedy meshing"), so that a large world has few triangles and few draw calls. Liquids are
+ * merged in the same way; blocks of other shapes stay single boxes.
+ */
+
+/** Width and depth of a chunk in blocks; a chunk is as high as the grid. */
+export const CHUNK = 32
+
+const NONE = 0
+const SOLID = 1
+const LIQUID = 2
+const LIQUIDS = new Set(['water', 'lava'])
+
+/** Ways in which block states are drawn, by number of the state: 0 as boxes, `SOLID` or `LIQUID` as merged faces. */
+export class Kinds {
+  constructor (states) {
+    this.count = states.length
+    this.merged = Uint8Array.from(states, mergedAs)
+    this.boxed = Uint8Array.from(states, (each, number) => !each.air && this.merged[number] === NONE ? 1 : 0)
+  }
+}
+
+function mergedAs ({ name, boxes, glassy }) {
+  if (LIQUIDS.has(name)) return LIQUID
+  const isCube = boxes.length === 1 && boxes[0].every((edge, at) => edge === (at < 3 ? 0 : 32))
+  return isCube && !glassy ? SOLID : NONE
+}
+
+/**
+ * Blocks to draw.
+ * @typedef {object} Blocks
+ * @property {Int16Array} grid - numbers of block states, -1 unknown
+ * @property {number[]} shape - width, height and depth of the grid
+ * @property {number} top - number of layers to draw
+ * @property {Kinds} kinds
+ * @property {Uint8Array|null} seen - 1 for cells that are seen; null: all
+ */
+
+/** Return the numbers of the chunks of a grid whose pictures differ between two sets of blocks. @returns {number[]} */
+export function changedChunks (before, now) {
+  const [width, height, depth] = now.shape
+  const across = Math.ceil(depth / CHUNK)
+  const count = Math.ceil(width / CHUNK) * across
+  const all = Array.from({ length: count }, (_, number) => number)
+  if (before === null || before.top !== now.top || before.shape.join() !== now.shape.join() || (before.seen === null) !== (now.seen === null)) return all
+  const changed = new Set()
+  for (let cell = 0; cell < now.grid.length; cell++) {
+    if (before.grid[cell] === now.grid[cell] && (now.seen === null || before.seen[cell] === now.seen[cell])) continue
+    const [i, k] = [Math.floor(cell / (height * depth)), cell % depth]
+    // A block at the edge of a chunk hides faces of the next chunk.
+    for (const x of [i - 1, i, i + 1]) {
+      for (const z of [k - 1, k, k + 1]) {
+        if (x >= 0 && z >= 0 && x < width && z < depth) changed.add(Math.floor(x / CHUNK) * across + Math.floor(z / CHUNK))
+      }
+    }
+  }
+  return [...changed]
+}
+
+/** Return the lowest and the first higher corner of a chunk, in cells. @returns {number[][]} */
+function cornersOf ({ shape: [width, , depth], top }, number) {
+  const across = Math.ceil(depth / CHUNK)
+  const [x, z] = [Math.floor(number / across) * CHUNK, number % across * CHUNK]
+  return [[x, 0, z], [Math.min(x + CHUNK, width), top, Math.min(z + CHUNK, depth)]]
+}
+
+/** Merged faces under construction: corners, normals, colours. */
+class Faces {
+  constructor () {
+    this.places = []
+    this.normals = []
+    this.colours = []
+    this.plain = []
+  }
+
+  /** Add a rectangle: its corner, its two edges along the axes `u` and `v`, and the side to which it looks. */
+  add (axis, side, corner, [u, wide], [v, high], colour, plain) {
+    const [a, b, c, d] = [[0, 0], [wide, 0], [wide, high], [0, high]].map(([along, up]) => {
+      const at = [...corner]
+      at[axis] += side
+      at[u] += along
+      at[v] += up
+      return at
+    })
+    const normal = [0, 0, 0]
+    normal[axis] = side ? 1 : -1
+    for (const at of side ? [a, b, c, d] : [a, d, c, b]) {
+      this.places.push(...at)
+      this.normals.push(...normal)
+      this.colours.push(...colour)
+      this.plain.push(plain)
+    }
+  }
+}
+
+/**
+ * Return the merged faces of a chunk.
+ * @param {Blocks} blocks
+ * @param {number} number - number of the chunk
+ * @param {function(number, boolean): number[]} colourOf - colour of a state, seen or not, as three shares
+ * @returns {{solid: Faces, liquid: Faces}}
+ */
+export function facesOf (blocks, number, colourOf) {
+  const found = { solid: new Faces(), liquid: new Faces() }
+  const [from, to] = cornersOf(blocks, number)
+  const { merged } = blocks.kinds
+  for (const axis of [0, 1, 2]) {
+    const [u, v] = [(axis + 1) % 3, (axis + 2) % 3]
+    const [wide, high] = [to[u] - from[u], to[v] - from[v]]
+    const mask = new Int32Array(wide * high)
+    for (const side of [0, 1]) {
+      for (let slice = from[axis]; slice < to[axis]; slice++) {
+        if (!maskOf(mask, blocks, { axis, side, slice, u, v, from, wide, high })) continue
+        rectangles(mask, wide, high, (along, up, across, tall, key) => {
+          const [state, unseen] = [(key - 1) >> 1, (key - 1) & 1]
+          const corner = []
+          corner[axis] = slice
+          corner[u] = from[u] + along
+          corner[v] = from[v] + up
+          const faces = merged[state] === LIQUID ? found.liquid : found.solid
+          faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0), unseen)
+        })
+      }
+    }
+  }
+  return found
+}
+
+/**
+ * Fill a mask with the visible faces of one slice: 0 where there is none, else 1 + 2 * state + (1 if unseen).
+ * @returns {boolean} true if there is any
+ */
+function maskOf (mask, { grid, shape, top, kinds: { merged }, seen }, { axis, side, slice, u, v, from, wide, high }) {
+  const strides = [shape[1] * shape[2], shape[2], 1]
+  const limits = [shape[0], top, shape[2]]
+  const isBottom = axis === 1 && side === 0
+  const isEdge = slice === (side ? limits[axis] - 1 : 0)
+  const next = side ? strides[axis] : -strides[axis]
+  const first = slice * strides[axis] + from[u] * strides[u] + from[v] * strides[v]
+  let any = false
+  for (let up = 0, at = 0; up < high; up++) {
+    let cell = first + up * strides[v]
+    for (let along = 0; along < wide; along++, at++, cell += strides[u]) {
+      const state = grid[cell]
+      mask[at] = 0
+      if (state < 0 || merged[state] === NONE) continue
+      const other = isEdge ? -1 : grid[cell + next]
+      // Nobody looks from below at what is unknown below.
+      const isHidden = other < 0 ? isBottom : merged[other] !== NONE && merged[other] <= merged[state]
+      if (isHidden) continue
+      mask[at] = 1 + 2 * state + (seen !== null && !seen[cell] ? 1 : 0)
+      any = true
+    }
+  }
+  return any
+}
+
+/** Call `put` with the largest rectangles of equal marks, row by row, and clear them from the mask. */
+function rectangles (mask, wide, high, put) {
+  for (let up = 0; up < high; up++) {
+    for (let along = 0; along < wide; along++) {
+      const key = mask[up * wide + along]
+      if (key === 0) continue
+      let across = 1
+      while (along + across < wide && mask[up * wide + along + across] === key) across++
+      let tall = 1
+      while (up + tall < high && isAll(mask, (up + tall) * wide + along, across, key)) tall++
+      for (let row = up; row < up + tall; row++) mask.fill(0, row * wide + along, row * wide + along + across)
+      put(along, up, across, tall, key)
+    }
+  }
+}
+
+function isAll (mask, from, count, key) {
+  for (let at = from; at < from + count; at++) if (mask[at] !== key) return false
+  return true
+}
+
+/** Return the cells of a chunk whose blocks are drawn as boxes and not hidden on all sides. @returns {number[]} */
+export function boxedCells (blocks, number) {
+  const { grid, shape: [width, height, depth], top, kinds } = blocks
+  const [from, to] = cornersOf(blocks, number)
+  const isSolid = cell => grid[cell] >= 0 && kinds.merged[grid[cell]] === SOLID
+  const found = []
+  for (let i = from[0]; i < to[0]; i++) {
+    for (let j = 0; j < top; j++) {
+      for (let k = from[2]; k < to[2]; k++) {
+        const cell = (i * height + j) * depth + k
+        if (grid[cell] < 0 || !kinds.boxed[grid[cell]]) continue
+        const isInside = i > 0 && i < width - 1 && j < top - 1 && k > 0 && k < depth - 1
+        const around = [cell - height * depth, cell + height * depth, cell + depth, cell - 1, cell + 1]
+        if (!isInside || !around.every(isSolid)) found.push(cell)
+      }
+    }
+  }
+  return found
+}
