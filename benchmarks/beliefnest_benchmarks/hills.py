@@ -29,9 +29,9 @@ _POND = 0.28
 class Hills:
     """Hills of stone and dirt, ponds, houses with a door and a chest, and agents.
 
-    A quarter of the agents begins at each of four houses. They walk along the ground, turn at random
-    and stop at what is steep. Now and then one opens a chest, uses a door or says something. The
-    same arguments give the same world and the same course.
+    A quarter of the agents begins at each of four houses. They walk along the ground, turn at
+    random and stop at what is steep. Now and then one opens a chest, uses a door or says
+    something. The same arguments give the same world and the same course.
 
     Args:
         shape: Width, height and depth of the world in blocks.

@@ -2,11 +2,15 @@
 
 import random
 
+import numpy as np
 import pytest
 
 import beliefnest as bn
+from beliefnest.viewer.page import runs
+from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.pose_history import PoseBook
 from beliefnest.viewer.page.run import About, RunData
+from beliefnest.viewer.page.runs import numbers_text, text_numbers
 from beliefnest.viewer.page.tracks import CURRENT, PLACED, STALE, UNKNOWN, Track, TrackRecorder
 from beliefnest.world.paths import paths_below
 
@@ -62,7 +66,8 @@ def row_at(rows, tick):
 def recorded(nest: bn.Nest, paths) -> tuple[TrackRecorder, PoseBook]:
     info = nest.reader.timelines()[0]
     book = PoseBook(len(nest.agents), info.start, None)
-    recorder = TrackRecorder(nest.reader, info.key, paths, book)
+    palette = BlockPalette(nest.reader.history.context)
+    recorder = TrackRecorder(nest.reader, info.key, paths, book, palette)
     recorder.advance(info.entries)
     return recorder, book
 
@@ -113,6 +118,47 @@ def test_tracks_hold_what_states_hold_at_every_tick(story):
             ]
             row = row_at(track.wrong, tick)
             assert set(row[1] if row else ()) == things(story, path, tick), (path, tick)
+
+
+def put_runs(grid, text, first) -> None:
+    """Write the blocks of a text into a flat grid, as the page does."""
+    numbers, cell = iter(text_numbers(text)), 0
+    for gap in numbers:
+        begin = cell + gap
+        told = next(numbers)
+        cell = begin + told // 2
+        if told % 2:
+            mark = next(numbers) + 1
+            grid[begin:cell] = -1 if mark == runs.UNKNOWN else mark - runs.FIRST_STATE
+        else:
+            grid[begin:cell] = first[begin:cell]
+
+
+def test_blocks_of_tracks_are_those_of_states_at_every_tick(story):
+    paths = paths_below((), 2, story.agents)
+    told = RunData(story.reader, About("story"), depth=2).update()
+    numbers = {each["text"]: number for number, each in enumerate(told["states"][1])}
+    tracks = told["timelines"]["0"]["tracks"]
+    cells = story.reader.history.context.cells
+    first = np.full(cells, -1)
+    put_runs(first, tracks["/"]["grid"], None)
+    for path in ("/" + "/".join(path) for path in paths):
+        grid = np.full(cells, -1) if path == "/" else first.copy()
+        put_runs(grid, tracks[path]["grid"], first)
+        changes = tracks[path].get("blocks", [0, []])[1]
+        for tick in range(story.tick + 1):
+            for _, text in (row for row in changes if row[0] == tick):
+                put_runs(grid, text, first)
+            blocks = story.at(tick)[path].state.blocks
+            held = [
+                -1 if text is None else numbers[text] for text in map(blocks.__getitem__, blocks)
+            ]
+            assert grid.tolist() == held, (path, tick)
+
+
+@pytest.mark.parametrize("numbers", [[], [0], [31, 32, 33, 0], [2**40, 1, 2**15, 1023, 1024]])
+def test_numbers_come_back_from_texts(numbers):
+    assert text_numbers(numbers_text(numbers)) == numbers
 
 
 def test_tracks_tell_which_events_were_perceived(story):

@@ -16,6 +16,7 @@ from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_blo
 from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.viewer.page.run import About, RunData
+from beliefnest.viewer.page.runs import numbers_text
 from beliefnest.viewer.page.tracks import Onlooker
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, path_text
@@ -118,6 +119,7 @@ def ahead(reader: Reader, about: About, depth: int) -> dict[str, Any]:
         "explanations": _explanations(data, list(data.nodes())),
         "looks": views.looks,
         "sights": views.sights,
+        "views": views.texts,
     }
     return {**told, "ahead": reasons}
 
@@ -132,6 +134,9 @@ class _Views:
         self._all_around = reader.setting.perception.field_of_view >= _ALL_AROUND
         self.looks: dict[str, list[Any]] = {}
         self.sights: dict[str, list[Any]] = {}
+        # Several nodes have the same views, which are long: rows of `sights` have their numbers.
+        self.texts: list[str] = []
+        self._numbers: dict[str, int] = {}
 
     def onlooker(self, info: TimelineInfo, paths: Sequence[BeliefPath]) -> Onlooker:
         """Return an onlooker that records the views in some nodes of a timeline, at some ticks."""
@@ -180,12 +185,21 @@ class _Views:
             return agent.position
         return agent.position, agent.yaw, agent.pitch
 
-    def _sight(self, reading: NodeView, viewer: str, mark: Any) -> Any:
+    def _sight(self, reading: NodeView, viewer: str, mark: Any) -> int:
         if mark[1] is None:
-            return []
+            return self._number("")
         if mark not in self._known:
-            self._known[mark] = _runs(reading.visible_from(viewer).ravel())
-        return self._known[mark]
+            runs = _runs(reading.visible_from(viewer).ravel())
+            self._known[mark] = self._number(numbers_text(runs))
+        number: int = self._known[mark]
+        return number
+
+    def _number(self, text: str) -> int:
+        """Return the number of a view, as a text of the lengths of its runs."""
+        if text not in self._numbers:
+            self._numbers[text] = len(self.texts)
+            self.texts.append(text)
+        return self._numbers[text]
 
     def _look(self, reading: NodeView, viewer: str, target: str | Position, mark: Any) -> Any:
         if mark[1] is None:

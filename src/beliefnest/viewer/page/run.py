@@ -116,9 +116,11 @@ class RunData:
         """Record one more node of a timeline from now on; the next update contains all of it."""
         line = self._lines[key]
         if path not in line.tracks:
-            recorder = TrackRecorder(self.reader, key, [path], line.book, fills=False)
+            recorder = TrackRecorder(
+                self.reader, key, [path], line.book, self._palette, fills=False
+            )
             line.recorders.append(recorder)
-            line.tracks[path] = TrackRows(recorder.tracks[0], self._palette)
+            line.tracks[path] = TrackRows(recorder.tracks[0])
 
     def nodes(self) -> Iterable[tuple[TimelineInfo, BeliefPath]]:
         """Return everything recorded: each timeline with each of its nodes, shallow ones first."""
@@ -153,8 +155,10 @@ class RunData:
         asked = [path for path in self.about.paths if path[: len(own)] == own]
         paths += [path for path in dict.fromkeys(asked) if path not in paths]
         onlooker = None if self._onlookers is None else self._onlookers(info, paths)
-        recorder = TrackRecorder(self.reader, info.key, paths, book, onlooker=onlooker)
-        tracks = {track.path: TrackRows(track, self._palette) for track in recorder.tracks}
+        recorder = TrackRecorder(
+            self.reader, info.key, paths, book, self._palette, onlooker=onlooker
+        )
+        tracks = {track.path: TrackRows(track) for track in recorder.tracks}
         stands = [StandRows(stand) for stand in book.stands]
         self._lines[info.key] = _Line(info, book, [recorder], tracks, stands)
         return self._lines[info.key]

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.pose_history import Pose, Stand
 from beliefnest.viewer.page.tracks import PLACED, Row, Track
 
@@ -39,8 +38,8 @@ def fresh_rows(sent: dict[str, int], name: str, rows: Sequence[Any]) -> list[Any
 class TrackRows:
     """Updates of one track."""
 
-    def __init__(self, track: Track, palette: BlockPalette) -> None:
-        self._track, self._palette = track, palette
+    def __init__(self, track: Track) -> None:
+        self._track = track
         self._sent = _Sent()
         self._begun = False
 
@@ -50,7 +49,7 @@ class TrackRows:
         told: dict[str, Any] = {}
         if not self._begun:
             self._begun = True
-            told["grid"] = self._runs(track.grid.tolist())
+            told["grid"] = track.grid
         lists: dict[str, Sequence[Any]] = {
             "blocks": track.blocks,
             "items": track.items,
@@ -65,32 +64,15 @@ class TrackRows:
         for name, rows in lists.items():
             found = self._sent.fresh(name, rows)
             if found is not None:
-                told[name] = [found[0], [self._row(name, row) for row in found[1]]]
+                told[name] = [found[0], [_told(name, row) for row in found[1]]]
         return told
 
-    def _row(self, name: str, row: Any) -> Any:
-        if name == "blocks":
-            pairs: list[int] = row[1:]
-            return [row[0], *self._numbered(pairs)]
-        if name.startswith("agents") and row[1] == PLACED:
-            tick, code, seen, pose, *more = row
-            return [tick, code, seen, _rounded(pose), *more]
-        return row
 
-    def _numbered(self, pairs: Sequence[int]) -> list[int]:
-        return [self._palette.number(value) if at % 2 else value for at, value in enumerate(pairs)]
-
-    def _runs(self, grid: Sequence[int]) -> list[int]:
-        """Return the grid as [state, count, state, count, ...]."""
-        runs: list[int] = []
-        last = None
-        for state in grid:
-            if state == last:
-                runs[-1] += 1
-            else:
-                runs.extend((self._palette.number(state), 1))
-                last = state
-        return runs
+def _told(name: str, row: Any) -> Any:
+    if name.startswith("agents") and row[1] == PLACED:
+        tick, code, seen, pose, *more = row
+        return [tick, code, seen, _rounded(pose), *more]
+    return row
 
 
 class StandRows:

@@ -6,7 +6,7 @@ is given as the tick at which the agent had it in the timeline's own world, whic
 long runs short.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,8 +19,11 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
 from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineKey
+from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.claims import claims_at, kind_of
+from beliefnest.viewer.page.grid_changes import Cells, GridChanges
 from beliefnest.viewer.page.pose_history import Pose, PoseBook
+from beliefnest.viewer.page.runs import runs_text
 from beliefnest.viewer.page.wrong import WrongThings
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath
@@ -41,8 +44,9 @@ class Track:
 
     Attributes:
         path: Path of the node.
-        grid: Block states at the beginning, flat, -1 unknown.
-        blocks: [tick, cell, state, cell, state, ...].
+        grid: Blocks at the beginning that are not those of the timeline's own node, as `runs_text`;
+            of that node itself, all blocks.
+        blocks: [tick, blocks that changed, as `runs_text`].
         agents: By agent number: [tick, UNKNOWN | CURRENT], [tick, STALE, observed at] or [tick,
             PLACED, observed at, pose, source, current, item in the main hand, speaker].
         holds: By agent number: [tick, item in the main hand or None]; only of the timeline's own
@@ -58,7 +62,7 @@ class Track:
     """
 
     path: BeliefPath
-    grid: npt.NDArray[np.int16]
+    grid: str
     agents: list[list[Row]]
     holds: list[list[Row]]
     owns: list[list[Row]]
@@ -74,7 +78,6 @@ class Track:
 class _Last:
     """Last recorded content of all nodes, for finding changes."""
 
-    blocks: npt.NDArray[np.int16]
     code: npt.NDArray[np.int8]
     seen_at: npt.NDArray[np.int32]
     looks: list[Any]
@@ -92,6 +95,7 @@ class TrackRecorder:
         key: Key of the timeline.
         paths: Paths of its nodes; its own comes first.
         book: Poses of agents in the world of the timeline; filled here if `fills`.
+        palette: Numbers of blocks on the page.
         fills: True if this recorder fills the book and records claims.
         onlooker: Called with the nodes at the beginning and after each entry.
 
@@ -105,6 +109,7 @@ class TrackRecorder:
         key: TimelineKey,
         paths: Sequence[BeliefPath],
         book: PoseBook,
+        palette: BlockPalette,
         *,
         fills: bool = True,
         onlooker: Onlooker | None = None,
@@ -116,14 +121,15 @@ class TrackRecorder:
         self._forest = reader.walk(key, paths)
         self._numbers = [self._forest.node(path) for path in paths]
         agents = len(reader.agents)
-        grids = self._forest.table.nodes().blocks[self._numbers]
+        self._palette = palette
+        self._grids = GridChanges(self._forest.table, (0, *self._numbers))
+        self._first = self._grids.grid(0).copy()
         self.tracks = [
-            Track(path, grid, *(_empty(agents), _empty(agents), _empty(agents)))
-            for path, grid in zip(paths, grids, strict=True)
+            Track(path, self._beginning(number), _empty(agents), _empty(agents), _empty(agents))
+            for path, number in zip(paths, self._numbers, strict=True)
         ]
         count = len(paths)
         self._last = _Last(
-            blocks=np.stack([track.grid for track in self.tracks]),
             code=np.full((count, agents), -1, dtype=np.int8),
             seen_at=np.full((count, agents), -1, dtype=np.int32),
             looks=[_NOTHING] * agents,
@@ -132,7 +138,7 @@ class TrackRecorder:
             items=[{} for _ in range(count)],
             wrong=[() for _ in range(count)],
         )
-        self._wrong = WrongThings(self._forest, self._numbers)
+        self._wrong = WrongThings(self._forest, self._numbers, self._grids)
         self._events = 0
         self._note()
 
@@ -156,7 +162,8 @@ class TrackRecorder:
         """Record what changed with the last entry."""
         forest, tick = self._forest, self._forest.tick
         self._note_own_poses(tick)
-        self._note_blocks(tick)
+        cells = self._grids.found()
+        self._note_blocks(tick, cells)
         self._note_agents(tick)
         changed = self._owners()
         for at, number in enumerate(self._numbers):
@@ -167,7 +174,7 @@ class TrackRecorder:
                 self._note_looks(track, tick)
             if number in changed:
                 self._note_owned(track, number, tick)
-        for at, things in enumerate(self._wrong.found(changed)):
+        for at, things in enumerate(self._wrong.found(changed, cells)):
             if things != self._last.wrong[at]:
                 self._last.wrong[at] = things
                 _put(self.tracks[at].wrong, [tick, things])
@@ -204,16 +211,21 @@ class TrackRecorder:
                 pose = (*poses.position(pose_id), *poses.angles(pose_id))
             self._book.add(agent, tick, pose)
 
-    def _note_blocks(self, tick: int) -> None:
-        blocks, last = self._forest.table.nodes().blocks, self._last.blocks
-        for at, number in enumerate(self._numbers):
-            if np.array_equal(blocks[number], last[at]):
-                continue
-            row: Row = [tick]
-            for cell in np.flatnonzero(blocks[number] != last[at]).tolist():
-                row.extend((cell, int(blocks[number, cell])))
-            self.tracks[at].blocks.append(row)
-            last[at] = blocks[number]
+    def _beginning(self, number: int) -> str:
+        """Return the blocks of a node at the beginning, as `Track.grid`."""
+        held = self._grids.grid(number)
+        if number == 0:
+            return runs_text(np.arange(len(held)), held, None, self._palette.number)
+        cells = np.flatnonzero(held != self._first)
+        return runs_text(cells, held[cells], self._first[cells], self._palette.number)
+
+    def _note_blocks(self, tick: int, changed: Mapping[int, Cells]) -> None:
+        for track, number in zip(self.tracks, self._numbers, strict=True):
+            if number in changed:
+                cells = changed[number]
+                states = self._grids.states(number, cells)
+                text = runs_text(cells, states, self._first[cells], self._palette.number)
+                track.blocks.append([tick, text])
 
     def _note_agents(self, tick: int) -> None:
         nodes, last = self._forest.table.nodes(), self._last

@@ -8,6 +8,7 @@ import numpy as np
 from beliefnest.belief.forest import Forest
 from beliefnest.nest.explain.comparison import are_elsewhere, are_false
 from beliefnest.nest.explain.parts import Contents
+from beliefnest.viewer.page.grid_changes import Cells, GridChanges
 
 __all__ = ["WrongThings"]
 
@@ -23,24 +24,27 @@ class WrongThings:
     Args:
         forest: The forest.
         numbers: Numbers of the judged nodes.
+        grids: Blocks of these nodes and of node 0.
     """
 
-    def __init__(self, forest: Forest, numbers: Sequence[int]) -> None:
+    def __init__(self, forest: Forest, numbers: Sequence[int], grids: GridChanges) -> None:
         self._forest, self._numbers = forest, list(numbers)
-        self._blocks: Any = None
-        self._block_things: list[Things] = [() for _ in numbers]
+        self._grids = grids
+        self._wrong_cells = [self._false_at_first(number) for number in numbers]
+        self._block_things = [_things_at(cells) for cells in self._wrong_cells]
         self._held: list[Any] = [None for _ in numbers]
         self._content_things: list[Things] = [() for _ in numbers]
         self._owned: dict[int, Any] = {}
         self._owner_things: list[Things] = [() for _ in numbers]
 
-    def found(self, owned_changed: set[int]) -> list[Things]:
+    def found(self, owned_changed: set[int], cells: Mapping[int, Cells]) -> list[Things]:
         """Return the false things in each node after the forest's present entry.
 
         Args:
             owned_changed: Numbers of the nodes in which an inventory changed.
+            cells: Cells whose block changed, by number of the node.
         """
-        self._judge_blocks()
+        self._judge_blocks(cells)
         self._judge_contents()
         for at, number in enumerate(self._numbers):
             if number in owned_changed or 0 in owned_changed:
@@ -48,17 +52,25 @@ class WrongThings:
         parts = (self._block_things, self._content_things, self._poses(), self._owner_things)
         return [sum(each, ()) for each in zip(*parts, strict=True)]
 
-    def _judge_blocks(self) -> None:
-        blocks = self._forest.table.nodes().blocks
-        if self._blocks is None:
-            self._blocks = np.full_like(blocks, -2)
-        changed = (blocks != self._blocks).any(axis=1)
+    def _false_at_first(self, number: int) -> set[int]:
+        held, real = self._grids.grid(number), self._grids.grid(0)
+        return set(np.flatnonzero((held >= 0) & (held != real)).tolist())
+
+    def _judge_blocks(self, changed: Mapping[int, Cells]) -> None:
         for at, number in enumerate(self._numbers):
-            if changed[number] or changed[0]:
-                held = blocks[number]
-                cells = np.flatnonzero((held >= 0) & (held != blocks[0]))
-                self._block_things[at] = tuple(f"block-{cell}" for cell in cells.tolist())
-        self._blocks[changed] = blocks[changed]
+            cells = np.array([], dtype=np.int64)
+            for node in {0, number} & changed.keys():
+                cells = np.union1d(cells, changed[node])
+            if not len(cells):
+                continue
+            held, real = (self._grids.states(node, cells) for node in (number, 0))
+            is_false = (held >= 0) & (held != real)
+            wrong = self._wrong_cells[at]
+            before = len(wrong)
+            wrong.difference_update(cells[~is_false].tolist())
+            wrong.update(cells[is_false].tolist())
+            if before or wrong:
+                self._block_things[at] = _things_at(wrong)
 
     def _judge_contents(self) -> None:
         forest = self._forest
@@ -96,6 +108,10 @@ class WrongThings:
             if are_false(real, held):
                 things.append(f"inventory-{agent}")
         return tuple(things)
+
+
+def _things_at(cells: set[int]) -> Things:
+    return tuple(f"block-{cell}" for cell in sorted(cells))
 
 
 _NONE = Contents({}, complete=False)

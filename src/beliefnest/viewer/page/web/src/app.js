@@ -86,7 +86,15 @@ export class App {
     const runs = this.source.sight(run, track, tick, viewer)
     const judged = chosen !== null && partsOf(chosen).kind !== 'inventory' && chosen !== `agent-${viewer}`
     const look = judged ? this.source.look(run, track, tick, viewer, chosen) : null
-    return { look, seen: flags(runs, run), seenVersion: `${viewer} ${runs === null ? '' : runs.length} ${runs?.join()}`, ray: rayOf(run, track, tick, viewer, judged ? chosen : null, look) }
+    return { look, ...this.seenCells(runs, run), ray: rayOf(run, track, tick, viewer, judged ? chosen : null, look) }
+  }
+
+  /** Return a flag for each cell, and a text that stays the same as long as no flag changes. */
+  seenCells (lengths, run) {
+    if (this.seenOf?.lengths !== lengths || this.seenOf.run !== run) {
+      this.seenOf = { lengths, run, flags: flags(lengths, run), number: (this.seenOf?.number ?? 0) + 1 }
+    }
+    return { seen: this.seenOf.flags, seenVersion: String(this.seenOf.number) }
   }
 
   beside (run, timeline, { beside }) {

@@ -3,11 +3,14 @@
  * begin with a tick. Updates add rows; this module computes no beliefs.
  */
 
+import { putRuns } from './runs.js'
+
 export const UNKNOWN = 0
 export const CURRENT = 1
 export const STALE = 2
 
 const MILLI = 1000
+const MOST_GRIDS = 4
 
 /** Return the index of the last row at or before a tick; -1 if there is none. @returns {number} */
 export function rowIndex (rows, tick, tickOf = row => row[0]) {
@@ -64,37 +67,44 @@ class Track {
     this.path = path
     this.agents = path === '/' ? [] : path.slice(1).split('/')
     this.lists = {}
-    this.first = null
+    this.beginning = null
     this.heard = new Set()
     this.cursor = null
   }
 
   put (told) {
     for (const [name, rows] of Object.entries(told)) {
-      if (name === 'grid') this.first = unrolled(rows)
+      if (name === 'grid') this.beginning = rows
       else put(this.lists[name] ??= [], rows)
     }
     if (told.heard !== undefined) this.heard = new Set(this.lists.heard)
-    if (told.grid !== undefined || told.blocks !== undefined) this.cursor = null
+    if (told.grid !== undefined || told.blocks?.[0] < this.cursor?.done) this.cursor = null
   }
 
   list (name) {
     return this.lists[name] ?? []
   }
 
-  /** Return numbers of block states; -1 is unknown. The next call overwrites the array. @returns {Int16Array} */
+  /** Return numbers of block states; -1 is unknown. The next call may overwrite the array. @returns {Int16Array} */
   grid (tick) {
-    if (this.first === null) return new Int16Array(0)
+    if (this.beginning === null) return new Int16Array(0)
     const rows = this.list('blocks')
     const wanted = rowIndex(rows, tick) + 1
     if (this.cursor === null || this.cursor.done > wanted) {
-      this.cursor = { grid: Int16Array.from(this.first), done: 0 }
+      this.cursor = { grid: this.firstGrid(), done: 0 }
     }
-    for (; this.cursor.done < wanted; this.cursor.done++) {
-      const row = rows[this.cursor.done]
-      for (let at = 1; at < row.length; at += 2) this.cursor.grid[row[at]] = row[at + 1]
-    }
+    const first = this.timeline.firstGrid
+    for (; this.cursor.done < wanted; this.cursor.done++) putRuns(this.cursor.grid, rows[this.cursor.done][1], first)
+    this.timeline.run.keepGrids(this)
     return this.cursor.grid
+  }
+
+  /** Return a new array with the blocks at the beginning. */
+  firstGrid () {
+    const isOwn = this.path === this.timeline.facts.path
+    const grid = isOwn ? new Int16Array(this.timeline.run.cells).fill(-1) : this.timeline.firstGrid.slice()
+    putRuns(grid, this.beginning, isOwn ? null : this.timeline.firstGrid)
+    return grid
   }
 
   /** Return a text that stays the same as long as no block changes. @returns {string} */
@@ -167,18 +177,6 @@ class Track {
   }
 }
 
-function unrolled (runs) {
-  let length = 0
-  for (let at = 1; at < runs.length; at += 2) length += runs[at]
-  const grid = new Int16Array(length)
-  let from = 0
-  for (let at = 0; at < runs.length; at += 2) {
-    grid.fill(runs[at], from, from + runs[at + 1])
-    from += runs[at + 1]
-  }
-  return grid
-}
-
 /** Timeline: facts about it, its events, poses of agents in its world, tracks. */
 class Timeline {
   constructor (run, number) {
@@ -198,6 +196,12 @@ class Timeline {
       if (!this.tracks.has(path)) this.tracks.set(path, new Track(this, path))
       this.tracks.get(path).put(rows)
     }
+  }
+
+  /** Blocks of the timeline's own simulator at the beginning, to which texts of blocks refer. */
+  get firstGrid () {
+    this.first ??= this.track(this.facts.path).firstGrid()
+    return this.first
   }
 
   get name () {
@@ -240,8 +244,16 @@ export class Run {
     this.programs = []
     this.prompts = []
     this.timelines = []
-    this.ahead = { explanations: {}, looks: {}, sights: {} }
+    this.ahead = { explanations: {}, looks: {}, sights: {}, views: [] }
     this.episode = null
+    this.shownTracks = []
+  }
+
+  /** Forget the grids of all but the tracks that were shown last; in a large world each takes megabytes. */
+  keepGrids (track) {
+    if (this.shownTracks.at(-1) === track) return
+    this.shownTracks = [...this.shownTracks.filter(each => each !== track), track]
+    if (this.shownTracks.length > MOST_GRIDS) this.shownTracks.shift().cursor = null
   }
 
   put (told) {
@@ -252,6 +264,11 @@ export class Run {
     }
     if (told.ahead !== undefined) this.ahead = told.ahead
     if (told.episode !== undefined) this.episode = told.episode
+  }
+
+  get cells () {
+    const [width, height, depth] = this.shape
+    return width * height * depth
   }
 
   get shape () {

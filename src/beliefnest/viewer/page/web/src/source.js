@@ -1,6 +1,7 @@
 /** Sources of answers: the page's own data, or the server that sent the page. */
 
 import { rowIndex } from './run.js'
+import { numbersOf } from './runs.js'
 
 /** Answers that were computed when the page was written. */
 export class PackedSource {
@@ -19,7 +20,10 @@ export class PackedSource {
 
   sight (run, track, tick, viewer) {
     const rows = run.ahead.sights[`${run.nameOf(track)} agent-${viewer}`] ?? []
-    return rows[rowIndex(rows, tick)]?.[1] ?? null
+    const number = rows[rowIndex(rows, tick)]?.[1]
+    if (number === undefined) return null
+    if (this.view?.run !== run || this.view.number !== number) this.view = { run, number, lengths: numbersOf(run.ahead.views[number]) }
+    return this.view.lengths
   }
 
   async deepen () {

@@ -1,0 +1,86 @@
+"""Numbers as short texts, and blocks of grids as such texts.
+
+A number is written in base 32, the lowest digit first; a digit that is followed by a further one of
+the same number is raised by 32. Each of these 64 values is one character, so that texts are short
+and compress well. Source maps of JavaScript use the same idea ("base 64 VLQ"). The page reads them
+in `web/src/runs.js`.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = ["AS_FIRST", "FIRST_STATE", "UNKNOWN", "numbers_text", "runs_text", "text_numbers"]
+
+AS_FIRST, UNKNOWN, FIRST_STATE = 0, 1, 2
+"""Marks of runs: the block that reality had there at first, an unknown block, block number 0."""
+
+_DIGITS = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
+_BITS = 5
+_ALPHABET = np.frombuffer(_DIGITS, dtype=np.uint8)
+
+
+def numbers_text(numbers: Sequence[int] | npt.NDArray[np.int64]) -> str:
+    """Return numbers, none of them negative, as a text."""
+    values = np.asarray(numbers, dtype=np.int64)
+    if not len(values):
+        return ""
+    most = max(1, -(-int(values.max()).bit_length() // _BITS))
+    shifted = values[:, None] >> (_BITS * np.arange(most + 1))
+    digits, follows = shifted[:, :-1] & (2**_BITS - 1), shifted[:, 1:] > 0
+    used = np.ones(digits.shape, dtype=np.bool_)
+    used[:, 1:] = follows[:, :-1]
+    codes = digits + 2**_BITS * follows
+    letters: bytes = _ALPHABET[codes[used]].tobytes()
+    return letters.decode("ascii")
+
+
+def text_numbers(text: str) -> list[int]:
+    """Return the numbers of a text."""
+    numbers, value, shift = [], 0, 0
+    for letter in text.encode("ascii"):
+        code = _DIGITS.index(letter)
+        value |= (code & (2**_BITS - 1)) << shift
+        shift += _BITS
+        if code < 2**_BITS:
+            numbers.append(value)
+            value = shift = 0
+    return numbers
+
+
+def runs_text(
+    cells: npt.NDArray[np.int64],
+    states: npt.NDArray[np.int16],
+    first: npt.NDArray[np.int16] | None,
+    number_of: Callable[[int], int],
+) -> str:
+    """Return blocks at some cells as a text.
+
+    Neighbouring cells with the same mark are a run: the number of cells since the last run; twice
+    the length, plus 1 if the mark is not `AS_FIRST`; and then the mark, less 1.
+
+    Args:
+        cells: Flat cells, rising.
+        states: The block of each; -1 unknown.
+        first: The blocks that reality had there at first; None: each run has its block.
+        number_of: Function that returns the page's number of a block.
+    """
+    if not len(cells):
+        return ""
+    known, which = np.unique(states, return_inverse=True)
+    marks = np.array([UNKNOWN if s < 0 else FIRST_STATE + number_of(s) for s in known.tolist()])
+    mark = marks[which]
+    if first is not None:
+        mark = np.where(states == first, AS_FIRST, mark)
+    begins = np.ones(len(cells), dtype=np.bool_)
+    begins[1:] = (np.diff(cells) != 1) | (np.diff(mark) != 0)
+    starts = np.flatnonzero(begins)
+    lengths = np.diff(starts, append=len(cells))
+    gaps = np.diff(cells[starts], prepend=0)
+    gaps[1:] -= lengths[:-1]
+    own = mark[starts] != AS_FIRST
+    numbers = np.stack([gaps, 2 * lengths + own, mark[starts] - 1], axis=1)
+    used = np.ones(numbers.shape, dtype=np.bool_)
+    used[:, 2] = own
+    return numbers_text(numbers[used])
