@@ -13,6 +13,7 @@ from beliefnest.cli.options import (
     ExportOptions,
     Json,
     MethodsFormat,
+    ParticipantsOptions,
     PlayOptions,
     PowerOptions,
     RunOptions,
@@ -276,6 +277,15 @@ def study(options: StudyOptions) -> int:
     from beliefnest.cli.study import run_study
 
     return run_study(options)
+
+
+@app.command()
+@with_options(ParticipantsOptions)
+def participants(options: ParticipantsOptions) -> None:
+    """Write a page on which people answer a study's questions; read their answers back."""
+    from beliefnest.cli.participants import run_participants
+
+    run_participants(options)
 
 
 @app.command()

@@ -17,6 +17,7 @@ __all__ = [
     "ExportOptions",
     "Json",
     "MethodsFormat",
+    "ParticipantsOptions",
     "PlayOptions",
     "PowerOptions",
     "RunOptions",
@@ -313,6 +314,37 @@ class StudyOptions:
         list[str] | None,
         typer.Option(metavar="COLUMN", help="Group rows by this column; can be repeated."),
     ] = None
+    json: Json = False
+
+
+@dataclass(frozen=True, slots=True)
+class ParticipantsOptions:
+    """Options of `beliefnest participants`."""
+
+    study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
+    out: Annotated[
+        Path,
+        typer.Option("--out", "-o", help="Folder of the page; with --read, folder of the study."),
+    ]
+    show: Annotated[
+        Literal["film", "story", "both"], typer.Option(help="What people are shown.")
+    ] = "both"
+    instructions: Annotated[
+        Path | None, typer.Option(help="Text file with instructions or consent for people.")
+    ] = None
+    title: Annotated[str, typer.Option(help="Title of the browser's tab.")] = "Study"
+    post: Annotated[
+        str | None,
+        typer.Option(metavar="URL", help="Send the answers to this address as JSON."),
+    ] = None
+    read: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="Read answers, a file or a folder of files, into the study; can be repeated.",
+        ),
+    ] = None
+    name: Annotated[str, typer.Option(help="Name of the people in the column model.")] = "people"
     json: Json = False
 
 

@@ -23,7 +23,7 @@ from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study import Study, checked_shard
 from beliefnest.world.words import counted
 
-__all__ = ["run_study"]
+__all__ = ["run_study", "write_files"]
 
 _MOST_TOLD = 10
 
@@ -64,7 +64,7 @@ def run_study(options: StudyOptions) -> int:
             sys.stderr.write(f"finished cells are in {folder}; run the same command to continue\n")
             raise
     by = options.by or result.groups
-    _write_files(result, by)
+    write_files(result, by)
     if options.json:
         sys.stdout.write(json.dumps(_report(result, by), indent=2) + "\n")
     else:
@@ -90,7 +90,7 @@ def _progress_text(progress: StudyProgress) -> str:
     return ", ".join(parts)
 
 
-def _write_files(result: StudyResult, by: Sequence[str]) -> None:
+def write_files(result: StudyResult, by: Sequence[str]) -> None:
     """Write the tables and the page into the study's folder; without pyarrow, no Parquet file."""
     try:
         result.write_tables()

@@ -17,7 +17,12 @@ _GROUND = "#f0ece3"
 
 
 def draw_legend(
-    kinds: Iterable[str], looks: Mapping[str, AgentLook], at: XY, width: float, size: float
+    kinds: Iterable[str],
+    looks: Mapping[str, AgentLook],
+    at: XY,
+    width: float,
+    size: float,
+    words: Mapping[str, str] | None = None,
 ) -> Block:
     """Draw signs with their meanings, as many in a line as fit.
 
@@ -27,20 +32,22 @@ def draw_legend(
         at: Upper left corner, in points.
         width: Width in points.
         size: Size of the text in points.
+        words: Meanings of signs that replace the usual ones.
     """
     left, top = at
     block = Block(bottom=top)
     x = left
     height = size * 1.2
     for kind in sorted(kinds, key=_order):
-        sign, words = _entry(kind, looks)
+        sign, usual = _entry(kind, looks)
+        meaning = (words or {}).get(kind, usual)
         wide = height * 1.5
-        taken = wide + 2 + text_width(words, size)
+        taken = wide + 2 + text_width(meaning, size)
         if x > left and x + taken > left + width:
             x, block.bottom = left, block.bottom + height * 1.45
         block.marks += sign((x, block.bottom), wide, height)
         base = block.bottom + height / 2 + size * ASCENT * 0.48
-        block.marks.append(Text(x + wide + 2, base, words, size, QUIET))
+        block.marks.append(Text(x + wide + 2, base, meaning, size, QUIET))
         x += taken + size * 1.5
     block.bottom += height if x > left else 0
     return block

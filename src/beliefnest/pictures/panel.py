@@ -11,7 +11,7 @@ from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, age_
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Device, DrawnAgent, Scene, Store
 
-__all__ = ["Block", "belief_words", "draw_panel", "draw_title", "paragraph"]
+__all__ = ["Block", "belief_words", "draw_body", "draw_panel", "draw_title", "paragraph"]
 
 _LINE = 1.32
 _MOST = 12
@@ -75,13 +75,24 @@ def draw_panel(
         plan_at: Least y of the plan; it aligns the plans of a row.
         trails: Ways that agents have gone.
     """
-    left, _ = at
-    block = draw_title(scene, at, width, size)
-    begin = max(block.bottom + 1.5, plan_at)
-    plan = draw_plan(scene, looks, (left, begin), width, size, trails)
-    block.marks += plan.marks
-    block.kinds |= plan.kinds
-    block.bottom = plan.bottom + size * 0.7
+    title = draw_title(scene, at, width, size)
+    begin = max(title.bottom + 1.5, plan_at)
+    body = draw_body(scene, looks, (at[0], begin), width, size, trails)
+    return Block([*title.marks, *body.marks], body.bottom, body.kinds)
+
+
+def draw_body(
+    scene: Scene,
+    looks: Mapping[str, AgentLook],
+    at: XY,
+    width: float,
+    size: float,
+    trails: Mapping[str, tuple[XY, ...]] | None = None,
+) -> Block:
+    """Draw the panel of a scene without its title; arguments as of `draw_panel`."""
+    left, top = at
+    plan = draw_plan(scene, looks, (left, top), width, size, trails)
+    block = Block(list(plan.marks), plan.bottom + size * 0.7, set(plan.kinds))
     _margin(block, scene, looks, left, width, size)
     if plan.unnamed:
         paragraph(block, f"too close for a name: {', '.join(plan.unnamed)}", left, width, size)

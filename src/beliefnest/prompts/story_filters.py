@@ -24,7 +24,7 @@ from beliefnest.world.signs import sign_words
 from beliefnest.world.values import EventKind, Items, Point, Position
 from beliefnest.world.words import listed, point_words, things_words, with_the
 
-__all__ = ["FILTERS"]
+__all__ = ["FILTERS", "captions"]
 
 _ROW_HEADER = "time;what;agent_name;description"
 _AT_CONTAINER = (EventKind.GET_ITEM_FROM_CHEST, EventKind.DEPOSIT_ITEM_INTO_CHEST)
@@ -68,6 +68,24 @@ def story(branch: BranchView, narrated: bool = False, coordinates: bool = False)
     all_ = branch.observations
     before = list(itertools.takewhile(_is_scene, all_))
     return " ".join(teller.course(all_[len(before) :], before)) or "Nothing happened."
+
+
+def captions(branch: BranchView) -> list[tuple[int, str]]:
+    """Return the sentences of `beginning` and `story`, each with the tick that it tells of.
+
+    The first entry is the whole beginning. Sentences are in the order of time.
+    """
+    all_ = branch.observations
+    if not all_:
+        return []
+    before = list(itertools.takewhile(_is_scene, all_))
+    opening = " ".join(_teller_of(branch).scene(before))
+    course = _teller_of(branch).dated_course(all_[len(before) :], before)
+    return [*([(all_[0].tick, opening)] if opening else []), *course]
+
+
+def _teller_of(branch: BranchView) -> "_Teller":
+    return _Teller(branch, narrated=False, coordinates=False)
 
 
 def _is_scene(each: Observation) -> bool:
@@ -155,7 +173,13 @@ class _Teller:
             yield from self._first_sights(sights)
 
     def course(self, told: Sequence[Observation], before: Iterable[Observation]) -> Iterator[str]:
-        """Yield sentences about what happened.
+        """Yield sentences about what happened, see `dated_course`."""
+        return (sentence for _, sentence in self.dated_course(told, before))
+
+    def dated_course(
+        self, told: Sequence[Observation], before: Iterable[Observation]
+    ) -> Iterator[tuple[int, str]]:
+        """Yield sentences about what happened, each with its tick.
 
         Args:
             told: Observations from the first event on.
@@ -168,7 +192,7 @@ class _Teller:
         for group in groups:
             sights = [sight for sight in group if isinstance(sight, Sight)]
             if sights:
-                yield from self._changes(sights)
+                yield from ((sights[0].tick, words) for words in self._changes(sights))
                 continue
             rest: Iterator[Observation | None] = iter([*group, None])
             each: Observation | None = next(rest)
@@ -176,9 +200,9 @@ class _Teller:
                 following = next(rest)
                 joined = self._joined(each, following)
                 if joined is None:
-                    yield from self._one(each)
+                    yield from ((each.tick, words) for words in self._one(each))
                 else:
-                    yield joined
+                    yield each.tick, joined
                     following = next(rest)
                 each = following
 

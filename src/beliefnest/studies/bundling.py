@@ -81,6 +81,9 @@ def _study_files(result: StudyRecord, *, runs: bool) -> Iterator[tuple[str, byte
     folder = result.folder.path
     planned = {cell["name"] for cell in result.plan["cells"]}
     yield "study.json", read_regular(folder / "study.json")
+    for name in ("people.json", "people.csv"):
+        if (folder / name).is_file():
+            yield name, read_regular(folder / name)
     for path in _below(folder, ("inputs", "answers", *(["runs"] if runs else []))):
         yield path.relative_to(folder).as_posix(), path.read_bytes()
     for name in sorted(planned & result.folder.names()):
@@ -163,6 +166,8 @@ _CONTENTS = {
         "inputs/policies/": "programs and classes of policies",
         "inputs/models/": "files of scripted or recorded answers",
         "study.json": "the plan: each cell with its values and seed, and invalid combinations",
+        "people.json": "the cells that participants answered",
+        "people.csv": "every answer of a participant, with times and the order of the options",
         "answers/": "every request to a model and its answer, with tokens, cost and date",
         "cells/": "the result of each cell",
         "runs/": "recorded runs, for `beliefnest show` and `beliefnest serve`",

@@ -8,9 +8,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+import numpy.typing as npt
+
 from beliefnest.scenarios.scoring import wilson_interval
 
-__all__ = ["DRAWS", "exchange_p", "mean_interval", "rate_interval"]
+__all__ = ["DRAWS", "crossed_interval", "exchange_p", "mean_interval", "rate_interval"]
 
 DRAWS = 2_000
 """Draws of a bootstrap."""
@@ -59,6 +61,59 @@ def rate_interval(clusters: Sequence[Sequence[bool]]) -> tuple[float, float, str
     low, high = mean_interval(clusters)
     assert low is not None and high is not None
     return low, high, "bootstrap"
+
+
+def crossed_interval(
+    values: Sequence[bool], variations: Sequence[object], people: Sequence[object | None]
+) -> tuple[float, float, str]:
+    """Compute the 95 % interval of the share of True if people answered several variations.
+
+    The method is the pigeonhole bootstrap of Owen (2007): variations and people are drawn with
+    replacement, independently of each other. A value counts as often as its variation was drawn
+    times its person.
+
+    Args:
+        values: Values, at least one.
+        variations: Variation of each value.
+        people: Person of each value; None: nobody, whose values count as often as the variation
+            was drawn.
+
+    Returns:
+        Lowest share, highest share, and the method, `wilson` or `two-way bootstrap`. The method is
+        Wilson's interval if no two values share a variation or a person, or if all draws have the
+        same share; then for as many values as there are variations, or people if these are fewer.
+    """
+    rows, columns = _numbers(variations), _numbers([each for each in people if each is not None])
+    mean, least = sum(values) / len(values), min(len(rows), len(columns) or len(rows))
+    if len(rows) == len(columns) == len(values):
+        return *wilson_interval(sum(values), len(values)), "wilson"
+    # The last column is that of nobody.
+    sums, counts = np.zeros((2, len(rows), len(columns) + 1))
+    for value, variation, person in zip(values, variations, people, strict=True):
+        place = rows[variation], columns.get(person, len(columns))
+        sums[place] += value
+        counts[place] += 1
+    chance = np.random.default_rng(0)
+    drawn = _drawn(chance, len(rows))
+    weights = np.hstack([_drawn(chance, len(columns)), np.ones((DRAWS, 1))])
+    totals = (drawn @ counts * weights).sum(axis=1)
+    # A draw may contain no value if few people answered few variations each.
+    shares = (drawn @ sums * weights).sum(axis=1)[totals > 0] / totals[totals > 0]
+    low, high = np.percentile(shares, [2.5, 97.5])
+    if low == high:
+        return *wilson_interval(mean * least, least), "wilson"
+    return float(low), float(high), "two-way bootstrap"
+
+
+def _numbers(names: Sequence[object]) -> dict[object, int]:
+    return {name: number for number, name in enumerate(dict.fromkeys(names))}
+
+
+def _drawn(chance: np.random.Generator, count: int) -> npt.NDArray[np.float64]:
+    """Return how often each of `count` clusters is drawn, for each draw of a bootstrap."""
+    if not count:
+        return np.zeros((DRAWS, 0))
+    return chance.multinomial(count, np.full(count, 1 / count), DRAWS).astype(float)
 
 
 def exchange_p(differences: Sequence[int]) -> float:

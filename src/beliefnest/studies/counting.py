@@ -9,7 +9,13 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.judging import OUTCOMES
-from beliefnest.studies.clusters import exchange_p, mean_interval, rate_interval
+from beliefnest.studies.allocation import PARTICIPANT
+from beliefnest.studies.clusters import (
+    crossed_interval,
+    exchange_p,
+    mean_interval,
+    rate_interval,
+)
 
 __all__ = ["Pairs", "Row", "count_rows", "judged_rows", "paired_rows"]
 
@@ -24,7 +30,8 @@ def count_rows(
 
     Rows without expectations or without a result are counted but not judged. A row and its copies
     (`copy_of`) count as one row; `copies` is the number of rows left out. Intervals are clustered
-    by the column `variation`; a row without it is a cluster of its own.
+    by the column `variation`; a row without it is a cluster of its own. If people answered, they
+    are clustered by the column `participant`, too.
 
     Args:
         rows: Rows of a study.
@@ -34,8 +41,8 @@ def count_rows(
     Returns:
         One mapping for each group, in order of appearance: the columns of `by`; `rows`; `copies`;
         `judged`; `variations` (number of independent variations among the judged rows); `right`;
-        `accuracy`, `low` and `high` (its 95 % interval) and `interval` (`wilson` or `bootstrap`,
-        see `rate_interval`), all None if no row is judged; the count of each outcome; `tokens`;
+        `accuracy`, `low` and `high` (its 95 % interval) and `interval` (its method,
+        see `rate_interval` and `crossed_interval`), all None if no row is judged; the count of each outcome; `tokens`;
         `cost` (None if not known); for each column of `means`, its mean, and the 95 % interval as
         `NAME_low` and `NAME_high` (None if fewer than two variations have a value).
     """
@@ -75,7 +82,7 @@ def _counted(all_rows: Sequence[tuple[Row, _Origin]], means: Mapping[str, bool])
         firsts.setdefault(origin, row)
     judged = _clusters(firsts, "ok")
     count, right = sum(map(len, judged)), sum(map(sum, judged))
-    low, high, interval = rate_interval(judged) if judged else (None, None, None)
+    low, high, interval = _interval(firsts) if judged else (None, None, None)
     costs = [row.get("cost") for row, _ in all_rows if row["outcome"] != "error"]
     return {
         "rows": len(all_rows),
@@ -92,6 +99,16 @@ def _counted(all_rows: Sequence[tuple[Row, _Origin]], means: Mapping[str, bool])
         "cost": None if None in costs else sum(cost or 0.0 for cost in costs),
         **_means(firsts, means),
     }
+
+
+def _interval(rows: Mapping[_Origin, Row]) -> tuple[float, float, str]:
+    """Return the interval of the share of right rows, and its method."""
+    judged = {origin: row for origin, row in rows.items() if row.get("ok") is not None}
+    people = [row.get(PARTICIPANT) for row in judged.values()]
+    if not any(people):
+        return rate_interval(_clusters(judged, "ok"))
+    variations = [_variation(row, origin) for origin, row in judged.items()]
+    return crossed_interval([row["ok"] for row in judged.values()], variations, people)
 
 
 def _clusters(rows: Mapping[_Origin, Row], column: str) -> list[list[Any]]:
@@ -204,7 +221,8 @@ def paired_rows(
     Args:
         rows: Rows of a study.
         column: Column whose levels are compared.
-        identity: Columns that identify a row, as opposed to its results.
+        identity: Columns that identify a row, as opposed to its results. Rows of people are
+            paired with the rows of all other people, and with those of models.
         same: Columns of `identity` that carry the same information as `column`.
 
     Raises:
@@ -214,23 +232,25 @@ def paired_rows(
         raise InputError(
             f"rows cannot be compared by {column!r}; columns are {', '.join(identity)}"
         )
-    others = [name for name in identity if name not in (column, *same)]
-    table: dict[tuple[Any, ...], dict[Any, tuple[Row, _Origin]]] = {}
+    others = [name for name in identity if name not in (column, PARTICIPANT, *same)]
+    table: dict[tuple[Any, ...], dict[Any, list[tuple[Row, _Origin]]]] = {}
     levels: dict[Any, None] = {}
     for row, origin in zip(rows, _origins(rows), strict=True):
         levels[row[column]] = None
         if row.get("ok") is not None:
             key = tuple(row.get(name) for name in others)
-            table.setdefault(key, {})[row[column]] = (row, origin)
+            table.setdefault(key, {}).setdefault(row[column], []).append((row, origin))
     every = (_pairs(table.values(), one, other) for one, other in itertools.combinations(levels, 2))
     return [pairs for pairs in every if pairs.clusters]
 
 
-def _pairs(table: Iterable[Mapping[Any, tuple[Row, _Origin]]], one: Any, other: Any) -> Pairs:
+def _pairs(
+    table: Iterable[Mapping[Any, Sequence[tuple[Row, _Origin]]]], one: Any, other: Any
+) -> Pairs:
     found: dict[tuple[_Origin, _Origin], tuple[Row, Row]] = {}
     for each in table:
-        if one in each and other in each:
-            (first, a), (second, b) = each[one], each[other]
+        # Several rows differ by participant only.
+        for (first, a), (second, b) in itertools.product(each.get(one, ()), each.get(other, ())):
             # A row does not form a pair with its own copy.
             if a != b:
                 found[a, b] = (first, second)

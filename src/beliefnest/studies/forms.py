@@ -7,7 +7,7 @@ import msgspec
 from beliefnest.episodes.measures import Measures
 from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm
 
-__all__ = ["SecondsForm", "cell_form", "plan_form"]
+__all__ = ["PeopleForm", "SecondsForm", "cell_form", "plan_form"]
 
 
 class _Failed(msgspec.Struct):
@@ -88,6 +88,20 @@ class _Invalid(msgspec.Struct):
 class _ScenariosPlan(msgspec.Struct):
     cells: list[_PlannedScenario]
     invalid: list[_Invalid]
+
+
+class _PersonKey(_ScenarioKey):
+    participant: str
+
+
+class _PlannedPerson(_PlannedScenario, kw_only=True):
+    key: _PersonKey
+
+
+class PeopleForm(msgspec.Struct):
+    """Entries of cells that participants answered."""
+
+    cells: list[_PlannedPerson]
 
 
 class _EpisodesPlan(msgspec.Struct):

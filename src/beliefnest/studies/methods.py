@@ -216,6 +216,9 @@ def _intervals(groups: Sequence[Mapping[str, Any]]) -> list[str]:
 _INTERVALS = {
     "wilson": "the method of Wilson (1927)",
     "bootstrap": f"the cluster bootstrap over variations ({DRAWS:,} draws)",
+    "two-way bootstrap": (
+        f"the pigeonhole bootstrap over variations and participants ({DRAWS:,} draws; Owen 2007)"
+    ),
 }
 
 

@@ -15,6 +15,7 @@ from beliefnest.llm.budget import RunLimits
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template, built_in_template
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.sources import read_document
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.cells import Cell, CellKey, Keyed, planned_cell
 from beliefnest.studies.comparing import ERROR, Difference, differing_contents, differing_rows
 from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
@@ -70,7 +71,8 @@ def reproduce_study(
         BodyError: A worker process ended unexpectedly.
     """
     recorded = StudyRecord.read(folder)
-    plan = recorded.plan
+    # What people answered cannot be played again; their rows are compared with their cells.
+    plan = recorded.folder.plan()
     found = {cell["name"]: recorded.folder.cell(cell["name"]) for cell in plan["cells"]}
     ended = [
         cell
@@ -96,7 +98,9 @@ def reproduce_study(
         *_differing_table(recorded),
         *_differing_cells(recorded, StudyRecord.read(again), ended),
     ]
-    judged = sum(row["outcome"] != "error" for row in recorded.rows)
+    judged = sum(
+        row["outcome"] != "error" and row.get(PARTICIPANT) is None for row in recorded.rows
+    )
     left_out = len(plan["cells"]) - len(ended)
     return Reproduction(len(ended), left_out, judged, tuple(differences))
 
@@ -145,7 +149,8 @@ def _differing_cells(
     for side, result in enumerate((recorded, again)):
         for row in result.rows:
             if row["cell"] in rows:
-                rows[row["cell"]][side].append({**row, "run": ""})
+                own = {name: value for name, value in row.items() if name != PARTICIPANT}
+                rows[row["cell"]][side].append({**own, "run": ""})
     for name, (before, after) in rows.items():
         where = f"cells/{name}.json"
         failed = again.folder.cell(name)

@@ -13,6 +13,7 @@ from beliefnest.llm.resolve import check_model
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.sources import read_document
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.cells import C, Cell, Plan, plan_cells
 from beliefnest.studies.checking import (
     StudyKeyError,
@@ -30,6 +31,14 @@ from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
 from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.jobs import OnStudyProgress, StudyProgress, run_cells
+from beliefnest.studies.participants.playing import OnItem
+from beliefnest.studies.participants.running import (
+    Page,
+    Shown,
+    join_answers,
+    make_page,
+    write_answers,
+)
 from beliefnest.studies.plainframe import Typed, plain_frame
 from beliefnest.studies.power import Source, power_rows
 from beliefnest.studies.power_sources import SIZES, assumed_sources
@@ -225,10 +234,7 @@ class Study:
         place = StudyFolder.open(folder)
         plan = self.plan()
         part = plan if shard is None else plan.shard(*checked_shard(shard))
-        if not plan.cells and plan.invalid:
-            raise InputError(
-                f"no combination is valid; the reason of the first: {plan.invalid[0].why}"
-            )
+        _check_valid(plan)
         place.check_subjects(self._plan_json(plan))
         terms = Terms(
             answers=place.answers.absolute(),
@@ -238,20 +244,124 @@ class Study:
         )
         self._check_models(terms, backend)
         try:
-            inputs = self._inputs(plan)
             with place.lock():
-                inputs.write(place.path)
-                place.write_plan(
-                    {
-                        **self._plan_json(part),
-                        "versions": own_versions(),
-                        "inputs": msgspec.to_builtins(inputs.index),
-                    }
-                )
+                self._write_plan(place, self._plan_json(part))
                 run_cells(part.cells, place, terms, jobs, backend, on_progress or _say_nothing)
         except Timeout:
             raise InputError(f"another process runs the study in {folder}") from None
         return StudyResult(place)
+
+    def participants(
+        self,
+        folder: str | Path,
+        show: Shown = "both",
+        *,
+        instructions: str | Path | None = None,
+        title: str = "Study",
+        post: str | None = None,
+        on_item: OnItem | None = None,
+    ) -> Page:
+        """Write a page on which people see the study's scenes and answer its questions.
+
+        The scenarios are played without any model. The folder is static, needs no network and
+        contains no right answers. The same study gives the same bytes.
+
+        Args:
+            folder: Folder to write.
+            show: `film`, `story` or `both`.
+            instructions: Text file with instructions; None: the default ones.
+            title: Title of the browser's tab.
+            post: Address to which the page sends the answers as JSON; None: participants save them.
+            on_item: Function that receives the progress.
+
+        Raises:
+            InputError: An argument is wrong, or the study is one of episodes.
+            ScenarioError: No probe asks a question, or a scenario is wrong.
+            BeliefNestError: A script failed.
+        """
+        design, cells = self._scenarios()
+        return make_page(
+            design,
+            cells,
+            self._documents,
+            Path(folder),
+            show,
+            None if instructions is None else Path(instructions),
+            title,
+            post,
+            on_item or _say_nothing_of_items,
+        )
+
+    def read_participants(
+        self,
+        folder: str | Path,
+        files: Sequence[str | Path],
+        name: str = "people",
+        *,
+        on_item: OnItem | None = None,
+    ) -> tuple[StudyResult, tuple[str, ...]]:
+        """Read answers of participants into the folder of the study, as rows beside those of models.
+
+        The scenarios are played again for the right answers. Earlier rows of the same name are
+        replaced.
+
+        Args:
+            folder: Folder of the study; made if it does not exist.
+            files: Files of answers, or folders of such files.
+            name: Name of the people in the column `model`.
+            on_item: Function that receives the progress.
+
+        Returns:
+            The results of the study, and sentences about what was left out or is unusual.
+
+        Raises:
+            InputError: A file does not fit the study; the message names file, row and column.
+            BeliefNestError: A script failed.
+        """
+        design, cells = self._scenarios()
+        if PARTICIPANT in self.columns:
+            raise InputError(
+                f"the parameter {PARTICIPANT!r} has the name of the column of people; give it "
+                "another name"
+            )
+        found = join_answers(
+            design,
+            cells,
+            self._documents,
+            [Path(each) for each in files],
+            name,
+            on_item or _say_nothing_of_items,
+        )
+        place = StudyFolder.open(folder)
+        place.check_subjects(self._plan_json(self.plan()))
+        try:
+            with place.lock():
+                if not place.has_plan:
+                    self._write_plan(place, self._plan_json(self.plan()))
+                place.write_people(name, found.cells)
+                write_answers(place.path / "people.csv", found.answers)
+        except Timeout:
+            raise InputError(f"another process runs the study in {folder}") from None
+        return StudyResult(place), tuple(found.notes)
+
+    def _scenarios(self) -> tuple[Design, Sequence[Cell]]:
+        """Return design and cells; raise InputError if the study plays episodes."""
+        design, plan = self._design, self.plan()
+        if not isinstance(design, Design):
+            raise InputError(
+                "participants see scenarios and answer their questions; this study plays episodes"
+            )
+        cells = [cell for cell in plan.cells if isinstance(cell, Cell)]
+        _check_valid(plan)
+        return design, cells
+
+    def _write_plan(self, place: StudyFolder, plan: Mapping[str, Any]) -> None:
+        """Write the inputs of the study and a plan into its folder."""
+        inputs = self._inputs(self.plan())
+        inputs.write(place.path)
+        place.write_plan(
+            {**plan, "versions": own_versions(), "inputs": msgspec.to_builtins(inputs.index)}
+        )
 
     def power_sources(
         self,
@@ -429,6 +539,16 @@ def _two(shard: object) -> tuple[int, int]:
     raise InputError(
         f"shard is {shard!r}; give its number and the number of shards, such as (1, 4)"
     )
+
+
+def _check_valid(plan: Plan[Cell] | Plan[EpisodeCell]) -> None:
+    """Raise InputError if no combination of a plan is valid."""
+    if not plan.cells and plan.invalid:
+        raise InputError(f"no combination is valid; the reason of the first: {plan.invalid[0].why}")
+
+
+def _say_nothing_of_items(what: str, done: int, total: int) -> None:
+    """Ignore progress."""
 
 
 def _say_nothing(progress: StudyProgress) -> None:

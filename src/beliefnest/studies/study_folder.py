@@ -13,14 +13,30 @@ from filelock import FileLock
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
-from beliefnest.studies.forms import SecondsForm, cell_form, plan_form
+from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form
 
-__all__ = ["StudyFolder", "append_line"]
+__all__ = ["PersonCell", "StudyFolder", "append_line"]
 
 _PLAN = "study.json"
+_PEOPLE = "people.json"
 _FORM = "beliefnest study 1"
+_PEOPLE_FORM = "beliefnest people 1"
+_READ_AGAIN = "delete it and read the answers of people again"
 _AGAIN = "delete it to run it again"
 _PLAN_AGAIN = "delete it and run the study again, which keeps the cells that have ended"
+
+
+@dataclass(frozen=True, slots=True)
+class PersonCell:
+    """Cell that a participant answered.
+
+    Attributes:
+        planned: Its entry, as those of a plan.
+        found: Content of its file.
+    """
+
+    planned: Mapping[str, Any]
+    found: Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +44,7 @@ class StudyFolder:
     """Folder of a study.
 
     It holds `study.json` (the latest plan), `cells/` (the result of each finished cell),
-    `seconds.jsonl` (wall times, which vary between runs), `answers/` (cached answers of models),
+    `people.json` (entries of cells that participants answered), `seconds.jsonl` (wall times, which vary between runs), `answers/` (cached answers of models),
     `spent.jsonl` (usage of answers) and `runs/` (recorded runs).
     """
 
@@ -122,6 +138,11 @@ class StudyFolder:
         """Write the plan."""
         _write(self.path / _PLAN, _json({"form": _FORM, **plan}))
 
+    @property
+    def has_plan(self) -> bool:
+        """Return True if a plan was written."""
+        return (self.path / _PLAN).is_file()
+
     def plan(self) -> dict[str, Any]:
         """Return the latest plan; raise InputError if it is missing or damaged."""
         file = self.path / _PLAN
@@ -130,6 +151,42 @@ class StudyFolder:
             raise InputError(f"{file} is no plan of this version; {_PLAN_AGAIN}")
         checked_form(found, plan_form(found), file, _PLAN_AGAIN)
         return found
+
+    def people(self) -> list[dict[str, Any]]:
+        """Return the entries of all cells that participants answered.
+
+        Raises:
+            InputError: The file is damaged.
+        """
+        file = self.path / _PEOPLE
+        if not file.is_file():
+            return []
+        found = read_json(file, _READ_AGAIN)
+        if found.get("form") != _PEOPLE_FORM:
+            raise InputError(f"{file} is no file of this version; {_READ_AGAIN}")
+        checked_form(found, PeopleForm, file, _READ_AGAIN)
+        return list(found["cells"])
+
+    def write_people(self, name: str, cells: Iterable[PersonCell]) -> None:
+        """Replace the cells of the people of a name; those of other names stay.
+
+        Args:
+            name: Name of the people in the column `model`.
+            cells: Their cells.
+        """
+        before = self.people()
+        others = [each for each in before if each["key"]["model"] != name]
+        own = {str(each.planned["name"]): each for each in cells}
+        for each in before:
+            if each["key"]["model"] == name and each["name"] not in own:
+                (self.cells / f"{each['name']}.json").unlink(missing_ok=True)
+        for cell, each in own.items():
+            self.write_cell(cell, each.found)
+        self._write_entries([*others, *(dict(each.planned) for each in own.values())])
+
+    def _write_entries(self, entries: Iterable[Mapping[str, Any]]) -> None:
+        content = {"form": _PEOPLE_FORM, "cells": list(entries)}
+        _write(self.path / _PEOPLE, _json(content))
 
     def check_subjects(self, plan: Mapping[str, Any]) -> None:
         """Refuse a folder that holds another study than the given one.
@@ -143,7 +200,7 @@ class StudyFolder:
         Raises:
             InputError: The folder holds another study, or is damaged.
         """
-        there = _subjects(self.plan()) if (self.path / _PLAN).is_file() else set()
+        there = _subjects(self.plan()) if self.has_plan else set()
         own = _subjects(plan)
         if there and own and there.isdisjoint(own):
             raise InputError(
@@ -165,6 +222,7 @@ class StudyFolder:
             InputError: A folder holds no study or only cells of other studies, or two folders have
                 different results of one cell. Nothing is copied.
         """
+        people = {each["name"]: each for each in self.people()}
         new: dict[str, dict[str, Any]] = {}
         homes: dict[str, StudyFolder] = {}
         for other in map(StudyFolder.existing, others):
@@ -173,6 +231,7 @@ class StudyFolder:
                     f"{other.path} holds no cell of this study; another study ran there, or one "
                     "with other files, seeds or settings"
                 )
+            people |= {each["name"]: each for each in other.people()}
             for name in sorted(other.names()):
                 theirs = other.cell(name) or {}
                 ours = new.get(name) or self.cell(name)
@@ -192,6 +251,8 @@ class StudyFolder:
             if name in seconds[other.path]:
                 self.note_seconds(name, seconds[other.path][name])
             self.write_cell(name, content)
+        if people:
+            self._write_entries(people.values())
         return len(new)
 
     @property

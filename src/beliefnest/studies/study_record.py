@@ -54,7 +54,9 @@ class StudyRecord:
 
     @cached_property
     def _plan(self) -> dict[str, Any]:
-        return self.folder.plan()
+        """Return the latest plan; cells that people answered follow those of models."""
+        plan = self.folder.plan()
+        return {**plan, "cells": [*plan["cells"], *self.folder.people()]}
 
     @cached_property
     def table(self) -> Table:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from beliefnest.scenarios.judging import OUTCOMES
-from beliefnest.studies.allocation import LIST
+from beliefnest.studies.allocation import LIST, PARTICIPANT
 from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.study_folder import StudyFolder
 
@@ -164,15 +164,17 @@ def of_result(
 def variation_columns(plan: Mapping[str, Any]) -> list[str]:
     """Return the names of the columns of variations, in the order of the plan.
 
-    The column `list` follows them if the design has lists.
+    The column `list` follows them if the design has lists, and `participant` if people answered.
     """
     return list(dict.fromkeys(name for cell in plan["cells"] for name in _varied(cell)))
 
 
 def _varied(cell: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of a cell's variation, and its list if the design has lists."""
+    """Return the values of a cell's variation, its list and its participant, if it has them."""
+    key = cell["key"]
     lists = {LIST: cell[LIST]} if LIST in cell else {}
-    return {**cell["key"]["variation"], **lists}
+    people = {PARTICIPANT: key[PARTICIPANT]} if PARTICIPANT in key else {}
+    return {**key["variation"], **lists, **people}
 
 
 def plain_value(value: Any) -> Any:

@@ -12,7 +12,7 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.world.texts import on_one_line, visible_json
 
-__all__ = ["page_html"]
+__all__ = ["inlined", "packed", "page_html", "source_hash"]
 
 _BUILT = Path(__file__).parents[2] / "_page"
 
@@ -48,29 +48,35 @@ def page_html(title: str, content: Mapping[str, Any], *, served: bool, name: str
     Raises:
         InputError: The page was not built with the package.
     """
-    text = visible_json(json.dumps(content, separators=(",", ":"), ensure_ascii=False))
-    packed = base64.b64encode(zlib.compress(text.encode(), 9)).decode()
     style, program = _part("page.css"), _part(f"{name}.js")
     return _SHELL.format(
         policy=html.escape(_policy(style, program, served=served)),
         title=html.escape(on_one_line(title)),
         style=style,
         # Base64 has no `<`, so that nothing in the data can end the element.
-        data=json.dumps({"served": served, "packed": packed}),
+        data=json.dumps({"served": served, "packed": packed(content)}),
         program=program,
     )
+
+
+def packed(content: Mapping[str, Any]) -> str:
+    """Return data of a page as JSON, compressed with deflate and encoded as base64."""
+    text = visible_json(json.dumps(content, separators=(",", ":"), ensure_ascii=False))
+    return base64.b64encode(zlib.compress(text.encode(), 9)).decode()
 
 
 def _policy(style: str, program: str, *, served: bool) -> str:
     """Return the page's content security policy: run its own code, talk to its own server."""
     connect = "'self'" if served else "'none'"
     return (
-        f"default-src 'none'; script-src {_digest(program)}; style-src {_digest(style)}; "
+        f"default-src 'none'; script-src {source_hash(program)}; "
+        f"style-src {source_hash(style)}; "
         f"img-src data: blob:; connect-src {connect}; base-uri 'none'; form-action 'none'"
     )
 
 
-def _digest(text: str) -> str:
+def source_hash(text: str) -> str:
+    """Return the source of a content security policy that allows an inlined text."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
@@ -78,6 +84,9 @@ def _part(name: str) -> str:
     file = _BUILT / name
     if not file.is_file():
         raise InputError(f"the page is missing at {file}: run `pip install .` to build it")
-    text = file.read_text(encoding="utf-8")
-    # Escape texts in the program's strings that would end the element.
+    return inlined(file.read_text(encoding="utf-8"))
+
+
+def inlined(text: str) -> str:
+    """Return a program for a `<script>` element; nothing in its strings ends the element."""
     return text.replace("</script", "<\\/script").replace("<!--", "<\\!--")

@@ -1,0 +1,80 @@
+"""`beliefnest participants`: the page of a study for people, and the way back of their answers."""
+
+import json
+import sys
+from typing import Any
+
+from beliefnest.cli.console import progress_on
+from beliefnest.cli.options import ParticipantsOptions
+from beliefnest.cli.study import write_files
+from beliefnest.cli.terminal_text import printable
+from beliefnest.errors import InputError
+from beliefnest.studies.study import Study
+from beliefnest.world.words import counted, listed
+
+__all__ = ["run_participants"]
+
+_OF_PAGE = ("instructions", "post")
+
+
+def run_participants(options: ParticipantsOptions) -> None:
+    """Write the page of a study for people, or read their answers into the study's folder.
+
+    Raises:
+        BeliefNestError: The study or a file is wrong, or a script failed.
+    """
+    if options.read:
+        told, lines = _read(options)
+    else:
+        told, lines = _written(options)
+    if options.json:
+        sys.stdout.write(json.dumps(told, indent=2) + "\n")
+    else:
+        sys.stdout.write("".join(f"{printable(line)}\n" for line in lines))
+
+
+def _written(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
+    with progress_on(options.study.stem) as on_progress:
+        page = Study.load(options.study).participants(
+            options.out,
+            options.show,
+            instructions=options.instructions,
+            title=options.title,
+            post=options.post,
+            on_item=on_progress,
+        )
+        on_progress("writing the page", page.items, page.items)
+    start = page.folder / "index.html"
+    told = {
+        "page": str(start),
+        "items": page.items,
+        "questions": page.questions,
+        "lists": list(page.lists),
+        "left_out": list(page.notes),
+    }
+    lists = f", in lists of {listed([str(n) for n in page.lists])}" * (len(page.lists) > 1)
+    size = f"{counted(page.items, 'item')} with {counted(page.questions, 'question')}{lists}"
+    return told, [*page.notes, f"{start}: {size}; open it with ?participant=ID"]
+
+
+def _read(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
+    for name in _OF_PAGE:
+        if getattr(options, name) is not None:
+            raise InputError(f"--{name} belongs to writing a page; leave it out with --read")
+    with progress_on(options.study.stem) as on_progress:
+        result, notes = Study.load(options.study).read_participants(
+            options.out, options.read or (), options.name, on_item=on_progress
+        )
+        on_progress("writing tables", 1, 1)
+        write_files(result, result.groups)
+    own = [row for row in result.rows if row["model"] == options.name]
+    people = {row["participant"] for row in own}
+    told = {
+        "study_dir": str(result.folder.path),
+        "participants": len(people),
+        "rows": len(own),
+        "right": sum(row["ok"] is True for row in own),
+        "notes": list(notes),
+    }
+    size = f"{counted(len(people), 'participant')} and {counted(len(own), 'row')}"
+    return told, [*notes, f"{result.folder.path}: {size} of {options.name}, {told['right']} right"]

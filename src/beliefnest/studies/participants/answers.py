@@ -1,0 +1,143 @@
+"""Answers of participants, as files of the page or of jsPsych hold them."""
+
+import csv
+import io
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from beliefnest.errors import InputError
+from beliefnest.files import decode_json, read_regular_text
+
+__all__ = ["Answer", "answer_files", "read_answers"]
+
+_TRIAL = "beliefnest-question"
+"""Value of `trial_type` of our trials, which jsPsych writes as well."""
+_NEEDED = ("participant", "cell", "question", "response")
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Answer of one participant to one question.
+
+    Attributes:
+        where: File and row, for messages.
+        participant: Id of the participant.
+        cell: Name of the item.
+        question: Id of the question.
+        response: The answer.
+        options: Options in the order in which the participant saw them.
+        reason: Reason in the participant's words; empty: none.
+        study: Hash of the page on which it was given; empty: not recorded.
+        started: Time at which the session began; empty: not recorded.
+        plain: The whole row, as it is in the file.
+    """
+
+    where: str
+    participant: str
+    cell: str
+    question: str
+    response: str
+    options: tuple[str, ...]
+    reason: str
+    study: str
+    started: str
+    plain: Mapping[str, Any]
+
+    def fault(self, column: str, message: str) -> InputError:
+        """Return an error that names file, row and column."""
+        return InputError(f"{self.where}, column {column}: {message}")
+
+
+def answer_files(paths: Iterable[Path]) -> list[Path]:
+    """Return files, and for folders the CSV and JSON files in them, in the order of names.
+
+    Raises:
+        InputError: A folder has no such file.
+    """
+    found: list[Path] = []
+    for path in paths:
+        if not path.is_dir():
+            found.append(path)
+            continue
+        inside = sorted(each for each in path.iterdir() if each.suffix in (".csv", ".json"))
+        if not inside:
+            raise InputError(f"{path} has no .csv or .json file with answers")
+        found += inside
+    return found
+
+
+def read_answers(file: Path) -> list[Answer]:
+    """Return the answers in a CSV or JSON file of the page or of jsPsych.
+
+    Trials of other plugins are left out.
+
+    Raises:
+        InputError: The file has another form; the message names file, row and column.
+    """
+    try:
+        text = read_regular_text(file)
+    except OSError as error:
+        raise InputError(f"{file} cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{file} is not UTF-8; give it as the page wrote it") from None
+    rows = _json_rows(file, text) if text.lstrip().startswith("[") else _csv_rows(file, text)
+    found = [_answer(where, row) for where, row in rows if row.get("trial_type", _TRIAL) == _TRIAL]
+    if not found:
+        raise InputError(f"{file} has no answers: no row has the trial_type {_TRIAL!r}")
+    return found
+
+
+def _json_rows(file: Path, text: str) -> list[tuple[str, Mapping[str, Any]]]:
+    try:
+        rows = decode_json(text, list[dict[str, Any]])
+    except msgspec.MsgspecError as error:
+        raise InputError(f"{file} is no JSON list of answers: {error}") from None
+    return [(f"{file}, entry {number}", row) for number, row in enumerate(rows, 1)]
+
+
+def _csv_rows(file: Path, text: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    reader = csv.DictReader(io.StringIO(text.removeprefix("\ufeff"), newline=""))
+    missing = [name for name in _NEEDED if name not in (reader.fieldnames or ())]
+    if missing:
+        raise InputError(
+            f"{file}:1 has no column {missing[0]!r}; give the file as the page or jsPsych wrote it"
+        )
+    try:
+        for row in reader:
+            yield f"{file}:{reader.line_num}", row
+    except csv.Error as error:
+        raise InputError(f"{file}:{reader.line_num} cannot be read: {error}") from None
+
+
+def _answer(where: str, row: Mapping[str, Any]) -> Answer:
+    texts = {name: _text(where, row, name) for name in (*_NEEDED, "reason", "study", "started")}
+    for name in _NEEDED[:-1]:
+        if not texts[name]:
+            raise InputError(f"{where}, column {name}: is empty; give the row as it was written")
+    return Answer(where=where, options=_options(where, row), plain=dict(row), **texts)
+
+
+def _text(where: str, row: Mapping[str, Any], name: str) -> str:
+    value = row.get(name)
+    if value is None:
+        return ""
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise InputError(f"{where}, column {name}: is {value!r}; it must be a text")
+    return str(value).strip()
+
+
+def _options(where: str, row: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the options of a row; in CSV files they are JSON."""
+    value = row.get("options") or []
+    try:
+        listed = json.loads(value) if isinstance(value, str) else value
+        return tuple(msgspec.convert(listed, Sequence[str]))
+    except (ValueError, RecursionError, msgspec.ValidationError):
+        raise InputError(
+            f"{where}, column options: is {value!r}; it must be a list of texts"
+        ) from None

@@ -1,0 +1,126 @@
+"""Films of simulators: pictures over time with captions, as participants see them."""
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.place_names import object_names
+from beliefnest.pictures.marks import Drawing
+from beliefnest.pictures.still import draw_still
+from beliefnest.pictures.svg import svg_text
+from beliefnest.prompts.story_filters import captions
+from beliefnest.world.paths import parse_path
+
+__all__ = ["Film", "Frame", "read_film"]
+
+_MOST = 60
+"""Greatest number of pictures without a new caption."""
+_TICK_MS = 50
+_SHORTEST_MS = 200
+_LONGEST_MS = 1_500
+_LETTER_MS = 60
+"""Time to read one letter: about 200 words a minute."""
+_CAPTION_MS = 700
+"""Time to notice a new caption."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Part of a film during which nothing changes.
+
+    Attributes:
+        picture: Index of its picture.
+        ms: Duration in milliseconds.
+        caption: What has happened last, in words.
+    """
+
+    picture: int
+    ms: int
+    caption: str
+
+
+@dataclass(frozen=True, slots=True)
+class Film:
+    """Film of one simulator.
+
+    Attributes:
+        pictures: SVG texts of one size, each once.
+        frames: Frames in the order of time.
+    """
+
+    pictures: tuple[str, ...]
+    frames: tuple[Frame, ...]
+
+
+def read_film(nest: Nest, path: str, start: int) -> Film:
+    """Return the film of a simulator until now.
+
+    The pictures show the simulator alone: false beliefs are not marked.
+
+    Args:
+        nest: The nest after the script.
+        path: Belief path of the simulator.
+        start: First tick.
+    """
+    told: dict[int, str] = {}
+    for tick, sentence in captions(nest[path]):
+        told[tick] = f"{told[tick]} {sentence}" if tick in told else sentence
+    changes = [start, *(tick for tick, _ in nest.each_tick([path], start, nest.tick))]
+    ticks = sorted({*_thinned(changes), *told, nest.tick})
+    pictures = _pictures(nest, path, ticks)
+    times = _durations(ticks, told)
+    words = list(itertools.accumulate((told.get(tick, "") for tick in ticks), _latest))
+    distinct = list(dict.fromkeys(pictures))
+    frames = [
+        Frame(distinct.index(picture), ms, caption)
+        for picture, ms, caption in zip(pictures, times, words, strict=True)
+    ]
+    return Film(tuple(distinct), tuple(_joined(frames)))
+
+
+def _thinned(ticks: Sequence[int]) -> Sequence[int]:
+    return ticks[:: max(1, math.ceil(len(ticks) / _MOST))]
+
+
+def _latest(before: str, now: str) -> str:
+    return now or before
+
+
+def _durations(ticks: Sequence[int], told: Mapping[int, str]) -> list[int]:
+    """Return the duration of each picture; one with a new caption can be read."""
+    spans = [later - tick for tick, later in itertools.pairwise(ticks)]
+    usual = [min(_LONGEST_MS, max(_SHORTEST_MS, span * _TICK_MS)) for span in spans]
+    reading = [_CAPTION_MS + _LETTER_MS * len(told[tick]) if tick in told else 0 for tick in ticks]
+    return [max(pair) for pair in zip([*usual, _LONGEST_MS], reading, strict=True)]
+
+
+def _pictures(nest: Nest, path: str, ticks: Sequence[int]) -> list[str]:
+    """Return the SVG text of each tick; all have the same size and show the same storey."""
+    names = object_names(nest.setting)
+    (last,) = nest.scenes(path, nest.tick, path)
+    parsed = parse_path(path, nest.agents)
+    # An agent's own sight is part of what it perceives. A narrator sees all.
+    sight = None if parsed else []
+    drawings = []
+    for tick in ticks:
+        (scene,) = nest.scenes(path, tick, path, sight=sight, height=last.height)
+        drawings.append(draw_still(scene, names))
+    height = max(each.height for each in drawings)
+    return [svg_text(_of_height(each, height)) for each in drawings]
+
+
+def _of_height(drawing: Drawing, height: float) -> Drawing:
+    return replace(drawing, height=height)
+
+
+def _joined(frames: Sequence[Frame]) -> list[Frame]:
+    """Return frames without repetitions: equal neighbours become one."""
+    found: list[Frame] = []
+    for frame in frames:
+        if found and (found[-1].picture, found[-1].caption) == (frame.picture, frame.caption):
+            found[-1] = replace(found[-1], ms=found[-1].ms + frame.ms)
+        else:
+            found.append(frame)
+    return found

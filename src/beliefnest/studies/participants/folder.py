@@ -1,0 +1,179 @@
+"""Folder of a page for participants: static files that need no server and no network."""
+
+import html
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from beliefnest.errors import InputError
+from beliefnest.studies.cells import digest, variation_id
+from beliefnest.studies.participants.film import Film
+from beliefnest.studies.participants.items import Item
+from beliefnest.studies.participants.playing import View
+from beliefnest.viewer.page.html import inlined, packed, source_hash
+from beliefnest.world.texts import on_one_line
+
+__all__ = ["check_folder", "check_post", "experiment", "page_files", "write_folder"]
+
+_WEB = files("beliefnest.studies.participants") / "web"
+_STIMULI = "stimuli.js"
+
+
+def experiment(
+    shown_items: Iterable[tuple[Item, Sequence[View]]], shown: str, seed: int
+) -> dict[str, Any]:
+    """Return what participants see, as plain values without any right answer.
+
+    Options are sorted, so that their order in the scenario tells nothing.
+
+    Args:
+        shown_items: Items with their views.
+        shown: `film`, `story` or `both`.
+        seed: Seed of the study, from which the orders of participants are derived.
+
+    Returns:
+        `study` (a hash of all else), `seed`, `shown`, `lists` (indices of items) and `items`.
+    """
+    items, lists = [], dict[int, list[int]]()
+    for item, views in shown_items:
+        lists.setdefault(item.cell.list_number or 1, []).append(len(items))
+        items.append(_item(item, views))
+    content = {
+        "seed": seed,
+        "shown": shown,
+        "lists": [lists[number] for number in sorted(lists)],
+        "items": items,
+    }
+    return {"study": digest(content)[:16], **content}
+
+
+def _item(item: Item, views: Sequence[View]) -> dict[str, Any]:
+    key = item.cell.key
+    return {
+        "cell": item.name,
+        "scenario": key.scenario,
+        "condition": key.condition,
+        "variation": variation_id(key.scenario, dict(key.variation)),
+        "views": [_view(item, view) for view in views],
+    }
+
+
+def _view(item: Item, view: View) -> dict[str, Any]:
+    owner = view.owner
+    return {
+        "owner": None if owner is None else f"{owner[:1].upper()}{owner[1:]}",
+        "story": list(view.story),
+        "film": None if view.film is None else _film(view.film),
+        "questions": [
+            {
+                "id": each.id,
+                "text": each.asked.question,
+                "options": sorted(each.asked.options, key=lambda text: (text.casefold(), text)),
+                "reason": each.asked.reason,
+            }
+            for each in item.at(view.path)
+        ],
+    }
+
+
+def _film(film: Film) -> dict[str, Any]:
+    return {
+        "pictures": list(film.pictures),
+        "frames": [[each.picture, each.ms, each.caption] for each in film.frames],
+    }
+
+
+def check_post(address: str) -> None:
+    """Raise InputError if answers cannot be sent to an address."""
+    parts = urlsplit(address)
+    if parts.scheme not in ("http", "https") or not parts.netloc:
+        raise InputError(f"--post is {address!r}; give an address such as https://lab.example/data")
+
+
+def check_folder(folder: Path) -> None:
+    """Raise InputError if a folder holds anything but a page for participants."""
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder} is a file; name a folder")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / _STIMULI).is_file():
+        raise InputError(f"{folder} is not empty and holds no page for participants; name another")
+
+
+def page_files(
+    content: Mapping[str, Any], title: str, pages: Sequence[Any], post: str | None
+) -> dict[str, str]:
+    """Return the files of the folder, by name.
+
+    Args:
+        content: Result of `experiment`.
+        title: Title of the browser's tab.
+        pages: Pages of instructions.
+        post: Address to which `index.html` sends the answers; None: participants save them.
+    """
+    plain_title = on_one_line(title)
+    data = packed({**content, "title": plain_title, "pages": list(pages), "post": post})
+    plugin, session, style = (_web(name) for name in ("plugin.js", "session.js", "style.css"))
+    program = inlined("\n".join([plugin, session, _web("runner.js")]))
+    example = _web("example.js")
+    return {
+        "index.html": _INDEX.format(
+            policy=html.escape(_policy(program, style, post)),
+            title=html.escape(plain_title),
+            style=style,
+            # Base64 has no `<`, so that nothing in the data can end the element.
+            data=json.dumps(data),
+            program=program,
+        ),
+        "jspsych.html": _web("jspsych.html"),
+        "plugin-beliefnest-question.js": plugin,
+        "session.js": session,
+        "example.js": example,
+        "style.css": style,
+        _STIMULI: f"globalThis.beliefnestStudy = {json.dumps(data)}\n",
+    }
+
+
+def write_folder(folder: Path, contents: Mapping[str, str]) -> None:
+    """Write the files; raise InputError if they cannot be written."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in contents.items():
+            (folder / name).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"the folder {folder} cannot be written: {error.strerror}") from None
+
+
+def _web(name: str) -> str:
+    return (_WEB / name).read_text(encoding="utf-8")
+
+
+def _policy(program: str, style: str, post: str | None) -> str:
+    """Return the content security policy: own code and pictures, and the one address."""
+    parts = urlsplit(post or "")
+    connect = f"{parts.scheme}://{parts.netloc}" if post else "'none'"
+    return (
+        f"default-src 'none'; script-src {source_hash(program)}; style-src {source_hash(style)}; "
+        f"img-src data:; connect-src {connect}; base-uri 'none'; form-action 'none'"
+    )
+
+
+_INDEX = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="referrer" content="no-referrer">
+<link rel="icon" href="data:,">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body class="bn-body">
+<div id="page"></div>
+<script type="application/json" id="data">{data}</script>
+<script>{program}</script>
+</body>
+</html>
+"""

@@ -1,0 +1,92 @@
+"""Instructions of participants: pages of headings, paragraphs and lists, from plain text."""
+
+from pathlib import Path
+from typing import Any
+
+from beliefnest.errors import InputError
+from beliefnest.files import read_regular_text
+
+__all__ = ["SHOWN", "instruction_pages", "read_instructions"]
+
+_SCENE = """The scene is drawn from above. A circle is a person, and its tip points where the person
+looks. Boxes show what is in them; the words below the picture say it as well."""
+_VIEW = """Sometimes you are told everything that happened. Sometimes you are one of the people: then
+you learn only what this person saw and heard."""
+_HOW = """Below each one is a question. Answer it by what you have learned there; scenes have nothing to
+do with each other. There is no time limit."""
+
+SHOWN: dict[str, str] = {
+    "film": f"You will see short films of people in a room.\n\n{_SCENE} Press Play to start a film. You can "
+    f"stop it, go back, and play it again. The question appears when the film has ended.\n\n{_VIEW}",
+    "story": f"You will read short stories about people in a room.\n\n{_VIEW}",
+    "both": "You will read short stories about people in a room. A film below each story shows the "
+    f"same.\n\n{_SCENE} Press Play to start a film. You can stop it, go back, and play it again. "
+    f"The question appears when the film has ended.\n\n{_VIEW}",
+}
+"""Instructions by what participants are shown."""
+
+
+def instruction_pages(shown: str) -> list[list[dict[str, Any]]]:
+    """Return the default instructions for what participants are shown."""
+    return _pages(f"# Instructions\n\n{SHOWN[shown]}\n\n{_HOW}\n")
+
+
+def read_instructions(file: Path) -> list[list[dict[str, Any]]]:
+    """Return the pages of a text file.
+
+    A line `---` begins a new page, `# ` a heading, `- ` an item of a list. An empty line ends a
+    paragraph. Other marks stay as they are written.
+
+    Raises:
+        InputError: The file cannot be read, or has no text.
+    """
+    try:
+        text = read_regular_text(file)
+    except OSError as error:
+        raise InputError(f"{file} cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{file} is not UTF-8; save it as UTF-8") from None
+    pages = _pages(text)
+    if not pages:
+        raise InputError(f"{file} has no text; write instructions, or leave --instructions out")
+    return pages
+
+
+def _pages(text: str) -> list[list[dict[str, Any]]]:
+    pages: list[list[str]] = [[]]
+    for line in text.splitlines():
+        if line.strip() == "---":
+            pages.append([])
+        else:
+            pages[-1].append(line.strip())
+    return [blocks for page in pages if (blocks := _blocks(page))]
+
+
+def _blocks(lines: list[str]) -> list[dict[str, Any]]:
+    blocks: list[dict[str, Any]] = []
+    ended = True
+    for line in lines:
+        kind, text = _kind(line)
+        last = blocks[-1] if blocks and not ended else None
+        if kind == "item":
+            if last is None or last["kind"] != "list":
+                blocks.append({"kind": "list", "items": []})
+            blocks[-1]["items"].append(text)
+        elif kind == "heading":
+            blocks.append({"kind": "heading", "text": text})
+        elif text and last is not None and last["kind"] == "paragraph":
+            last["text"] += f" {text}"
+        elif text and last is not None and last["kind"] == "list":
+            last["items"][-1] += f" {text}"
+        elif text:
+            blocks.append({"kind": "paragraph", "text": text})
+        ended = not line or kind == "heading"
+    return blocks
+
+
+def _kind(line: str) -> tuple[str, str]:
+    if line.startswith("#"):
+        return "heading", line.lstrip("#").strip()
+    if line.startswith(("- ", "* ")):
+        return "item", line[2:].strip()
+    return "text", line

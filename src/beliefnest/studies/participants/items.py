@@ -1,0 +1,118 @@
+"""Items that participants see: the cells of a study, without models, and their questions."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from beliefnest.scenarios.content import Probe
+from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.expected_answers import Answers
+from beliefnest.studies.cells import Cell, digest
+
+__all__ = ["Item", "Question", "items_of", "left_out"]
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """Question of a probe, as participants answer it.
+
+    Attributes:
+        id: Number of the probe and number of the question in it, such as `1.2`.
+        probe: Index of the probe in the scenario.
+        asked: The question.
+    """
+
+    id: str
+    probe: int
+    asked: Answers
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """Variation of a scenario under one condition, which a participant sees at most once.
+
+    Attributes:
+        name: Name of the item: 16 letters and digits, which depend on the scenario's file, the
+            condition, the variation, the world and the seed, but on no model.
+        cell: First cell of the study with this content.
+        questions: Its questions, in the order of the scenario.
+    """
+
+    name: str
+    cell: Cell
+    questions: tuple[Question, ...]
+
+    def probe(self, question: Question) -> Probe:
+        """Return the probe of a question."""
+        return self.cell.scenario.probes[question.probe]
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Belief paths of the questions, each once."""
+        return tuple(dict.fromkeys(self.probe(each).path for each in self.questions))
+
+    def at(self, path: str) -> tuple[Question, ...]:
+        """Return the questions that are asked of a belief path."""
+        return tuple(each for each in self.questions if self.probe(each).path == path)
+
+
+def items_of(cells: Iterable[Cell], documents: Mapping[str, Document]) -> list[Item]:
+    """Return the items of a study, in the order of its cells.
+
+    Args:
+        cells: Cells of the study's plan.
+        documents: Documents of its scenarios.
+
+    Raises:
+        ScenarioError: No probe asks a question; the message names file, line and key.
+    """
+    found: dict[str, Item] = {}
+    for cell in cells:
+        questions = tuple(_questions(cell.scenario.probes))
+        if questions:
+            item = Item(_name(cell), cell, questions)
+            found.setdefault(item.name, item)
+    if not found:
+        document = next(iter(documents.values()))
+        raise document.fault(
+            ("probes",),
+            "no probe asks a question that people can answer; give one "
+            "`expect: {answers: {question: ..., right: ...}}`",
+        )
+    return list(found.values())
+
+
+def left_out(cells: Iterable[Cell]) -> list[str]:
+    """Return a line for each probe that people are not asked, with the reason."""
+    told = []
+    for cell in cells:
+        for number, probe in enumerate(cell.scenario.probes, 1):
+            why = _why_left_out(probe)
+            if why:
+                name = repr(probe.label) if probe.label else str(number)
+                told.append(f"{cell.key.scenario}: probe {name} is left out: {why}")
+    return list(dict.fromkeys(told))
+
+
+def _why_left_out(probe: Probe) -> str:
+    if probe.infer is not None:
+        return "it is computed from the agent's course and asks nobody"
+    if probe.asks_for_program:
+        mixed = " besides its questions; put these into a probe of their own" * bool(
+            probe.questions
+        )
+        return f"it asks for a program, which people do not write{mixed}"
+    return ""
+
+
+def _questions(probes: Sequence[Probe]) -> Iterator[Question]:
+    for number, probe in enumerate(probes):
+        if not _why_left_out(probe):
+            for place, asked in enumerate(probe.questions, 1):
+                yield Question(f"{number + 1}.{place}", number, asked)
+
+
+def _name(cell: Cell) -> str:
+    """Return the name of the item of a cell, which no model, repeat or way of asking affects."""
+    key = cell.key
+    setting = {name: key.setting[name] for name in ("seed", "world")}
+    return digest([key.scenario, key.content, key.condition, dict(key.variation), setting])[:16]

@@ -1,0 +1,246 @@
+"""Joining of participants' answers to the cells of a study."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from beliefnest.errors import InputError
+from beliefnest.llm.messages import Usage
+from beliefnest.scenarios.content import Probe
+from beliefnest.scenarios.expected_answers import Answers
+from beliefnest.scenarios.judging import outcome_of
+from beliefnest.scenarios.outcome import ProbeOutcome, Reply
+from beliefnest.scenarios.records import probe_json
+from beliefnest.studies.cells import CellKey
+from beliefnest.studies.participants.answers import Answer
+from beliefnest.studies.participants.items import Item, Question
+from beliefnest.studies.participants.playing import Judged
+from beliefnest.studies.study_folder import PersonCell
+from beliefnest.world.texts import visible
+from beliefnest.world.words import counted
+
+__all__ = ["Joined", "check_name", "counted_answers", "joined"]
+
+
+@dataclass(frozen=True, slots=True)
+class _PersonKey(CellKey):
+    """Identity of a cell that a participant answered.
+
+    Attributes:
+        participant: Id of the participant.
+    """
+
+    participant: str
+
+
+@dataclass
+class Joined:
+    """Answers of participants, joined to the study.
+
+    Attributes:
+        cells: A cell for each participant and item with complete answers.
+        answers: All counted answers, each with True if it is right.
+        notes: What was left out or is unusual, in words.
+    """
+
+    cells: list[PersonCell] = field(default_factory=list)
+    answers: list[tuple[Answer, bool]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+_Sessions = dict[str, dict[str, dict[str, Answer]]]
+"""Answers by participant, item and question."""
+
+
+def counted_answers(
+    answers: Iterable[Answer], items: Mapping[str, Item], notes: list[str]
+) -> _Sessions:
+    """Return the answers that count, by participant, item and question.
+
+    Of a participant with several sessions, the first one counts. Equal answers that several files
+    hold count once.
+
+    Args:
+        answers: Answers of all files.
+        items: Items of the study, by name.
+        notes: List that receives a sentence about what was left out.
+
+    Raises:
+        InputError: An answer belongs to no question of the study, is none of the options, or two
+            files contradict each other.
+    """
+    own = [_checked(answer, items) for answer in answers]
+    firsts: dict[str, str] = {}
+    for answer in own:
+        before = firsts.setdefault(answer.participant, answer.started)
+        firsts[answer.participant] = min(before, answer.started)
+    later = {each.participant for each in own if each.started != firsts[each.participant]}
+    for participant in sorted(later):
+        notes.append(
+            f"participant {participant} took part more than once; only the session that began "
+            f"first ({firsts[participant]}) counts"
+        )
+    sessions: _Sessions = {}
+    twice = 0
+    for answer in own:
+        if answer.started != firsts[answer.participant]:
+            continue
+        given = sessions.setdefault(answer.participant, {}).setdefault(answer.cell, {})
+        before_it = given.setdefault(answer.question, answer)
+        if before_it.response != answer.response:
+            raise answer.fault(
+                "response",
+                f"is {answer.response!r}, but {before_it.where} has "
+                f"{before_it.response!r}; keep one of the two files",
+            )
+        twice += before_it is not answer
+    if twice:
+        notes.append(f"{counted(twice, 'answer')} stood in several files and counted once")
+    return sessions
+
+
+def _checked(answer: Answer, items: Mapping[str, Item]) -> Answer:
+    """Return an answer with the study's own texts of its options."""
+    item = items.get(answer.cell)
+    if item is None:
+        raise answer.fault(
+            "cell",
+            f"{answer.cell!r} is no cell of this study; the study, its scenarios, seed or world "
+            "have changed since this participant's page was written: read the answers with the "
+            "files of that time",
+        )
+    asked = next((each.asked for each in item.questions if each.id == answer.question), None)
+    if asked is None:
+        raise answer.fault("question", f"the cell {answer.cell} has no question {answer.question}")
+    if not asked.options:
+        return answer
+    texts = {visible(option): option for option in asked.options}
+    if answer.response and answer.response not in texts:
+        raise answer.fault(
+            "response",
+            f"{answer.response!r} is none of the options {', '.join(asked.options)}",
+        )
+    if answer.options and set(answer.options) != set(texts):
+        raise answer.fault("options", f"must be {', '.join(asked.options)} in some order")
+    order = tuple(texts[option] for option in answer.options) or asked.options
+    return replace(answer, response=texts.get(answer.response, ""), options=order)
+
+
+def joined(
+    sessions: _Sessions,
+    judged: Iterable[tuple[Item, Judged]],
+    name: str,
+    shown: Sequence[Item],
+    notes: Sequence[str],
+) -> Joined:
+    """Return the cells of participants, judged as the study judges models.
+
+    Args:
+        sessions: Result of `counted_answers`.
+        judged: Answered items with their right answers.
+        name: Name of the people in the column `model`.
+        shown: All items of the study.
+        notes: Notes of `counted_answers`.
+    """
+    found = Joined(notes=list(notes))
+    known = dict((item.name, (item, by)) for item, by in judged)
+    for participant, cells in sessions.items():
+        for cell, given in cells.items():
+            item, by = known[cell]
+            outcomes = _outcomes(item, by, given)
+            found.answers += [
+                (given[question.id], _judge(by, question).judge(_said(given[question.id])).ok)
+                for question in item.questions
+                if question.id in given
+            ]
+            if outcomes:
+                found.cells.append(_cell(item, by, outcomes, name, participant, given))
+        found.notes += _missing(participant, cells, shown)
+    return found
+
+
+def _missing(
+    participant: str, cells: Mapping[str, Mapping[str, Answer]], shown: Sequence[Item]
+) -> list[str]:
+    """Return a note if a participant did not answer all questions of a list."""
+    numbers = {item.cell.list_number for item in shown if item.name in cells}
+    asked = sum(len(item.questions) for item in shown if item.cell.list_number in numbers)
+    count = sum(map(len, cells.values()))
+    if count == asked:
+        return []
+    return [f"participant {participant} answered {count} of {counted(asked, 'question')}"]
+
+
+def _judge(by: Judged, question: Question) -> Answers:
+    """Return a question with its right answers."""
+    place = int(question.id.partition(".")[2]) - 1
+    return by.probes[question.probe].questions[place]
+
+
+def _said(answer: Answer) -> str | None:
+    return answer.response or None
+
+
+def _outcomes(item: Item, by: Judged, given: Mapping[str, Answer]) -> list[ProbeOutcome]:
+    """Return the outcomes of the probes all of whose questions are answered."""
+    probes = dict.fromkeys(question.probe for question in item.questions)
+    found = []
+    for number in probes:
+        own = [question for question in item.questions if question.probe == number]
+        if all(question.id in given for question in own):
+            pairs = [(_judge(by, each), given[each.id]) for each in own]
+            found.append(_outcome(by.probes[number], pairs))
+    return found
+
+
+def _outcome(probe: Probe, pairs: Sequence[tuple[Answers, Answer]]) -> ProbeOutcome:
+    verdicts = tuple(asked.judge(_said(answer)) for asked, answer in pairs)
+    replies = tuple(
+        Reply(asked.question, answer.options, "", answer.response, _said(answer), answer.reason)
+        for asked, answer in pairs
+    )
+    return ProbeOutcome(probe, verdicts, outcome_of(verdicts, None), Usage(), replies=replies)
+
+
+def _cell(
+    item: Item,
+    by: Judged,
+    outcomes: Sequence[ProbeOutcome],
+    name: str,
+    participant: str,
+    given: Mapping[str, Answer],
+) -> PersonCell:
+    key = item.cell.key
+    own = _PersonKey(
+        scenario=key.scenario,
+        content=key.content,
+        condition=key.condition,
+        variation=key.variation,
+        model=name,
+        template=key.template,
+        repeat=1,
+        setting=key.setting,
+        participant=participant,
+    )
+    first = next(iter(given.values()))
+    planned = replace(item.cell, key=own).plain()
+    found: dict[str, Any] = {
+        "error": None,
+        "key": own.content_json(),
+        "seed": own.seed,
+        "ticks": by.ticks,
+        "run": "",
+        "expectations": list(by.expectations),
+        "probes": [{**probe_json(each, ""), "answer": "", "seconds": 0.0} for each in outcomes],
+        "page": {name: first.plain.get(name) for name in ("study", "shown", "list", "started")},
+    }
+    # A participant's answer is no copy of another one's.
+    return PersonCell({**planned, "alike": None}, found)
+
+
+def check_name(name: str, models: Sequence[str]) -> None:
+    """Raise InputError if people would have the name of a model."""
+    if not name.strip():
+        raise InputError("--name is empty; give the people a name, such as people")
+    if name in models:
+        raise InputError(f"--name is {name!r}, which is a model of the study; give another name")

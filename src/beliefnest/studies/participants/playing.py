@@ -1,0 +1,136 @@
+"""Playing of items without any model: films and stories, and the right answers."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.prompts import Renderer
+from beliefnest.scenarios.content import Probe
+from beliefnest.scenarios.outcome import ExpectationOutcome
+from beliefnest.scenarios.probing import resolved
+from beliefnest.scenarios.records import expectation_json
+from beliefnest.studies.participants.film import Film, read_film
+from beliefnest.studies.participants.items import Item
+from beliefnest.worlds.by_name import Worlds
+
+__all__ = ["Judged", "OnItem", "View", "judged_items", "refuse_claims", "shown_items"]
+
+OnItem = Callable[[str, int, int], None]
+"""Function of a description, the number of items done, and of all items."""
+
+_STORY = "{{ branch | beginning }}\n\n{{ branch | story }}"
+"""Text that the built-in template `story` shows to models, without the question."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What participants see of one simulator.
+
+    Attributes:
+        path: Belief path of the simulator.
+        owner: Name of its owner; None: a narrator tells what happened.
+        story: Paragraphs; empty: no story is shown.
+        film: The film; None: no film is shown.
+    """
+
+    path: str
+    owner: str | None
+    story: tuple[str, ...]
+    film: Film | None
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """What the answers about an item are judged by.
+
+    Attributes:
+        probes: Probes of the scenario, with their right answers.
+        expectations: Results of the scenario's expectations, as plain values.
+        ticks: Length of the script.
+    """
+
+    probes: tuple[Probe, ...]
+    expectations: tuple[Mapping[str, Any], ...]
+    ticks: int
+
+
+def shown_items(
+    items: Sequence[Item], shown: str, on_item: OnItem
+) -> Iterator[tuple[Item, list[View]]]:
+    """Play items and yield what participants see of each.
+
+    Args:
+        items: The items.
+        shown: `film`, `story` or `both`.
+        on_item: Function that receives the progress.
+
+    Raises:
+        BeliefNestError: A script failed; the message names the cell.
+    """
+    with Worlds(0) as worlds:
+        renderer = Renderer()
+        for number, item in enumerate(items):
+            on_item(item.cell.key.title, number, len(items))
+            with _played(item, worlds, renderer) as (nest, start):
+                yield item, [_view(nest, path, start, shown) for path in item.paths]
+
+
+def judged_items(items: Sequence[Item], on_item: OnItem) -> Iterator[tuple[Item, Judged]]:
+    """Play items and yield the right answers of each; arguments and errors as `shown_items`."""
+    with Worlds(0) as worlds:
+        renderer = Renderer()
+        for number, item in enumerate(items):
+            on_item(item.cell.key.title, number, len(items))
+            with _played(item, worlds, renderer) as (nest, _):
+                yield item, _judged(nest, item)
+
+
+@contextmanager
+def _played(item: Item, worlds: Worlds, renderer: Renderer) -> Iterator[tuple[Nest, int]]:
+    """Play the script of an item; give its nest and its first tick."""
+    key, scenario = item.cell.key, item.cell.scenario
+    try:
+        with Nest.open(
+            scenario, key.setting["world"], None, key.seed, worlds, renderer=renderer
+        ) as nest:
+            start = nest.tick
+            nest.play()
+            yield nest, start
+    except BeliefNestError as error:
+        raise type(error)(f"{key.title}: {error}") from error
+
+
+def _view(nest: Nest, path: str, start: int, shown: str) -> View:
+    simulator = nest[path]
+    story = simulator.render(_STORY) if shown in ("story", "both") else ""
+    return View(
+        path=path,
+        owner=simulator.owner,
+        story=tuple(part.strip() for part in story.split("\n\n") if part.strip()),
+        film=read_film(nest, path, start) if shown in ("film", "both") else None,
+    )
+
+
+def _judged(nest: Nest, item: Item) -> Judged:
+    scenario = item.cell.scenario
+    expectations = [
+        ExpectationOutcome(each, each.content.instead(nest[each.path].state))
+        for each in scenario.expectations
+    ]
+    return Judged(
+        probes=tuple(resolved(nest, probe) for probe in scenario.probes),
+        expectations=tuple(expectation_json(each) for each in expectations),
+        ticks=nest.tick,
+    )
+
+
+def refuse_claims(setting: Mapping[str, Any]) -> None:
+    """Raise InputError if a model would have to read claims out of utterances."""
+    if "claims_from" in setting:
+        raise InputError(
+            "the study reads claims with a model (`claims_from`), and participants are asked "
+            "without any model; leave it out of the study for participants"
+        )
