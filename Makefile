@@ -24,6 +24,7 @@ check: ## Linters and type checkers
 	lint-imports
 	cd src/beliefnest/worlds/minecraft/node && $(NODE) node_modules/eslint/bin/eslint.js .
 	cd src/beliefnest/viewer/page/web && $(NODE) node_modules/eslint/bin/eslint.js .
+	cd src/beliefnest/studies/participants/web && $(NODE) ../../../viewer/page/web/node_modules/eslint/bin/eslint.js .
 
 format: ## Lay out the code
 	ruff format

@@ -17,6 +17,8 @@ def test_a_wheel_carries_what_is_read_at_run_time_and_no_sources_of_the_bundle()
         "beliefnest/scenarios/builtin/help-sally.yaml",
         "beliefnest/scenarios/starter/starter.yaml",
         "beliefnest/prompts/texts/paper.txt",
+        "beliefnest/studies/participants/web/plugin.js",
+        "beliefnest/studies/participants/web/style.css",
     } <= files
     sources = ("beliefnest/skills/code/", "beliefnest/worlds/minecraft/node/")
     assert not [file for file in files if file.startswith(sources) and file.endswith(".js")]

@@ -16,6 +16,7 @@ from beliefnest.cli.options import StudyOptions
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.jobs import StudyProgress
@@ -156,10 +157,11 @@ def _table(by: Sequence[str], groups: Sequence[Mapping[str, Any]]) -> Table:
 
 
 def _status(result: StudyResult) -> int:
-    failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
+    rows = [row for row in result.rows if row.get(PARTICIPANT) is None]
+    failed = {row["cell"]: row["why_not"] for row in rows if row["outcome"] == "error"}
     if failed:
         raise ModelError(
             f"{len(failed)} of {len(result.plan['cells'])} cells have no result; run the same "
             f"command to try them again; the first: {next(iter(failed.values()))}"
         )
-    return 0 if all(row["ok"] is not False for row in result.rows) else 1
+    return 0 if all(row["ok"] is not False for row in rows) else 1

@@ -7,7 +7,6 @@ variation. Intervals therefore resample variations, and tests exchange levels of
 from collections.abc import Sequence
 
 import numpy as np
-
 import numpy.typing as npt
 
 from beliefnest.scenarios.scoring import wilson_interval

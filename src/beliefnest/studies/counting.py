@@ -41,10 +41,11 @@ def count_rows(
     Returns:
         One mapping for each group, in order of appearance: the columns of `by`; `rows`; `copies`;
         `judged`; `variations` (number of independent variations among the judged rows); `right`;
-        `accuracy`, `low` and `high` (its 95 % interval) and `interval` (its method,
-        see `rate_interval` and `crossed_interval`), all None if no row is judged; the count of each outcome; `tokens`;
-        `cost` (None if not known); for each column of `means`, its mean, and the 95 % interval as
-        `NAME_low` and `NAME_high` (None if fewer than two variations have a value).
+        `accuracy`, `low` and `high` (its 95 % interval) and `interval` (its method, see
+        `rate_interval` and `crossed_interval`), all None if no row is judged; the count of each
+        outcome; `tokens`; `cost` (None if not known); for each column of `means`, its mean, and the
+        95 % interval as `NAME_low` and `NAME_high` (None if fewer than two variations have a
+        value).
     """
     groups: dict[tuple[Any, ...], list[tuple[Row, _Origin]]] = {}
     for row, origin in zip(rows, _origins(rows), strict=True):

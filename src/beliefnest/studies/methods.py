@@ -13,6 +13,7 @@ from beliefnest.files import read_regular
 from beliefnest.llm.resolve import is_of_provider
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import DRAWS
 from beliefnest.studies.counting import Row
 from beliefnest.studies.run_result import RunResult
@@ -53,6 +54,25 @@ class ModelFacts:
     undated: int = 0
 
 
+@dataclass(frozen=True, slots=True)
+class PeopleFacts:
+    """People who answered on a page for participants.
+
+    Attributes:
+        name: Their name in the column `model`.
+        participants: Number of participants.
+        rows: Number of their rows.
+        shown: What they were shown: `film`, `story`, `both`.
+        dates: First and last day; None: no date is recorded.
+    """
+
+    name: str
+    participants: int
+    rows: int
+    shown: Sequence[str]
+    dates: tuple[str, str] | None
+
+
 @dataclass(frozen=True)
 class Facts:
     """Recorded facts about a study or a run.
@@ -67,8 +87,8 @@ class Facts:
         models: Models that answered.
         asking: How models were asked, in words; empty: they were not.
         templates: Prompt templates with the hash of their texts; None: built in.
-        cells: Number of cells.
-        rows: Number of rows.
+        cells: Number of cells, without those of people.
+        rows: Number of rows, without those of people.
         judged: Number of judged rows, without copies.
         variations: Number of independent variations among them.
         tokens: Tokens of all rows.
@@ -76,6 +96,7 @@ class Facts:
         unpriced: Number of rows whose cost is not known.
         excluded: What was excluded, by keys of `_EXCLUDED`, and how often.
         intervals: Methods of the intervals of accuracies.
+        people: People who answered.
     """
 
     kind: Literal["study", "run"]
@@ -96,6 +117,7 @@ class Facts:
     unpriced: int
     excluded: Mapping[str, int] = field(default_factory=dict)
     intervals: Sequence[str] = ()
+    people: Sequence[PeopleFacts] = ()
 
 
 def exchanges_in(folder: Path) -> Iterator[Exchange]:
@@ -154,8 +176,8 @@ def study_facts(result: StudyRecord) -> Facts:
         models=answered(names, list(exchanges_in(result.folder.answers))),
         asking=_asking(plan),
         templates=_templates(result),
-        cells=len(plan["cells"]),
-        rows=len(rows),
+        cells=sum(PARTICIPANT not in cell["key"] for cell in plan["cells"]),
+        rows=sum(row.get(PARTICIPANT) is None for row in rows),
         judged=len(judged),
         variations=len({row["variation"] for row in judged}),
         tokens=tokens,
@@ -163,7 +185,27 @@ def study_facts(result: StudyRecord) -> Facts:
         unpriced=unpriced,
         excluded=_excluded(result),
         intervals=_intervals(result.counted(result.groups)),
+        people=list(_people(result)),
     )
+
+
+def _people(result: StudyRecord) -> Iterator[PeopleFacts]:
+    """Yield the facts about the people of each name."""
+    cells: dict[str, list[Mapping[str, Any]]] = {}
+    for cell in result.plan["cells"]:
+        if PARTICIPANT in cell["key"]:
+            cells.setdefault(cell["key"]["model"], []).append(cell)
+    for name, own in cells.items():
+        found = [result.folder.cell(cell["name"]) or {} for cell in own]
+        pages = [each.get("page") or {} for each in found]
+        days = sorted(str(page["started"])[:10] for page in pages if page.get("started"))
+        yield PeopleFacts(
+            name=name,
+            participants=len({cell["key"][PARTICIPANT] for cell in own}),
+            rows=sum(row["model"] == name for row in result.rows),
+            shown=sorted({str(page["shown"]) for page in pages if page.get("shown")}),
+            dates=(days[0], days[-1]) if days else None,
+        )
 
 
 def run_facts(result: RunResult) -> Facts:
@@ -331,6 +373,8 @@ def _sentences(facts: Facts) -> Iterator[str]:
     yield f"This makes {counted(facts.cells, 'cell')} and {counted(facts.rows, 'row')}{seed}."
     if facts.models:
         yield f"{_listed([_model(each) for each in facts.models], first=True)}."
+    for people in facts.people:
+        yield f"{_person(people)}."
     if facts.asking and any(is_of_provider(each.name) for each in facts.models):
         yield f"Models were asked {facts.asking}."
     if facts.templates:
@@ -380,6 +424,21 @@ def _model(model: ModelFacts) -> str:
     without = f", {model.undated} without a recorded date" if model.undated else ""
     return f"{given} {span} (UTC){without}"
 
+
+def _person(people: PeopleFacts) -> str:
+    shown = " and ".join(_SHOWN.get(each, each) for each in people.shown)
+    page = f"a page with {shown}" if shown else "a page"
+    told = (
+        f"{_code(people.name)} are {counted(people.participants, 'participant')} who answered the "
+        f"same questions on {page}, which gave {counted(people.rows, 'row')}"
+    )
+    if people.dates is None:
+        return f"{told} (dates not recorded)"
+    first, last = people.dates
+    return f"{told}, {f'on {first}' if first == last else f'from {first} to {last}'} (UTC)"
+
+
+_SHOWN = {"film": "films", "story": "stories", "both": "stories and films"}
 
 _MARK = "\0"
 """Mark around names, which no text of a study contains."""

@@ -300,7 +300,7 @@ class Study:
         *,
         on_item: OnItem | None = None,
     ) -> tuple[StudyResult, tuple[str, ...]]:
-        """Read answers of participants into the folder of the study, as rows beside those of models.
+        """Read answers of participants into the study's folder, as rows beside those of models.
 
         The scenarios are played again for the right answers. Earlier rows of the same name are
         replaced.

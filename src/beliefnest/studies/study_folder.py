@@ -44,8 +44,9 @@ class StudyFolder:
     """Folder of a study.
 
     It holds `study.json` (the latest plan), `cells/` (the result of each finished cell),
-    `people.json` (entries of cells that participants answered), `seconds.jsonl` (wall times, which vary between runs), `answers/` (cached answers of models),
-    `spent.jsonl` (usage of answers) and `runs/` (recorded runs).
+    `people.json` (entries of cells that participants answered), `seconds.jsonl` (wall times, which
+    vary between runs), `answers/` (cached answers of models), `spent.jsonl` (usage of answers) and
+    `runs/` (recorded runs).
     """
 
     path: Path
@@ -176,13 +177,13 @@ class StudyFolder:
         """
         before = self.people()
         others = [each for each in before if each["key"]["model"] != name]
-        own = {str(each.planned["name"]): each for each in cells}
+        own = {str(cell.planned["name"]): cell for cell in cells}
         for each in before:
             if each["key"]["model"] == name and each["name"] not in own:
                 (self.cells / f"{each['name']}.json").unlink(missing_ok=True)
-        for cell, each in own.items():
-            self.write_cell(cell, each.found)
-        self._write_entries([*others, *(dict(each.planned) for each in own.values())])
+        for cell, person in own.items():
+            self.write_cell(cell, person.found)
+        self._write_entries([*others, *(dict(cell.planned) for cell in own.values())])
 
     def _write_entries(self, entries: Iterable[Mapping[str, Any]]) -> None:
         content = {"form": _PEOPLE_FORM, "cells": list(entries)}
@@ -226,7 +227,8 @@ class StudyFolder:
         new: dict[str, dict[str, Any]] = {}
         homes: dict[str, StudyFolder] = {}
         for other in map(StudyFolder.existing, others):
-            if other.names() and other.names().isdisjoint(planned):
+            own = {*planned, *(each["name"] for each in other.people())}
+            if other.names() and other.names().isdisjoint(own):
                 raise InputError(
                     f"{other.path} holds no cell of this study; another study ran there, or one "
                     "with other files, seeds or settings"

@@ -102,7 +102,7 @@ def _pictures(nest: Nest, path: str, ticks: Sequence[int]) -> list[str]:
     (last,) = nest.scenes(path, nest.tick, path)
     parsed = parse_path(path, nest.agents)
     # An agent's own sight is part of what it perceives. A narrator sees all.
-    sight = None if parsed else []
+    sight: list[str] | None = None if parsed else []
     drawings = []
     for tick in ticks:
         (scene,) = nest.scenes(path, tick, path, sight=sight, height=last.height)

@@ -37,7 +37,8 @@ def experiment(
     Returns:
         `study` (a hash of all else), `seed`, `shown`, `lists` (indices of items) and `items`.
     """
-    items, lists = [], dict[int, list[int]]()
+    items: list[dict[str, Any]] = []
+    lists: dict[int, list[int]] = {}
     for item, views in shown_items:
         lists.setdefault(item.cell.list_number or 1, []).append(len(items))
         items.append(_item(item, views))

@@ -6,29 +6,36 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
 
-__all__ = ["SHOWN", "instruction_pages", "read_instructions"]
+__all__ = ["instruction_pages", "read_instructions"]
 
-_SCENE = """The scene is drawn from above. A circle is a person, and its tip points where the person
-looks. Boxes show what is in them; the words below the picture say it as well."""
-_VIEW = """Sometimes you are told everything that happened. Sometimes you are one of the people: then
-you learn only what this person saw and heard."""
-_HOW = """Below each one is a question. Answer it by what you have learned there; scenes have nothing to
-do with each other. There is no time limit."""
-
-SHOWN: dict[str, str] = {
-    "film": f"You will see short films of people in a room.\n\n{_SCENE} Press Play to start a film. You can "
-    f"stop it, go back, and play it again. The question appears when the film has ended.\n\n{_VIEW}",
-    "story": f"You will read short stories about people in a room.\n\n{_VIEW}",
-    "both": "You will read short stories about people in a room. A film below each story shows the "
-    f"same.\n\n{_SCENE} Press Play to start a film. You can stop it, go back, and play it again. "
-    f"The question appears when the film has ended.\n\n{_VIEW}",
+_SCENE = (
+    "The scene is drawn from above. A circle is a person, and its tip points where the person "
+    "looks. Boxes show what is in them; the words below the picture say it as well."
+)
+_PLAY = (
+    "Press Play to start a film. You can stop it, go back, and play it again. The question appears "
+    "when the film has ended."
+)
+_VIEW = (
+    "Sometimes you are told everything that happened. Sometimes you are one of the people: then "
+    "you learn only what this person saw and heard."
+)
+_HOW = (
+    "Below each one is a question. Answer it by what you have learned there; scenes have nothing "
+    "to do with each other. There is no time limit."
+)
+_BEGINNINGS = {
+    "film": f"You will see short films of people in a room.\n\n{_SCENE} {_PLAY}",
+    "story": "You will read short stories about people in a room.",
+    "both": "You will read short stories about people in a room. A film below each story shows "
+    f"the same.\n\n{_SCENE} {_PLAY}",
 }
-"""Instructions by what participants are shown."""
+"""First paragraphs by what participants are shown."""
 
 
 def instruction_pages(shown: str) -> list[list[dict[str, Any]]]:
     """Return the default instructions for what participants are shown."""
-    return _pages(f"# Instructions\n\n{SHOWN[shown]}\n\n{_HOW}\n")
+    return _pages(f"# Instructions\n\n{_BEGINNINGS[shown]}\n\n{_VIEW}\n\n{_HOW}\n")
 
 
 def read_instructions(file: Path) -> list[list[dict[str, Any]]]:

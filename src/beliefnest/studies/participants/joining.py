@@ -143,7 +143,7 @@ def joined(
         notes: Notes of `counted_answers`.
     """
     found = Joined(notes=list(notes))
-    known = dict((item.name, (item, by)) for item, by in judged)
+    known = {item.name: (item, by) for item, by in judged}
     for participant, cells in sessions.items():
         for cell, given in cells.items():
             item, by = known[cell]

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.errors import InputError, ProgramError, ScenarioError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
 from beliefnest.scenarios.content import Probe
@@ -27,7 +27,7 @@ _STORY = "{{ branch | beginning }}\n\n{{ branch | story }}"
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What participants see of one simulator.
+    """View of one simulator, as participants get it.
 
     Attributes:
         path: Belief path of the simulator.
@@ -44,7 +44,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What the answers about an item are judged by.
+    """Right answers and results of an item, by which answers are judged.
 
     Attributes:
         probes: Probes of the scenario, with their right answers.
@@ -73,7 +73,7 @@ def shown_items(
     with Worlds(0) as worlds:
         renderer = Renderer()
         for number, item in enumerate(items):
-            on_item(item.cell.key.title, number, len(items))
+            on_item(_title(item), number, len(items))
             with _played(item, worlds, renderer) as (nest, start):
                 yield item, [_view(nest, path, start, shown) for path in item.paths]
 
@@ -83,9 +83,14 @@ def judged_items(items: Sequence[Item], on_item: OnItem) -> Iterator[tuple[Item,
     with Worlds(0) as worlds:
         renderer = Renderer()
         for number, item in enumerate(items):
-            on_item(item.cell.key.title, number, len(items))
+            on_item(_title(item), number, len(items))
             with _played(item, worlds, renderer) as (nest, _):
                 yield item, _judged(nest, item)
+
+
+def _title(item: Item) -> str:
+    """Return scenario, condition and variation of an item."""
+    return item.cell.key.title.removesuffix(f", {item.cell.key.model}")
 
 
 @contextmanager
@@ -99,8 +104,8 @@ def _played(item: Item, worlds: Worlds, renderer: Renderer) -> Iterator[tuple[Ne
             start = nest.tick
             nest.play()
             yield nest, start
-    except BeliefNestError as error:
-        raise type(error)(f"{key.title}: {error}") from error
+    except (ProgramError, ScenarioError) as error:
+        raise type(error)(f"{_title(item)}: {error}") from error
 
 
 def _view(nest: Nest, path: str, start: int, shown: str) -> View:

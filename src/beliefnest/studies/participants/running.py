@@ -19,7 +19,7 @@ from beliefnest.studies.participants.folder import (
     write_folder,
 )
 from beliefnest.studies.participants.instructions import instruction_pages, read_instructions
-from beliefnest.studies.participants.items import Item, items_of, left_out
+from beliefnest.studies.participants.items import items_of, left_out
 from beliefnest.studies.participants.joining import Joined, check_name, counted_answers, joined
 from beliefnest.studies.participants.playing import (
     OnItem,
@@ -32,7 +32,7 @@ from beliefnest.studies.plainframe import Typed, write_csv
 __all__ = ["Page", "Shown", "join_answers", "make_page", "write_answers"]
 
 Shown = Literal["film", "story", "both"]
-"""What participants are shown."""
+"""Form in which participants get a scene."""
 
 
 @dataclass(frozen=True, slots=True)
