@@ -76,6 +76,7 @@ design: latin-square
 variations: {item: [diamond, apple]}
 """
 
+
 def transfer_in(folder: Path, study: str = STUDY, scenario: str = TRANSFER) -> Path:
     """Path of a study's file, the scenario beside it."""
     (folder / "transfer.yaml").write_text(scenario, encoding="utf-8")

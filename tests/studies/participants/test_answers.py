@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import zipfile
 
 import pytest
 from tests.studies.transfer import STUDY, TRANSFER, answers_of, content_of, transfer_in
@@ -99,7 +100,7 @@ def test_models_are_compared_with_all_people_of_the_same_cell(study, answers, tm
     assert {pairs["one"], pairs["other"]} == {"offline", "people"}
     # In two of the four cells two people answered, in the others one.
     assert (pairs["pairs"], pairs["variations"]) == (6, 2)
-    conditions = [each for each in result.compared("condition", ["model"])]
+    conditions = result.compared("condition", ["model"])
     assert {each["model"] for each in conditions} == {"offline", "people"}
 
 
@@ -202,16 +203,14 @@ def test_damaged_files_are_named(page, study, tmp_path):
     with pytest.raises(bn.InputError, match=r"y\.json, entry 1, column response: .*x\.json"):
         study.read_participants(tmp_path / "out", [other, plain])
     (tmp_path / "empty").mkdir()
-    with pytest.raises(bn.InputError, match="no .csv or .json file"):
+    with pytest.raises(bn.InputError, match=r"no \.csv or \.json file"):
         study.read_participants(tmp_path / "out", [tmp_path / "empty"])
     assert not (tmp_path / "out").exists()
 
 
 def test_answers_to_another_version_of_the_study_are_refused(page, tmp_path):
     file = in_json(tmp_path / "a.json", answers_of(content_of(page / "page"), "anna", 1))
-    other = bn.Study.load(
-        transfer_in(tmp_path, scenario=TRANSFER.replace("0, 3.5]", "0, 2.5]"))
-    )
+    other = bn.Study.load(transfer_in(tmp_path, scenario=TRANSFER.replace("0, 3.5]", "0, 2.5]")))
     with pytest.raises(bn.InputError, match="have changed since this participant's page"):
         other.read_participants(tmp_path / "out", [file])
     # More models and repeats change no cell.
@@ -240,8 +239,6 @@ def test_supplement_and_methods_tell_of_people(study, answers, tmp_path):
     again = result.reproduce()
     assert (again.is_equal, again.cells, again.rows) == (True, 4, 12)
     unpacked = tmp_path / "unpacked"
-    import zipfile
-
     with zipfile.ZipFile(result.bundle(tmp_path / "s.zip")) as archive:
         archive.extractall(unpacked)
     assert (unpacked / "people.csv").is_file()

@@ -81,7 +81,7 @@ def test_pictures_have_one_size_and_neither_paths_nor_ticks_nor_positions(writte
 def test_no_right_answer_is_in_the_folder(written):
     folder, _, content = written
     told = json.dumps([item["views"] for item in content["items"]])
-    for word in ("believed", "right\"", "expect", "correct"):
+    for word in ("believed", 'right"', "expect", "correct"):
         assert word not in told
     for item in content["items"]:
         for view in item["views"]:
@@ -139,7 +139,7 @@ def test_wrong_arguments_are_named_before_anything_is_played(tmp_path):
     study = bn.Study.load(transfer_in(tmp_path))
     with pytest.raises(bn.InputError, match="film, story, both"):
         study.participants(tmp_path / "page", "book")
-    with pytest.raises(bn.InputError, match="--post is 'lab.example'"):
+    with pytest.raises(bn.InputError, match=r"--post is 'lab\.example'"):
         study.participants(tmp_path / "page", post="lab.example")
     with pytest.raises(bn.InputError, match=r"study\.yaml is a file"):
         study.participants(tmp_path / "study.yaml")
@@ -158,7 +158,8 @@ def test_wrong_arguments_are_named_before_anything_is_played(tmp_path):
 def test_instructions_have_pages_headings_paragraphs_and_lists(tmp_path):
     file = tmp_path / "text.md"
     file.write_text(
-        "# Consent\n\nYou may stop\nat any time.\n\n- one\n- two\n  three\n---\n\n---\nGo <b>on</b>.\n",
+        "# Consent\n\nYou may stop\nat any time.\n\n- one\n- two\n  three\n"
+        "---\n\n---\nGo <b>on</b>.\n",
         encoding="utf-8",
     )
     assert read_instructions(file) == [

@@ -111,7 +111,7 @@
 
   const progress = element('progress', { className: 'bn-progress', value: 0, ariaLabel: 'Progress' })
   const stage = element('main', { className: 'bn-stage' })
-  root.append(progress, stage)
+  root.append(element('header', {}, progress), stage)
   const study = await unpack(JSON.parse(document.getElementById('data').textContent))
   document.title = study.title
   let session
