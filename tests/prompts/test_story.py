@@ -9,6 +9,7 @@ import beliefnest as bn
 from beliefnest.llm.messages import Message, Sampling
 from beliefnest.llm.offline.offline_model import OfflineModel
 from beliefnest.prompts import built_in_template
+from beliefnest.prompts.story_filters import captions
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 
 SCENE = """
@@ -147,3 +148,14 @@ def test_every_built_in_template_renders_for_a_question(nest, name):
         assert nest[path].render(
             built_in_template(name), question="?", task="?", options=(), reason=False, places={}
         )
+
+
+def test_captions_are_the_sentences_of_the_story_with_their_ticks(nest: bn.Nest) -> None:
+    for path in ("/", "/lia", "/wim"):
+        told = captions(nest[path])
+        text = nest[path].render("{{ branch | beginning }} {{ branch | story }}")
+        assert " ".join(sentence for _, sentence in told) == text
+        ticks = [tick for tick, _ in told]
+        assert ticks == sorted(ticks)
+        events = {event.tick for event in nest[path].state.events}
+        assert {tick for tick, sentence in told if " put " in sentence} <= events

@@ -121,3 +121,52 @@ def every_exchange(differences):
 )
 def test_p_is_the_share_of_all_exchanges(differences):
     assert exchange_p(differences) == pytest.approx(every_exchange(differences))
+
+
+def answered(people, variations, right):
+    """Rows of people who all answered all variations."""
+    return [
+        {**row("people", v, right(p, v)), "variation": f"v{v}", "participant": f"p{p}"}
+        for p in range(people)
+        for v in range(variations)
+    ]
+
+
+def test_people_are_a_second_cluster_of_intervals():
+    by_person = answered(10, 40, lambda p, v: p < 5)
+    (found,) = count_rows(by_person, ["model"])
+    # All variations have the same share; five of ten people are always right.
+    assert found["interval"] == "two-way bootstrap"
+    assert (found["low"], found["high"]) == pytest.approx((0.2, 0.8), abs=0.01)
+    by_scene = answered(40, 10, lambda p, v: v < 5)
+    (turned,) = count_rows(by_scene, ["model"])
+    assert (turned["low"], turned["high"]) == pytest.approx((0.2, 0.8), abs=0.01)
+    models = [{**each, "participant": None} for each in by_person]
+    (alone,) = count_rows(models, ["model"])
+    assert alone["interval"] == "wilson"
+
+
+def test_intervals_of_few_or_unanimous_people_are_those_of_wilson():
+    # One row of each person in each variation: all rows are independent.
+    apart = [each for each in answered(8, 8, lambda p, v: v < 6) if each["spot"] == _number(each)]
+    (found,) = count_rows(apart, ["model"])
+    (same,) = count_rows([row("a", n, n < 6) for n in range(8)], ["model"])
+    assert (found["low"], found["high"], found["interval"]) == (same["low"], same["high"], "wilson")
+    (unanimous,) = count_rows(answered(4, 9, lambda p, v: True), ["model"])
+    (four,) = count_rows([row("a", n, True) for n in range(4)], ["model"])
+    assert (unanimous["low"], unanimous["interval"]) == (four["low"], "wilson")
+
+
+def _number(each):
+    return int(each["participant"].removeprefix("p"))
+
+
+def test_each_person_is_paired_with_the_model_and_with_other_people():
+    people = answered(3, 2, lambda p, v: p > 0)
+    models = [{**row("a", v, True), "variation": f"v{v}", "participant": None} for v in range(2)]
+    identity = ["model", "spot", "participant"]
+    (pairs,) = paired_rows([*models, *people], "model", identity)
+    assert (pairs.one, pairs.other, pairs.pairs, pairs.variations) == ("a", "people", 6, 2)
+    assert (pairs.both, pairs.only_one, pairs.difference) == (4, 2, pytest.approx(1 / 3))
+    (spots,) = paired_rows(people, "spot", identity)
+    assert (spots.pairs, spots.both, spots.only_one, spots.only_other) == (9, 4, 2, 2)

@@ -245,10 +245,10 @@
       }
       const player = trial.film ? new FilmPlayer(trial.film, trial.seen, () => ask(true)) : null
       form.root.hidden = true
-      const heading = trial.owner ? [element('h1', { className: 'bn-owner' }, `You are ${trial.owner}.`)] : []
+      const heading = element('h1', {}, trial.owner ? `You are ${trial.owner}.` : 'You are told everything that happened.')
       const story = trial.story.map(text => element('p', {}, text))
       const told = story.length ? [element('div', { className: 'bn-story' }, ...story)] : []
-      const root = element('section', { className: 'bn-trial', tabIndex: -1 }, ...heading, ...told, ...(player ? [player.root] : []), form.root)
+      const root = element('section', { className: 'bn-trial', tabIndex: -1 }, heading, ...told, ...(player ? [player.root] : []), form.root)
       display.replaceChildren(root)
       root.focus()
       if (!player || trial.seen) ask(false)
