@@ -1,8 +1,9 @@
-"""Write docs/img/page-*.png: the page as a real browser shows it, on wide, narrow and dark screens.
+"""Write docs/img/page-*.png and participants.png: pages as a real browser shows them.
 
 Needs chromium and chromedriver. Run it with `make pages` after a change of the page.
 """
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -11,9 +12,12 @@ from pathlib import Path
 
 from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.page import write_page
+from beliefnest.studies.study import Study
 from beliefnest_benchmarks.browser import Browser, opened_browser
 
 IMAGES = Path(__file__).parents[1] / "docs" / "img"
+
+GUIDE = IMAGES.parent / "participants.md"
 
 SHOTS = (
     (
@@ -44,6 +48,23 @@ def main() -> None:
                 browser.until_script("return !document.body.innerText.includes('Looking up why')")
                 time.sleep(1)  # what is drawn has to reach the screen
                 browser.driver.save_screenshot(str(IMAGES / f"page-{name}.png"))
+            _participants(browser, place)
+
+
+def _participants(browser: Browser, place: Path) -> None:
+    """Take the picture of docs/participants.md: a film at its end, and its question."""
+    texts = re.findall(r"```yaml\n(.*?)```", GUIDE.read_text(encoding="utf-8"), re.DOTALL)
+    for name, text in zip(("transfer.yaml", "study.yaml"), texts, strict=True):
+        (place / name).write_text(text, encoding="utf-8")
+    page = Study.load(place / "study.yaml").participants(place / "participants").folder
+    _screen(browser, 760, 1010, dark=False)
+    browser.open(f"{(page / 'index.html').as_uri()}?participant=1")
+    browser.click(".bn-continue")
+    browser.one(".bn-trial")
+    while browser.script("return document.querySelector('.bn-form').hidden"):
+        browser.click(".bn-next")
+    browser.script("document.activeElement.blur(); scrollTo(0, 0)")
+    browser.driver.save_screenshot(str(IMAGES / "participants.png"))
 
 
 def _page(folder: Path, name: str, condition: int | None) -> Path:

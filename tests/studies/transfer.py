@@ -94,7 +94,12 @@ def content_of(page: Path) -> dict[str, Any]:
 
 
 def answers_of(
-    page: Mapping[str, Any], participant: str, number: int, *, right: bool = True
+    page: Mapping[str, Any],
+    participant: str,
+    number: int,
+    *,
+    right: bool = True,
+    place: str = "chest",
 ) -> Iterator[dict[str, Any]]:
     """Yield a participant's answers to all questions of a list, in the form of the page.
 
@@ -103,14 +108,15 @@ def answers_of(
         participant: Id of the participant.
         number: Number of the list, from 1.
         right: False: Sally is taken to know everything.
+        place: Container in which the item is at the end.
     """
     for at in page["lists"][number - 1]:
         item = page["items"][at]
         knows = item["condition"] == 2 or not right
-        place = "chest" if knows else "left box"
+        where = place if knows else "left box"
         for view in item["views"]:
             for asked in view["questions"]:
-                said = "anne" if asked["options"][:1] == ["anne"] else place
+                said = "anne" if asked["options"][:1] == ["anne"] else where
                 yield {
                     "study": page["study"],
                     "participant": participant,
