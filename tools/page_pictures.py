@@ -57,7 +57,7 @@ def _participants(browser: Browser, place: Path) -> None:
     for name, text in zip(("transfer.yaml", "study.yaml"), texts, strict=True):
         (place / name).write_text(text, encoding="utf-8")
     page = Study.load(place / "study.yaml").participants(place / "participants").folder
-    _screen(browser, 760, 1010, dark=False)
+    _screen(browser, 760, 1230, dark=False)
     browser.open(f"{(page / 'index.html').as_uri()}?participant=1")
     browser.click(".bn-continue")
     browser.one(".bn-trial")
