@@ -2,7 +2,7 @@
 
 import {
   BoxGeometry, BufferAttribute, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight, InstancedMesh,
-  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Matrix4, Mesh, MeshLambertMaterial, Quaternion,
+  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Quaternion,
   Raycaster, Scene, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
@@ -17,6 +17,11 @@ const TALL = 23
 const LETTER = 6.6
 const SHARPEST = 1.5
 const HURRIED = 0.5
+const FINER = 2
+const SUN = new Vector3(0.5, 1, 0.3)
+const SUN_POWER = 1.6
+const SKY_POWER = 2.2
+const GROUND_LIGHT = 0xb8b0a4
 const DARKER = 0.97
 const OPACITY = { solid: 1, clear: 0.35, liquid: 0.6 }
 /** Corners of the two triangles of a rectangle. */
@@ -40,18 +45,20 @@ export function hasWebGL () {
 
 /** Picture in three dimensions; several pictures share a camera. */
 export class Space {
-  constructor (camera, target, choose, moved) {
+  /** @param {boolean} isLarge - true for a world so large that each frame counts while it turns */
+  constructor (camera, target, choose, moved, isLarge) {
     this.choose = choose
+    this.isLarge = isLarge
     this.camera = camera
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'low-power' })
+    this.renderer = new WebGLRenderer({ antialias: !isLarge, alpha: true, powerPreference: 'low-power' })
     this.canvas = this.renderer.domElement
     this.canvas.setAttribute('role', 'img')
     this.labels = element('div', { class: 'labels' })
     this.element = element('div', { class: 'space' }, this.canvas, this.labels)
     this.scene = new Scene()
-    this.light = new HemisphereLight(0xffffff, 0xb8b0a4, 2.2)
-    this.sun = new DirectionalLight(0xffffff, 1.6)
-    this.sun.position.set(0.5, 1, 0.3)
+    this.light = new HemisphereLight(0xffffff, GROUND_LIGHT, SKY_POWER)
+    this.sun = new DirectionalLight(0xffffff, SUN_POWER)
+    this.sun.position.copy(SUN)
     this.blocks = new Group()
     this.figures = new Group()
     this.scene.add(this.light, this.sun, this.blocks, this.figures)
@@ -101,7 +108,9 @@ export class Space {
   render () {
     const { width, height } = this.element.getBoundingClientRect()
     if (width < 2 || height < 2) return
-    const scale = Math.min(SHARPEST, devicePixelRatio || 1) * (this.hurried ? HURRIED : 1)
+    // A large world has no antialiasing, which costs most where pictures are drawn in software; the browser scales its
+    // picture down once it rests.
+    const scale = Math.min(SHARPEST, devicePixelRatio || 1) * (this.hurried ? HURRIED : this.isLarge ? FINER : 1)
     if (this.size !== `${width} ${height} ${scale}`) {
       this.size = `${width} ${height} ${scale}`
       this.renderer.setPixelRatio(scale)
@@ -133,7 +142,7 @@ export class Space {
       if (mesh.userData.isMerged) mesh.geometry.dispose()
       else mesh.dispose()
     }
-    const faces = facesOf(blocks, number, (state, isSeen) => shadeOf(run.states[state], isSeen).toArray())
+    const faces = facesOf(blocks, number, (state, isSeen, normal) => litShade(run.states[state], isSeen, normal))
     const boxes = { solid: [], clear: [] }
     for (const cell of boxedCells(blocks, number)) {
       const block = run.states[blocks.grid[cell]]
@@ -343,13 +352,36 @@ function shadeOf (block, isSeen) {
   return isSeen ? block.shade : block.unseen
 }
 
+/** Return the colour of a block's face in the light of the scene. @returns {number[]} */
+function litShade (block, isSeen, normal) {
+  const name = `${isSeen} ${normal.join()}`
+  block.lit ??= new Map()
+  if (!block.lit.has(name)) {
+    const light = lightOn(normal)
+    block.lit.set(name, shadeOf(block, isSeen).toArray().map((part, at) => part * light[at]))
+  }
+  return block.lit.get(name)
+}
+
 function plainMaterial (opacity) {
   return new MeshLambertMaterial({ transparent: opacity < 1, opacity })
 }
 
+/**
+ * Return the light that a face of a block reflects, as the lights of the scene shine on a MeshLambertMaterial. Faces of
+ * merged blocks look to six sides only, so that their colours include it and no pixel computes it.
+ * @returns {number[]} share of each colour
+ */
+function lightOn (normal) {
+  const direction = new Vector3(...normal)
+  const sky = new Color(GROUND_LIGHT).lerp(new Color(0xffffff), 0.5 * direction.y + 0.5).multiplyScalar(SKY_POWER)
+  const sun = SUN_POWER * Math.max(0, direction.dot(SUN.clone().normalize()))
+  return sky.toArray().map(part => (part + sun) / Math.PI)
+}
+
 /** Return a material that draws every second block a little darker, as a chequerboard. */
 function chequered (opacity) {
-  const material = new MeshLambertMaterial({ vertexColors: true, transparent: opacity < 1, opacity })
+  const material = new MeshBasicMaterial({ vertexColors: true, transparent: opacity < 1, opacity })
   material.onBeforeCompile = shader => {
     shader.vertexShader = shader.vertexShader
       .replace('#include <common>', '#include <common>\nattribute float plain;\nvarying float vPlain;\nvarying vec3 vInner;')
@@ -362,8 +394,8 @@ function chequered (opacity) {
 }
 
 /** Return the mesh of merged faces. */
-function merged ({ places, normals, colours, plain }, material) {
-  const count = places.length / 12
+function merged ({ places, colours, normals, plain }, material) {
+  const count = plain.length / 4
   const corners = Uint32Array.from({ length: 6 * count }, (_, at) => 4 * Math.floor(at / 6) + CORNERS[at % 6])
   const geometry = new BufferGeometry()
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(places), 3))

@@ -11,6 +11,7 @@ const VIEWS = { space: '3D', plan: 'Plan', both: 'Both' }
 const NARROW = 720
 const BARS = 80
 const HURRY_MS = 400
+const LARGE = 200000
 const VIEW = 42
 const HALF_VIEW = Math.tan(VIEW / 360 * Math.PI)
 
@@ -126,7 +127,7 @@ class Stage {
     const count = things.wrong.size
     refill(this.title, element('strong', {}, believesText(track)), count ? element('span', { class: 'mark false' }, ` ${run.head.marks.false.sign} ${count} false`) : null,
       element('span', { class: 'path' }, ` ${track.path} `), element('span', { class: 'at' }, `tick ${tick}`))
-    this.arrange(view)
+    this.arrange(view, run.cells > LARGE)
     if (view !== 'space') this.plan.draw(scene)
     if (view !== 'plan') {
       this.space.hurried = this.stages.hurried
@@ -140,10 +141,10 @@ class Stage {
     this.space.render()
   }
 
-  arrange (view) {
+  arrange (view, isLarge) {
     if (view === this.view) return
     this.view = view
-    if (view !== 'plan') this.space ??= new Space(this.stages.camera, this.stages.target, this.stages.choose, () => this.stages.moved())
+    if (view !== 'plan') this.space ??= new Space(this.stages.camera, this.stages.target, this.stages.choose, () => this.stages.moved(), isLarge)
     this.plan.drawn = null
     this.holder.className = `holder as-${view}`
     refill(this.holder, ...[view !== 'plan' ? this.space.element : null, view !== 'space' ? this.plan.element : null].filter(Boolean))

@@ -65,6 +65,12 @@ function cornersOf ({ shape: [width, , depth], top }, number) {
   return [[x, 0, z], [Math.min(x + CHUNK, width), top, Math.min(z + CHUNK, depth)]]
 }
 
+function normalOf (axis, side) {
+  const normal = [0, 0, 0]
+  normal[axis] = side ? 1 : -1
+  return normal
+}
+
 /** Merged faces under construction: corners, normals, colours. */
 class Faces {
   constructor () {
@@ -83,8 +89,7 @@ class Faces {
       at[v] += up
       return at
     })
-    const normal = [0, 0, 0]
-    normal[axis] = side ? 1 : -1
+    const normal = normalOf(axis, side)
     for (const at of side ? [a, b, c, d] : [a, d, c, b]) {
       this.places.push(...at)
       this.normals.push(...normal)
@@ -98,7 +103,7 @@ class Faces {
  * Return the merged faces of a chunk.
  * @param {Blocks} blocks
  * @param {number} number - number of the chunk
- * @param {function(number, boolean): number[]} colourOf - colour of a state, seen or not, as three shares
+ * @param {function(number, boolean, number[]): number[]} colourOf - colour of a state, seen or not, on a side with a normal
  * @returns {{solid: Faces, liquid: Faces}}
  */
 export function facesOf (blocks, number, colourOf) {
@@ -119,7 +124,7 @@ export function facesOf (blocks, number, colourOf) {
           corner[u] = from[u] + along
           corner[v] = from[v] + up
           const faces = merged[state] === LIQUID ? found.liquid : found.solid
-          faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0), unseen)
+          faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0, normalOf(axis, side)), unseen)
         })
       }
     }
