@@ -8,7 +8,7 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { element } from './elements.js'
 import { apart } from './labels.js'
-import { Kinds, boxedCells, changedChunks, facesOf } from './surfaces.js'
+import { CHUNK, Kinds, boxedCells, changedChunks, coarser, facesOf } from './surfaces.js'
 import { contentsLabel, shortened, signsText } from './things.js'
 
 const WRONG = 0xd55e00
@@ -22,6 +22,7 @@ const SUN = new Vector3(0.5, 1, 0.3)
 const SUN_POWER = 1.6
 const SKY_POWER = 2.2
 const GROUND_LIGHT = 0xb8b0a4
+const FAR = 60
 const DARKER = 0.97
 const OPACITY = { solid: 1, clear: 0.35, liquid: 0.6 }
 /** Corners of the two triangles of a rectangle. */
@@ -71,6 +72,7 @@ export class Space {
     this.run = null
     this.chunks = new Map()
     this.blocksBuilt = null
+    this.coarse = null
     this.marks = []
     this.hurried = false
     // Keep materials for later pictures: creating a material costs more than drawing with it.
@@ -118,6 +120,7 @@ export class Space {
     }
     this.camera.aspect = width / height
     this.camera.updateProjectionMatrix()
+    this.chooseDetail()
     this.renderer.render(this.scene, this.camera)
     this.placeLabels(width, height)
   }
@@ -129,20 +132,41 @@ export class Space {
     if (this.run !== scene.run) this.dropChunks()
     this.run = scene.run
     const blocks = blocksOf(scene)
-    for (const number of changedChunks(this.blocksBuilt, blocks)) this.buildChunk(scene.run, blocks, number)
+    const changed = changedChunks(this.blocksBuilt, blocks)
+    if (this.isLarge) this.coarse = coarser(blocks, this.blocksBuilt?.top === blocks.top && (this.coarse?.seen === null) === (blocks.seen === null) ? this.coarse : null, changed)
+    for (const number of changed) this.buildChunk(scene.run, blocks, number)
     // The arrays are overwritten when the track moves on.
     this.blocksBuilt = { ...blocks, grid: blocks.grid.slice(), seen: blocks.seen?.slice() ?? null }
   }
 
   /** Replace the meshes of one chunk. */
   buildChunk (run, blocks, number) {
-    for (const mesh of this.chunks.get(number) ?? []) {
-      this.blocks.remove(mesh)
-      // Geometry of single boxes is shared.
-      if (mesh.userData.isMerged) mesh.geometry.dispose()
-      else mesh.dispose()
+    this.dropMeshes(this.chunks.get(number) ?? [])
+    const made = [...this.mergedMeshes(run, blocks, number), ...this.boxMeshes(run, blocks, number)]
+    if (this.isLarge) {
+      // A picture from afar that moves fast shows blocks of twice the size in place of the merged ones.
+      for (const mesh of made) mesh.userData.detail = mesh.userData.isMerged ? 'fine' : null
+      for (const mesh of this.mergedMeshes(run, this.coarse, number)) {
+        mesh.scale.setScalar(2)
+        mesh.userData.detail = 'coarse'
+        mesh.visible = false
+        made.push(mesh)
+      }
     }
+    if (made.length) this.blocks.add(...made)
+    this.chunks.set(number, made)
+  }
+
+  mergedMeshes (run, blocks, number) {
     const faces = facesOf(blocks, number, (state, isSeen, normal) => litShade(run.states[state], isSeen, normal))
+    return ['solid', 'liquid'].filter(part => faces[part].places.length).map(part => {
+      const mesh = merged(faces[part], this.material(`merged ${part}`, () => chequered(OPACITY[part])))
+      mesh.position.set(...run.head.box.low)
+      return mesh
+    })
+  }
+
+  boxMeshes (run, blocks, number) {
     const boxes = { solid: [], clear: [] }
     for (const cell of boxedCells(blocks, number)) {
       const block = run.states[blocks.grid[cell]]
@@ -153,26 +177,36 @@ export class Space {
       const list = block.glassy && !block.container ? boxes.clear : boxes.solid
       for (const box of block.boxes) list.push({ box, cell, colour, place })
     }
-    const made = [
-      ...['solid', 'liquid'].filter(part => faces[part].places.length).map(part => merged(faces[part], this.material(`merged ${part}`, () => chequered(OPACITY[part])))),
-      ...['solid', 'clear'].filter(part => boxes[part].length).map(part => instances(boxes[part], this.material(`boxes ${part}`, () => plainMaterial(OPACITY[part]))))
-    ]
-    for (const mesh of made) {
-      if (mesh.userData.isMerged) mesh.position.set(...run.head.box.low)
-      this.blocks.add(mesh)
+    return ['solid', 'clear'].filter(part => boxes[part].length).map(part => instances(boxes[part], this.material(`boxes ${part}`, () => plainMaterial(OPACITY[part]))))
+  }
+
+  /** Show chunks that are far from the camera with less detail while pictures follow one another quickly. */
+  chooseDetail () {
+    if (!this.isLarge) return
+    for (const meshes of this.chunks.values()) {
+      for (const mesh of meshes) {
+        if (mesh.userData.detail === null) continue
+        const { center, radius } = sphereOf(mesh)
+        const isFar = this.hurried && this.camera.position.distanceTo(center) - radius > FAR
+        mesh.visible = (mesh.userData.detail === 'coarse') === isFar
+      }
     }
-    this.chunks.set(number, made)
+  }
+
+  dropMeshes (meshes) {
+    for (const mesh of meshes) {
+      this.blocks.remove(mesh)
+      // The geometry of single boxes is shared.
+      if (mesh.userData.isMerged) mesh.geometry.dispose()
+      else mesh.dispose()
+    }
   }
 
   /** Remove all blocks, before those of another run are built. */
   dropChunks () {
-    for (const mesh of this.blocks.children) {
-      if (mesh.userData.isMerged) mesh.geometry.dispose()
-      else mesh.dispose()
-    }
-    this.blocks.clear()
+    for (const meshes of this.chunks.values()) this.dropMeshes(meshes)
     this.chunks.clear()
-    this.blocksBuilt = null
+    this.blocksBuilt = this.coarse = null
   }
 
   buildFigures (scene) {
@@ -325,7 +359,7 @@ export class Space {
     const point = new Vector2((event.clientX - room.left) / room.width * 2 - 1, 1 - (event.clientY - room.top) / room.height * 2)
     const caster = new Raycaster()
     caster.setFromCamera(point, this.camera)
-    const [hit] = caster.intersectObjects([...this.figures.children.filter(each => each.userData.thing), ...this.blocks.children])
+    const [hit] = caster.intersectObjects([...this.figures.children.filter(each => each.userData.thing), ...this.blocks.children.filter(each => each.visible)])
     if (hit === undefined) return
     this.choose({ thing: hit.object.userData.thing ?? this.blockAt(hit), note: null })
   }
@@ -342,7 +376,7 @@ export class Space {
 function blocksOf ({ run, track, tick, storey, seen }) {
   if (run.kinds?.count !== run.states.length) run.kinds = new Kinds(run.states)
   const top = Math.max(0, Math.min(run.shape[1], storey - run.head.box.low[1] + 2))
-  return { grid: track.grid(tick), shape: run.shape, top, kinds: run.kinds, seen }
+  return { grid: track.grid(tick), shape: run.shape, top, kinds: run.kinds, seen, chunk: CHUNK }
 }
 
 /** Return the colour of a block; the next call may return the same object. */
@@ -406,6 +440,17 @@ function merged ({ places, colours, normals, plain }, material) {
   const mesh = new Mesh(geometry, material)
   mesh.userData.isMerged = true
   return mesh
+}
+
+/** Return a sphere around a mesh, in coordinates of the world. */
+function sphereOf (mesh) {
+  if (mesh.userData.sphere === undefined) {
+    mesh.geometry.computeBoundingSphere()
+    mesh.userData.sphere = mesh.geometry.boundingSphere.clone()
+    mesh.userData.sphere.center.multiply(mesh.scale).add(mesh.position)
+    mesh.userData.sphere.radius *= mesh.scale.x
+  }
+  return mesh.userData.sphere
 }
 
 /** Return the mesh of single boxes. */

@@ -10,6 +10,7 @@ export const CHUNK = 32
 const NONE = 0
 const SOLID = 1
 const LIQUID = 2
+const ENOUGH = 4
 const LIQUIDS = new Set(['water', 'lava'])
 
 /** Ways in which block states are drawn, by number of the state: 0 as boxes, `SOLID` or `LIQUID` as merged faces. */
@@ -35,13 +36,15 @@ function mergedAs ({ name, boxes, glassy }) {
  * @property {number} top - number of layers to draw
  * @property {Kinds} kinds
  * @property {Uint8Array|null} seen - 1 for cells that are seen; null: all
+ * @property {number} chunk - width and depth of its chunks
  */
 
 /** Return the numbers of the chunks of a grid whose pictures differ between two sets of blocks. @returns {number[]} */
 export function changedChunks (before, now) {
   const [width, height, depth] = now.shape
-  const across = Math.ceil(depth / CHUNK)
-  const count = Math.ceil(width / CHUNK) * across
+  const { chunk } = now
+  const across = Math.ceil(depth / chunk)
+  const count = Math.ceil(width / chunk) * across
   const all = Array.from({ length: count }, (_, number) => number)
   if (before === null || before.top !== now.top || before.shape.join() !== now.shape.join() || (before.seen === null) !== (now.seen === null)) return all
   const changed = new Set()
@@ -51,7 +54,7 @@ export function changedChunks (before, now) {
     // A block at the edge of a chunk hides faces of the next chunk.
     for (const x of [i - 1, i, i + 1]) {
       for (const z of [k - 1, k, k + 1]) {
-        if (x >= 0 && z >= 0 && x < width && z < depth) changed.add(Math.floor(x / CHUNK) * across + Math.floor(z / CHUNK))
+        if (x >= 0 && z >= 0 && x < width && z < depth) changed.add(Math.floor(x / chunk) * across + Math.floor(z / chunk))
       }
     }
   }
@@ -59,10 +62,55 @@ export function changedChunks (before, now) {
 }
 
 /** Return the lowest and the first higher corner of a chunk, in cells. @returns {number[][]} */
-function cornersOf ({ shape: [width, , depth], top }, number) {
-  const across = Math.ceil(depth / CHUNK)
-  const [x, z] = [Math.floor(number / across) * CHUNK, number % across * CHUNK]
-  return [[x, 0, z], [Math.min(x + CHUNK, width), top, Math.min(z + CHUNK, depth)]]
+export function cornersOf ({ shape: [width, , depth], top, chunk }, number) {
+  const across = Math.ceil(depth / chunk)
+  const [x, z] = [Math.floor(number / across) * chunk, number % across * chunk]
+  return [[x, 0, z], [Math.min(x + chunk, width), top, Math.min(z + chunk, depth)]]
+}
+
+/**
+ * Return blocks of twice the size, for a picture from afar: each is the highest of the merged blocks in a cube of eight,
+ * if at least half of them are merged ones. Chunks keep their numbers.
+ * @param {Blocks} blocks
+ * @param {Blocks|null} before - an earlier result for a grid of this shape, which is changed; null: none
+ * @param {number[]} numbers - the chunks that differ from those of the earlier result
+ * @returns {Blocks}
+ */
+export function coarser (blocks, before, numbers) {
+  const shape = blocks.shape.map(size => Math.ceil(size / 2))
+  const made = { ...blocks, shape, top: Math.ceil(blocks.top / 2), chunk: blocks.chunk / 2, seen: null, grid: before?.grid ?? new Int16Array(shape[0] * shape[1] * shape[2]).fill(-1) }
+  if (blocks.seen !== null) made.seen = before?.seen ?? new Uint8Array(made.grid.length)
+  for (const number of numbers) {
+    const [from, to] = cornersOf(made, number)
+    for (let i = from[0]; i < to[0]; i++) {
+      for (let j = 0; j < made.top; j++) {
+        for (let k = from[2]; k < to[2]; k++) {
+          const cell = highestOf(blocks, 2 * i, 2 * j, 2 * k)
+          const at = (i * shape[1] + j) * shape[2] + k
+          made.grid[at] = cell < 0 ? -1 : blocks.grid[cell]
+          if (made.seen !== null) made.seen[at] = cell < 0 ? 0 : blocks.seen[cell]
+        }
+      }
+    }
+  }
+  return made
+}
+
+/** Return the highest cell with a merged block in a cube of eight; -1 if less than half of these have one. */
+function highestOf ({ grid, shape: [width, height, depth], top, kinds: { merged } }, x, y, z) {
+  let count = 0
+  let highest = -1
+  for (let j = Math.min(y + 1, top - 1); j >= y; j--) {
+    for (let i = x; i < Math.min(x + 2, width); i++) {
+      for (let k = z; k < Math.min(z + 2, depth); k++) {
+        const cell = (i * height + j) * depth + k
+        if (grid[cell] < 0 || merged[grid[cell]] === NONE) continue
+        count++
+        if (highest < 0) highest = cell
+      }
+    }
+  }
+  return count >= ENOUGH ? highest : -1
 }
 
 function normalOf (axis, side) {
