@@ -3,11 +3,15 @@
 import { element, refill, svg } from './elements.js'
 import { apart } from './labels.js'
 import { heatOf } from './posterior.js'
+import { paintRelief } from './relief.js'
+import { isWide } from './run.js'
 import { contentsLabel, contentsText, memoryWords, shortened, signsText } from './things.js'
 
 const LIGHT = { wall: '#7d7a78', nowhere: '#d9d5cc', unknown: '#eeeae2', hatch: '#b9b4aa', unseen: 'rgba(43,42,51,.30)', blend: '#fcfbf8' }
 const DARK = { wall: '#9a979c', nowhere: '#17161b', unknown: '#2b2930', hatch: '#56525e', unseen: 'rgba(0,0,0,.55)', blend: '#24232a' }
 const LEAST = 6
+const LEAST_WIDE = 0.75
+const LEAST_SIGN = 6
 const LETTER = 7
 const BOLD = 7.6
 const RING = 1.4
@@ -31,7 +35,7 @@ export class Plan {
     const { run } = scene
     const [width, , depth] = run.shape
     const room = this.element.getBoundingClientRect()
-    this.size = Math.max(LEAST, Math.min(room.width / width, room.height / depth))
+    this.size = Math.max(isWide(run) ? LEAST_WIDE : LEAST, Math.min(room.width / width, room.height / depth))
     this.low = run.head.box.low
     this.drawBlocks(scene, width, depth)
     const [w, d] = [width * this.size, depth * this.size]
@@ -58,6 +62,11 @@ export class Plan {
     const grid = track.grid(tick)
     const layer = storey - run.head.box.low[1]
     const height = run.shape[1]
+    if (isWide(run)) {
+      const image = paint.createImageData(width, depth)
+      paintRelief(image, run, grid, layer, seen, tones)
+      return this.putImage(paint, image)
+    }
     for (let i = 0; i < width; i++) {
       for (let k = 0; k < depth; k++) {
         const cell = (i * height + layer) * depth + k
@@ -66,6 +75,21 @@ export class Plan {
         if (seen !== null && !seen[cell]) fill(paint, [i, k, scale], tones.unseen)
       }
     }
+  }
+
+  /** Paint an image with a pixel for each column over the whole canvas. */
+  putImage (paint, image) {
+    const small = element('canvas', { width: image.width, height: image.height })
+    small.getContext('2d').putImageData(image, 0, 0)
+    paint.imageSmoothingEnabled = false
+    paint.drawImage(small, 0, 0, this.canvas.width, this.canvas.height)
+  }
+
+  /** Return the corner and the size of a square around a column that is large enough to be seen. @returns {number[]} */
+  squareAt ([x, , z]) {
+    const [left, top] = this.at(x, z)
+    const size = Math.max(LEAST_SIGN, this.size)
+    return [left - (size - this.size) / 2, top - (size - this.size) / 2, size]
   }
 
   /** Return where a point of the world lies on the plan. @returns {number[]} */
@@ -109,9 +133,8 @@ export class Plan {
   }
 
   containers ({ run, things, chosen, storey, named = false }) {
-    return things.containers.filter(each => each.place[1] === storey && (each.contents || each.marks.length)).map(each => {
-      const [x, y] = this.at(each.place[0], each.place[2])
-      const s = this.size
+    return things.containers.filter(each => isOn(run, each, storey) && (each.contents || each.marks.length)).map(each => {
+      const [x, y, s] = this.squareAt(each.place)
       const name = named ? run.label(each.place) : null
       const held = [contentsLabel(each.contents), signsText(run, each.marks, each.age)].filter(Boolean).join(' ')
       const text = name === null ? held : `${name}: ${held}`
@@ -125,10 +148,9 @@ export class Plan {
     })
   }
 
-  signs ({ things, chosen, storey }) {
-    return things.signs.filter(each => each.place[1] === storey).map(each => {
-      const [x, y] = this.at(each.place[0], each.place[2])
-      const s = this.size
+  signs ({ run, things, chosen, storey }) {
+    return things.signs.filter(each => isOn(run, each, storey)).map(each => {
+      const [x, y, s] = this.squareAt(each.place)
       const wrong = each.marks.includes('false')
       return this.target(each.thing, `${each.name} says “${each.says}”${wrong ? ' (false)' : ''}`, chosen,
         svg('rect', { class: 'board', x: x + 0.1 * s, y: y + 0.3 * s, width: 0.8 * s, height: 0.4 * s, rx: 0.06 * s }),
@@ -143,7 +165,7 @@ export class Plan {
       const [x, y] = this.at(pose.x, pose.z)
       const r = this.radius()
       const [dx, dy] = [-Math.sin(pose.yaw), -Math.cos(pose.yaw)]
-      const far = Math.abs(pose.y - storey) > 1.5
+      const far = !isWide(run) && Math.abs(pose.y - storey) > 1.5
       const wrong = each.marks.includes('false')
       const sign = signsText(run, each.marks, each.age)
       const when = pose.current ? '' : `, ${memoryWords(each.teller, each.age)}`
@@ -191,6 +213,11 @@ export class Plan {
     }
     return parts
   }
+}
+
+/** Return true if a plan shows a thing of one storey: a wide one shows all that is at the storey or below. */
+function isOn (run, { place }, storey) {
+  return isWide(run) ? place[1] <= storey : place[1] === storey
 }
 
 function fill (paint, [i, k, scale], colour) {

@@ -12,6 +12,14 @@ export const STALE = 2
 const MILLI = 1000
 const MOST_GRIDS = 4
 
+/** Width or depth in blocks from which the plan of a world shows the ground from above in place of one storey. */
+const WIDE = 64
+
+/** Return true if the world of a run is so wide that its plan shows the ground. @returns {boolean} */
+export function isWide (run) {
+  return Math.max(run.shape[0], run.shape[2]) >= WIDE
+}
+
 /** Return the index of the last row at or before a tick; -1 if there is none. @returns {number} */
 export function rowIndex (rows, tick, tickOf = row => row[0]) {
   let low = 0

@@ -4,6 +4,7 @@ import { PerspectiveCamera, Vector3 } from 'three'
 import { believesText } from './detail.js'
 import { element, refill } from './elements.js'
 import { Plan } from './floorPlan.js'
+import { isWide } from './run.js'
 import { Space, hasWebGL } from './space.js'
 import { thingsOf } from './things.js'
 
@@ -89,7 +90,7 @@ export class Stages {
   }
 
   /** Point the camera at a run once; afterwards only the user turns it. */
-  aim ({ run, beside, track }) {
+  aim ({ run, beside, track, things }) {
     if (this.aimed === run) return
     this.aimed = run
     const two = beside !== null && beside !== track
@@ -97,7 +98,7 @@ export class Stages {
     const aspect = Math.max(0.5, room.width / (two && innerWidth > NARROW ? 2 : 1) / Math.max(1, room.height - BARS))
     const [width, , depth] = run.shape
     const { low } = run.head.box
-    this.target.set(low[0] + width / 2, low[1] + 1, low[2] + depth / 2)
+    this.target.set(low[0] + width / 2, isWide(run) ? middleHeight(run, things) : low[1] + 1, low[2] + depth / 2)
     const far = Math.max(0.9 * depth + 3, (0.56 * width / (HALF_VIEW * aspect) + 0.35 * depth) / 1.2)
     this.camera.position.set(this.target.x, this.target.y + 0.92 * far, this.target.z + 0.78 * far)
     this.camera.lookAt(this.target)
@@ -149,6 +150,12 @@ class Stage {
     this.holder.className = `holder as-${view}`
     refill(this.holder, ...[view !== 'plan' ? this.space.element : null, view !== 'space' ? this.plan.element : null].filter(Boolean))
   }
+}
+
+/** Return the height in the middle of those at which things stand. @returns {number} */
+function middleHeight (run, things) {
+  const heights = [...things.containers.map(each => each.place[1]), ...things.agents.filter(each => each.pose !== null).map(each => each.pose.y)].sort((a, b) => a - b)
+  return heights[Math.floor(heights.length / 2)] ?? run.head.box.low[1] + 1
 }
 
 function fillOptions (select, options, chosen) {

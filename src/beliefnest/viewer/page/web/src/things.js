@@ -1,9 +1,10 @@
 /** Things to show of one simulator at one tick: values of its track, with their marks. */
 
 import { ago, itemsText } from './elements.js'
-import { partsOf } from './run.js'
+import { isWide, partsOf } from './run.js'
 
 const MOST_SHOWN = 24
+const FLAT = 3
 
 /** Return agents, containers, dropped items, written signs and false blocks of a track at a tick. @returns {object} */
 export function thingsOf (run, track, tick) {
@@ -114,7 +115,8 @@ function markSign (run, mark, age) {
 }
 
 /**
- * Return the storey with most containers, or else with most agents' feet, or else the lowest but one.
+ * Return the storey with most containers, or else with most agents' feet, or else the lowest but one; in a wide world
+ * with things at many heights, the highest.
  * @returns {number}
  */
 export function mainStorey (run, track, tick) {
@@ -126,6 +128,8 @@ export function mainStorey (run, track, tick) {
     }
   }
   if (heights.length === 0) return run.head.box.low[1] + 1
+  // Outdoors, where things stand at many heights, hide nothing.
+  if (isWide(run) && Math.max(...heights) - Math.min(...heights) > FLAT) return run.head.box.low[1] + run.shape[1] - 1
   const counts = new Map()
   for (const height of heights) counts.set(height, (counts.get(height) ?? 0) + 1)
   return [...counts].sort((a, b) => b[1] - a[1] || a[0] - b[0])[0][0]
