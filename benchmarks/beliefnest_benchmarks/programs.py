@@ -1,6 +1,7 @@
 """Benchmarks of agent programs: an empty one, the cost of the sandbox, many walkers."""
 
 import json
+import math
 import statistics
 import subprocess
 import tempfile
@@ -25,15 +26,19 @@ _PAIRS = 61
 _WARM = 20
 """Pairs of walks that are not counted, during which Node compiles its hot code."""
 
-_SIZE = 21
+_REACH = 17
 _FLOOR = -52
 _PILLARS = range(-18, 19, 9)
+_WALKERS = ((4, 100.0), (16, 60.0), (32, None), (64, 6.0))
+"""Numbers of agents that walk, each with the speed to reach."""
+
 _CORNERS = ((15, 15), (-15, 10), (-10, -17), (17, -12))
 
 
 def measure() -> Sequence[Metric]:
     """Return all figures of programs, run with `Nest.open`, `Simulator.run` and `run_all`."""
-    walks = [_walk(4, 100.0), _walk(16, 20.0), _walk(4, None, "percepts")]
+    walks = [_walk(agents, target) for agents, target in _WALKERS]
+    walks.append(_walk(4, None, "percepts"))
     return [_empty(), *_containment(), *walks, *restore.measure()]
 
 
@@ -116,21 +121,25 @@ def _round(number: int) -> str:
     )
 
 
+def _start(number: int) -> tuple[float, float, float]:
+    """Return the position of an agent at the beginning: 16 in a band of 7 blocks."""
+    band, place = divmod(number, 16)
+    return 2 * place - 15.5, _FLOOR + 1, number * 5 % 7 - 3.5 + 7 * band
+
+
 def _hall(agents: int) -> Scenario:
-    """Return a hall of 43 by 43 blocks with pillars."""
+    """Return a hall with pillars, of 43 by 43 blocks for up to 16 agents and larger for more."""
     feet = _FLOOR + 1
+    size = _REACH + max(4, math.ceil(agents / len(_CORNERS)))
     pillars = ((x, z) for x in _PILLARS for z in _PILLARS)
     document = {
         "name": "hall",
-        "box": [[-_SIZE, _FLOOR, -_SIZE], [_SIZE, _FLOOR + 3, _SIZE]],
+        "box": [[-size, _FLOOR, -size], [size, _FLOOR + 3, size]],
         "blocks": [
-            {"block": "stone", "fill": [[-_SIZE, _FLOOR, -_SIZE], [_SIZE, _FLOOR, _SIZE]]},
+            {"block": "stone", "fill": [[-size, _FLOOR, -size], [size, _FLOOR, size]]},
             *({"block": "stone", "fill": [[x, feet, z], [x, feet + 1, z]]} for x, z in pillars),
         ],
-        "agents": {
-            f"agent{number}": {"position": [2 * number - 15.5, feet, number * 5 % 7 - 3.5]}
-            for number in range(agents)
-        },
+        "agents": {f"agent{number}": {"position": _start(number)} for number in range(agents)},
     }
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "hall.yaml"

@@ -11,7 +11,12 @@ from typing import Any, Self
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.values import AgentState, Box, Items, Position
 from beliefnest.worlds.minecraft.channel import Channel
-from beliefnest.worlds.minecraft.node_messages import agents_changes, blocks_changes, pose_message
+from beliefnest.worlds.minecraft.node_messages import (
+    agents_changes,
+    blocks_changes,
+    pose_message,
+    runs_of,
+)
 
 __all__ = ["Exhibit", "Plot", "Shown", "display_names", "origin_of"]
 
@@ -43,7 +48,7 @@ class Shown:
     def whole(self) -> dict[str, Any]:
         """Return the whole content as a message."""
         return {
-            "blocks": self.blocks.astype("<i4").tobytes(),
+            "blocks": runs_of(self.blocks),
             "containers": _rows(self.containers.items()),
             "signs": [[*place, text] for place, text in sorted(self.signs.items())],
             "agents": {name: pose_message(agent) for name, agent in self.agents.items()},

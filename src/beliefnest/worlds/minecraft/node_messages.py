@@ -31,6 +31,7 @@ __all__ = [
     "percepts_message",
     "pose_message",
     "results_of",
+    "runs_of",
     "signs_message",
     "snapshot_message",
     "snapshot_of",
@@ -92,12 +93,10 @@ def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
         BodyError: The message is malformed.
     """
     got = _converted(message, _Snapshot)
-    if len(got.blocks) != 4 * box.shape[0] * box.shape[1] * box.shape[2]:
-        raise BodyError(f"Node sent {len(got.blocks)} bytes of blocks for a box of {box.shape}")
     return Snapshot(
         got.tick,
         box,
-        np.frombuffer(got.blocks, dtype="<i4").reshape(box.shape).astype(np.int32),
+        _blocks_of(got.blocks, box),
         {(x, y, z): items for x, y, z, items in sorted(got.containers, key=lambda c: c[:3])},
         dict(sorted(got.agents.items())),
         dict(sorted(got.items.items())),
@@ -111,13 +110,40 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
     return {
         "tick": snapshot.tick,
         "box": [snapshot.box.low, snapshot.box.high],
-        "blocks": snapshot.blocks.astype("<i4").tobytes(),
+        "blocks": runs_of(snapshot.blocks),
         "containers": contents_message(snapshot.containers),
         "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
         "items": items_message(snapshot.items),
         "internal_state": snapshot.internal_state,
         **signs_message(snapshot.signs),
     }
+
+
+def runs_of(blocks: BlockGrid) -> bytes:
+    """Return blocks as a message: rows (state, number of consecutive blocks with it) of int32.
+
+    A large box that is mostly air, unknown or flat ground makes a short message.
+    """
+    flat = blocks.reshape(-1)
+    ends = np.append(np.flatnonzero(flat[1:] != flat[:-1]), flat.size - 1)
+    counts = np.diff(ends, prepend=-1)
+    return np.stack([flat[ends], counts], axis=1).astype("<i4").tobytes()
+
+
+def _blocks_of(runs: bytes, box: Box) -> BlockGrid:
+    """Return the blocks of a box from a message as `runs_of` makes it.
+
+    Raises:
+        BodyError: The runs have not as many blocks as the box.
+    """
+    size = box.shape[0] * box.shape[1] * box.shape[2]
+    rows = np.frombuffer(runs, dtype="<i4", count=len(runs) // 8 * 2).reshape(-1, 2)
+    states, counts = rows.astype(np.int32).T
+    if len(runs) % 8 or (counts < 1).any() or counts.sum(dtype=np.int64) != size:
+        raise BodyError(
+            f"Node sent runs of {counts.sum(dtype=np.int64)} blocks for a box of {size}"
+        )
+    return np.repeat(states, counts).reshape(box.shape)
 
 
 def signs_message(signs: Mapping[Position, str]) -> dict[str, Any]:
@@ -148,7 +174,7 @@ def agent_message(agent: AgentState) -> dict[str, Any]:
 def percepts_message(sensed: Sensed) -> dict[str, Any]:
     """Return PERCEPTS of an agent whose program begins: everything that it knows."""
     return {
-        "states": sensed.blocks.astype("<i4").tobytes(),
+        "states": runs_of(sensed.blocks),
         "agents": {name: pose_message(agent) for name, agent in sensed.agents.items()},
         "items": items_message(sensed.items),
         **signs_message(sensed.signs),

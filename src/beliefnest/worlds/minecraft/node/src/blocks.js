@@ -51,6 +51,10 @@ function rememberIn (Chunk, make) {
       if (this.hasEntities) block.entity = this.getBlockEntity(place)
       return block
     },
+    /** Return the state of all blocks in the section at a height; null if they differ. @returns {number | null} */
+    onlyState (y) {
+      return this.sections[(y - this.minY) >> 4].data.value ?? null
+    },
     // Do not change a block that was returned earlier: it shows what its caller saw then.
     setBlockStateId (place, stateId) {
       const layer = this.remembered?.[place.y - this.minY]

@@ -4,6 +4,7 @@
  * from the same snapshot. No channel is connected.
  */
 const { Vec3 } = require('vec3')
+const { runsOf } = require('./regions/box')
 const { PROTOCOL, RequestHandler } = require('./requestHandler')
 const { realNow } = require('./time/install')
 const versions = require('./versions')
@@ -62,7 +63,7 @@ function hall () {
   const agents = {
     [AGENT]: { position: [0.5, FLOOR + 1, 0.5], yaw: 0, pitch: 0, on_ground: true, equipment: {}, inventory: {}, health: 20, food: 20 }
   }
-  return { box: BOX, tick: 0, blocks: Buffer.from(blocks.buffer), containers: [], agents, items: {} }
+  return { box: BOX, tick: 0, blocks: runsOf(blocks), containers: [], agents, items: {} }
 }
 
 module.exports = { measureContainment }

@@ -11,7 +11,7 @@ const { scopeOf } = require('./scope')
 const { BadRequest } = require('./channel/errors')
 const versions = require('./versions')
 
-const PROTOCOL = 3
+const PROTOCOL = 4
 
 class RequestHandler {
   /**

@@ -3,6 +3,7 @@
 const { spawn } = require('node:child_process')
 const path = require('node:path')
 const { Channel } = require('../src/channel/channel')
+const { Box, runsOf, statesOf } = require('../src/regions/box')
 
 const MAIN = path.join(__dirname, '..', 'src', 'main.js')
 
@@ -38,7 +39,7 @@ class Node {
   }
 
   hello (seed = 0) {
-    return this.request('hello', { protocol: 3, seed, minecraft: '1.20.4' })
+    return this.request('hello', { protocol: 4, seed, minecraft: '1.20.4' })
   }
 
   /** End the process as the end of Python would. */
@@ -52,7 +53,7 @@ class Node {
 const STONE = 1
 const BOX = [[-11, -52, -11], [11, -49, 11]]
 
-/** Return the states of a stone floor and the blocks in `extra` above it, as [x, y, z, state]. @returns {Buffer} */
+/** Return the runs of a stone floor and the blocks in `extra` above it, as [x, y, z, state]. @returns {Uint8Array} */
 function floor (extra = [], box = BOX) {
   const shape = [0, 1, 2].map(axis => box[1][axis] - box[0][axis] + 1)
   const states = new Int32Array(shape[0] * shape[1] * shape[2])
@@ -63,7 +64,12 @@ function floor (extra = [], box = BOX) {
     for (let z = box[0][2]; z <= box[1][2]; z++) set(x, box[0][1], z, STONE)
   }
   for (const [x, y, z, state] of extra) set(x, y, z, state)
-  return Buffer.from(states.buffer)
+  return runsOf(states)
+}
+
+/** Return the block states of a snapshot of a box. @returns {Int32Array} */
+function statesIn (snapshot, box = BOX) {
+  return statesOf(snapshot.blocks, new Box(...box))
 }
 
 function agent (position, more = {}) {
@@ -83,4 +89,4 @@ function region (name, more = {}) {
   }
 }
 
-module.exports = { agent, BOX, floor, MAIN, Node, region, STONE, THREE }
+module.exports = { agent, BOX, floor, MAIN, Node, region, statesIn, STONE, THREE }

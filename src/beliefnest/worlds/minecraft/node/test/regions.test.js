@@ -1,10 +1,12 @@
 'use strict'
 const assert = require('node:assert/strict')
 const { after, before, describe, it } = require('node:test')
-const { agent, BOX, floor, Node, region } = require('./harness')
+const { Box, runsOf, statesOf } = require('../src/regions/box')
+const { agent, BOX, floor, Node, region, statesIn, STONE } = require('./harness')
 
 const AIR = 0
 const GLASS = 519
+const CHEST = 2955
 const WALK = "await bot.pathfinder.goto(new goals.GoalNear(5, -51, 5, 1))"
 
 describe('regions', () => {
@@ -23,9 +25,23 @@ describe('regions', () => {
     const snapshot = await node.request('create_region', region('exact', { agents }))
     assert.deepEqual(snapshot.agents.sally, agents.sally)
     assert.deepEqual(snapshot.agents.anne, { ...agents.anne, inventory: { dirt: 70, iron_chestplate: 1 } })
-    assert.deepEqual(Buffer.from(snapshot.blocks), floor())
+    assert.deepEqual(statesIn(snapshot), statesIn({ blocks: floor() }))
     await node.request('step', { region: 'exact', ticks: 40 })
     assert.deepEqual(node.frames, [], 'agents who stand still make no frames')
+  })
+
+  it('have the blocks that were asked for in every section, and containers where they stand', async () => {
+    const box = new Box([-20, -60, -5], [13, -30, 30])
+    const states = new Int32Array(box.size)
+    box.forEach((x, y, z, index) => {
+      if (y === -60) states[index] = STONE
+      else if (y < -30 && (x * 7 + y * 3 + z) % 11 === 0) states[index] = [STONE, GLASS, 79][(x + y + z) & 1]
+    })
+    const [chest, corner] = [[3, -40, 9], [13, -30, 30]]
+    for (const place of [chest, corner]) states[box.index(...place)] = CHEST
+    const made = await node.request('create_region', region('sections', { box: [box.low, box.high], blocks: runsOf(states), agents: {} }))
+    assert.deepEqual(statesOf(made.blocks, box), states)
+    assert.deepEqual(made.containers, [[...chest, {}], [...corner, {}]])
   })
 
   it('stream a frame of every tick in which something changed', async () => {
@@ -95,13 +111,13 @@ describe('regions', () => {
     assert.equal(made.tick, 77)
     assert.deepEqual(Object.keys(made.agents).sort(), ['observer', 'sally', 'zoe'])
     assert.deepEqual(made.agents.sally, agent([4.5, -51, 4.5], { yaw: 1, inventory: { dirt: 3 } }))
-    assert.deepEqual(Buffer.from(made.blocks), floor([[0, -51, 0, GLASS]]))
+    assert.deepEqual(statesIn(made), statesIn({ blocks: floor([[0, -51, 0, GLASS]]) }))
     await node.request('step', { region: 'changed', ticks: 10 })
     assert.deepEqual(node.frames, [])
     const again = await node.request('apply', {
       region: 'changed', tick: 87, blocks: [[0, -51, 0, AIR]], containers: [], items: {}, agents: {}
     })
-    assert.deepEqual(Buffer.from(again.blocks), floor())
+    assert.deepEqual(statesIn(again), statesIn({ blocks: floor() }))
   })
 
   it('report changed blocks', async () => {
@@ -126,7 +142,7 @@ describe('regions', () => {
 
   it('refuse what cannot be', async () => {
     const wrong = more => node.request('create_region', region('wrong', more))
-    await assert.rejects(wrong({ blocks: floor().subarray(4) }), { kind: 'bad_request', message: /"blocks" must have/ })
+    await assert.rejects(wrong({ blocks: floor().subarray(8) }), { kind: 'bad_request', message: /has 2116 blocks.* they have 2093$/ })
     await assert.rejects(wrong({ agents: { sally: agent([0.5, -51, 0.5], { inventory: { nothing_such: 1 } }) } }),
       { kind: 'bad_request', message: /nothing_such/ })
     const deep = [[0, -64, 0], [3, -60, 3]]

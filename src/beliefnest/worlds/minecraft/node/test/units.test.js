@@ -2,7 +2,7 @@
 const assert = require('node:assert/strict')
 const { describe, it } = require('node:test')
 const { Allotment } = require('../src/regions/allotment')
-const { Box } = require('../src/regions/box')
+const { Box, runsOf, statesOf } = require('../src/regions/box')
 const { angleStep, fromDegrees, samePose, toDegrees, wrap } = require('../src/server/angles')
 const { makeRegional, regionalState } = require('../src/server/regional')
 
@@ -24,6 +24,24 @@ describe('a box', () => {
     assert.ok(box.contains(1, 6, 4))
     assert.ok(!box.contains(2, 6, 4) && !box.contains(1, 7, 4) && !box.contains(1, 6, 5) && !box.contains(1, 4, 4))
     assert.deepEqual(box.grown().low, [-2, 4, 1])
+  })
+})
+
+describe('runs of blocks', () => {
+  const box = new Box([0, 0, 0], [0, 1, 3])
+
+  it('give back the states that they were made of', () => {
+    for (const states of [[0, 0, 0, 0, 0, 0, 0, 0], [1, 1, 0, 2, 2, 2, -1, -1], [1, 2, 3, 4, 5, 6, 7, 8]]) {
+      assert.deepEqual(statesOf(runsOf(Int32Array.from(states)), box), Int32Array.from(states))
+    }
+    assert.deepEqual([...new Int32Array(runsOf(Int32Array.from([5, 5, 5, 0, 0, 0, 0, 9])).buffer)], [5, 3, 0, 4, 9, 1])
+  })
+
+  it('are refused if they have not as many blocks as the box', () => {
+    const bytes = (...rows) => new Uint8Array(Int32Array.from(rows).buffer)
+    for (const wrong of [bytes(), bytes(1, 7), bytes(1, 9), bytes(1, 8, 0), bytes(1, 8, 2, -1, 3, 1)]) {
+      assert.throws(() => statesOf(wrong, box), /has 8 blocks/)
+    }
   })
 })
 

@@ -2,6 +2,9 @@
 /** Box of blocks: two inclusive corners, dense arrays with x slowest and z fastest. */
 const { BadRequest } = require('../channel/errors')
 
+// A run of blocks is a state and a count.
+const ROW_BYTES = 2 * Int32Array.BYTES_PER_ELEMENT
+
 class Box {
   /**
    * @param {[number, number, number]} low
@@ -40,17 +43,35 @@ class Box {
 }
 
 /**
- * Return block states from bytes of the channel.
- * @param {Uint8Array} bytes block states of a box as the channel sends them
+ * Return block states from the runs of the channel: rows (state, number of consecutive blocks) of int32.
+ * @param {Uint8Array} bytes runs of a box
  * @returns {Int32Array} states in the box's array order
- * @throws {BadRequest} if their number is not that of the box's blocks
+ * @throws {BadRequest} if they have not as many blocks as the box
  */
 function statesOf (bytes, box) {
-  const needed = box.size * Int32Array.BYTES_PER_ELEMENT
-  if (bytes.byteLength !== needed) {
-    throw new BadRequest(`the box has ${box.size} blocks, so "blocks" must have ${needed} bytes; it has ${bytes.byteLength}`)
+  const runs = new Int32Array(new Uint8Array(bytes).buffer, 0, Math.floor(bytes.byteLength / ROW_BYTES) * 2)
+  const states = new Int32Array(box.size)
+  let filled = 0
+  for (let row = 0; row < runs.length; row += 2) {
+    const end = filled + Math.max(runs[row + 1], 0)
+    if (runs[row] !== 0) states.fill(runs[row], filled, end)
+    filled = end
   }
-  return new Int32Array(new Uint8Array(bytes).buffer)
+  if (filled !== box.size || bytes.byteLength % ROW_BYTES !== 0) {
+    throw new BadRequest(`the box has ${box.size} blocks, so the runs of its blocks must have as many; they have ${filled}`)
+  }
+  return states
 }
 
-module.exports = { Box, statesOf }
+/** Return the runs of block states, as the channel sends them. @returns {Uint8Array} */
+function runsOf (states) {
+  const runs = []
+  for (let first = 0, index = 1; index <= states.length; index++) {
+    if (index < states.length && states[index] === states[first]) continue
+    runs.push(states[first], index - first)
+    first = index
+  }
+  return new Uint8Array(Int32Array.from(runs).buffer)
+}
+
+module.exports = { Box, runsOf, statesOf }

@@ -3,7 +3,7 @@
 const { decode, encode } = require('@msgpack/msgpack')
 const { Allotment } = require('./allotment')
 const { Bodies } = require('./bodies')
-const { Box, statesOf } = require('./box')
+const { Box, runsOf, statesOf } = require('./box')
 const { buildColumns, dropColumns, readStates } = require('./columns')
 const { applyBlocks, applyContainers, applyItems, applySigns } = require('./changes')
 const { agentStates, containerStates, factsOf, itemStates, settleItems, signStates } = require('./facts')
@@ -173,10 +173,9 @@ class Regions {
   /** Return the SNAPSHOT of a region. @returns {Promise<object>} */
   async snapshot (region) {
     return this.inside(region, () => {
-      const states = readStates(this.serv, region)
       return {
         tick: region.tick,
-        blocks: new Uint8Array(states.buffer, states.byteOffset, states.byteLength),
+        blocks: runsOf(readStates(this.serv, region)),
         containers: containerStates(this.serv, region),
         signs: signStates(this.serv, region),
         agents: agentStates(this.serv, region),

@@ -1,6 +1,6 @@
 'use strict'
 /** Capture of a place on a remote server: reads it and changes nothing. */
-const { Box } = require('../regions/box')
+const { Box, runsOf } = require('../regions/box')
 const { rounded, sorted } = require('../regions/facts')
 const { fromDegrees, wrap } = require('../server/angles')
 const { byPlace, listOf, vecOf } = require('../server/plugins/lib/positions')
@@ -49,7 +49,7 @@ async function look (setup, commands) {
   const found = await contents(setup, present)
   await setup.goAbove()
   return {
-    tick: 0, blocks: new Uint8Array(present.buffer), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region)
+    tick: 0, blocks: runsOf(present), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region)
   }
 }
 

@@ -6,7 +6,7 @@
 const { setTimeout: sleep } = require('node:timers/promises')
 const { BadRequest } = require('../channel/errors')
 const { waitFor } = require('../bots/ticking')
-const { Box, statesOf } = require('../regions/box')
+const { Box, runsOf, statesOf } = require('../regions/box')
 const { Recorder } = require('../regions/recorder')
 const { vecOf } = require('../server/plugins/lib/positions')
 const { Agents } = require('./agents')
@@ -318,7 +318,7 @@ class RemoteRegions {
   snapshot ({ tick }) {
     const { scene, agents } = this.open
     return {
-      tick, blocks: new Uint8Array(scene.blocks.slice().buffer), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), internal_state: NOTHING, signs: scene.signStates()
+      tick, blocks: runsOf(scene.blocks), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), internal_state: NOTHING, signs: scene.signStates()
     }
   }
 

@@ -61,7 +61,8 @@ function materials (worth, snapshot, describe) {
   Object.values(snapshot.agents).forEach(({ inventory }) => addAll(inventory))
   Object.values(snapshot.items).forEach(({ name, count }) => add(name, count))
   const counts = new Map()
-  new Int32Array(snapshot.blocks.slice().buffer).forEach(state => counts.set(state, (counts.get(state) ?? 0) + 1))
+  const runs = new Int32Array(snapshot.blocks.slice().buffer)
+  for (let row = 0; row < runs.length; row += 2) counts.set(runs[row], (counts.get(runs[row]) ?? 0) + runs[row + 1])
   for (const [state, count] of counts) {
     const { name } = describe(state)
     if (name !== 'air') add(name, HALVES.test(name) ? count / 2 : count)

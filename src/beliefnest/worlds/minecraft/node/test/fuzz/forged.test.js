@@ -15,7 +15,7 @@ const { before, describe, test } = require('node:test')
 const assert = require('node:assert/strict')
 const { RequestHandler } = require('../../src/requestHandler')
 const { kinds } = require('../../src/sandbox/policy/kinds')
-const { agent, BOX, floor } = require('../harness')
+const { agent, BOX, floor, statesIn } = require('../harness')
 const { generator } = require('./generate')
 
 const FLOOR = BOX[0][1] + 1
@@ -83,7 +83,7 @@ describe('forged at random', () => {
 
   before(async () => {
     handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
-    await perform({ op: 'hello', protocol: 3, seed: 0, minecraft: '1.20.4' })
+    await perform({ op: 'hello', protocol: 4, seed: 0, minecraft: '1.20.4' })
   })
 
   const perform = request => handler.perform(request)
@@ -156,7 +156,7 @@ describe('forged at random', () => {
     const contents = ({ containers }) => containers.find(([x, y, z]) => [x, y, z].join() === HIDDEN.join())
     assert.deepEqual(contents(last), contents(first))
     const shape = [0, 1, 2].map(axis => BOX[1][axis] - BOX[0][axis] + 1)
-    const at = ({ blocks }, [i, j, k]) => new Int32Array(blocks.slice().buffer)[(i * shape[1] + j) * shape[2] + k]
+    const at = (snapshot, [i, j, k]) => statesIn(snapshot)[(i * shape[1] + j) * shape[2] + k]
     for (const place of [HIDDEN, ...CELL]) {
       const index = place.map((value, axis) => value - BOX[0][axis])
       assert.equal(at(last, index), at(first, index), `(${place}) changed`)
@@ -166,7 +166,7 @@ describe('forged at random', () => {
   /** Set a region that ran on to the state of a snapshot. */
   async function returnTo (region, past) {
     const now = await snapshot(region)
-    const [before, after] = [now, past].map(({ blocks }) => new Int32Array(blocks.slice().buffer))
+    const [before, after] = [now, past].map(snapshot => statesIn(snapshot))
     const shape = [0, 1, 2].map(axis => BOX[1][axis] - BOX[0][axis] + 1)
     const blocks = []
     after.forEach((state, index) => {

@@ -14,7 +14,7 @@ require('../../src/prepare').prepare()
 const { before, describe, test } = require('node:test')
 const assert = require('node:assert/strict')
 const { RequestHandler } = require('../../src/requestHandler')
-const { agent, BOX, floor } = require('../harness')
+const { agent, BOX, floor, statesIn } = require('../harness')
 const { materials, mayBeMissing, unexplained, worthTable } = require('./balance')
 const { AGENTS, Writer, generator } = require('./generate')
 
@@ -40,7 +40,7 @@ const INVENTORIES = {
 }
 const START = { sally: [0.5, FLOOR, 0.5], anne: [-4.5, FLOOR, 0.5], bob: [4.5, FLOOR, -8.5] }
 
-const plain = ({ blocks, ...rest }) => JSON.parse(JSON.stringify({ ...rest, blocks: Array.from(blocks instanceof Uint8Array ? new Int32Array(blocks.slice().buffer) : blocks) }))
+const plain = ({ blocks, ...rest }) => JSON.parse(JSON.stringify({ ...rest, blocks: Array.from(blocks instanceof Uint8Array ? statesIn({ blocks }, BOXED) : blocks) }))
 
 describe('random programs', () => {
   const frames = []
@@ -51,7 +51,7 @@ describe('random programs', () => {
 
   before(async () => {
     handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
-    await perform({ op: 'hello', protocol: 3, seed: 0, minecraft: '1.20.4' })
+    await perform({ op: 'hello', protocol: 4, seed: 0, minecraft: '1.20.4' })
     serv = handler.regions.serv
     worth = worthTable(serv.registry)
     await create('bystanders', 'bystanders', { sally: START.sally })

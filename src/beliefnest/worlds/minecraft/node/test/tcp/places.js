@@ -6,7 +6,7 @@
 const { AsyncLocalStorage } = require('node:async_hooks')
 const { once } = require('node:events')
 const { Allotment } = require('../../src/regions/allotment')
-const { Box } = require('../../src/regions/box')
+const { Box, statesOf } = require('../../src/regions/box')
 const { applyContainers, applyItems } = require('../../src/regions/changes')
 const { buildColumns, dropColumns } = require('../../src/regions/columns')
 const { agentState, factsOf } = require('../../src/regions/facts')
@@ -58,7 +58,7 @@ class Places {
     for (const [agent, player] of Object.entries(players)) this.expected.set(player, { place, agent, state: agents[agent] })
     this.inside(place, () => {
       const states = blocks.map(([x, y, z, block, properties]) => [x, y, z, serv.blocks.state(block, properties)])
-      buildColumns(serv, region, new Int32Array(new Uint8Array(floor(states, corners)).buffer))
+      buildColumns(serv, region, statesOf(floor(states, corners), box))
       applyContainers(serv, region, containers)
       applyItems(serv, region, {})
     })

@@ -30,6 +30,11 @@ class ContainerStore {
     this.kinds.set(name, { name, size, arrange })
   }
 
+  /** Return true if a block state is a container. */
+  holds (stateId) {
+    return this.kinds.has(this.serv.blocks.describe(stateId).name)
+  }
+
   kindAt (position) {
     return this.kinds.get(this.serv.blocks.at(position).name)
   }
