@@ -38,7 +38,7 @@ def still(nest, path, tick=None):
 
 def test_a_still_names_things_and_tells_neither_ticks_nor_positions_nor_what_is_false(nest):
     for path in ("/", "/ann", "/bob/ann"):
-        drawing = still(nest, path)
+        drawing = still(nest, path, 1)
         told = " ".join(texts(drawing))
         assert {"Ann", "Bob"} <= set(re.findall(r"\w+", told))
         assert "red box" in told
@@ -46,13 +46,21 @@ def test_a_still_names_things_and_tells_neither_ticks_nor_positions_nor_what_is_
         assert faults(drawing) == []
 
 
-def test_a_still_shows_the_belief_alone(nest):
-    (mind, real) = (" ".join(texts(still(nest, p))) for p in ("/ann", "/"))
-    assert "red box: apple" in mind
-    assert "red box: empty" in real
-    assert "seen there before, not in sight now" in mind
-    # In reality everything is known, so that the legend has nothing to explain.
-    assert "not known" not in real
+def test_a_still_of_a_mind_shows_what_it_perceives_and_not_what_it_remembers(nest):
+    told = {
+        (path, tick): texts(still(nest, path, tick))
+        for path in ("/", "/ann")
+        for tick in range(nest.tick + 1)
+    }
+    assert "red box: apple" in told["/ann", 1]
+    assert "Bob" in told["/ann", 1]
+    assert nest["/ann"].state.containers[CHEST].items == {"apple": 1}
+    assert not any("apple" in text or text == "Bob" for text in told["/ann", 3])
+    assert "Ann" in told["/ann", 3]
+    assert "closed, or out of sight" in told["/ann", 3]
+    # A narrator perceives everything, so that the legend has nothing to explain.
+    assert {"red box: empty", "Ann", "Bob"} <= set(told["/", 3])
+    assert "closed, or out of sight" not in told["/", 3]
 
 
 def test_stills_of_a_course_differ(nest):

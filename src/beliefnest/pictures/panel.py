@@ -1,7 +1,7 @@
 """Panel of a figure: title, plan, and in the margin everything that the plan cannot show."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from beliefnest.pictures import icons
 from beliefnest.pictures.lettering import ASCENT, text_width, wrap
@@ -88,12 +88,24 @@ def draw_body(
     width: float,
     size: float,
     trails: Mapping[str, tuple[XY, ...]] | None = None,
+    listed: Sequence[Store] | None = None,
 ) -> Block:
-    """Draw the panel of a scene without its title; arguments as of `draw_panel`."""
+    """Draw the panel of a scene without its title.
+
+    Args:
+        scene: The scene.
+        looks: Looks of all agents.
+        at: Upper left corner, in points.
+        width: Width in points.
+        size: Size of texts in points.
+        trails: Ways that agents have gone.
+        listed: Containers to list below the plan; None: all.
+    """
     left, top = at
     plan = draw_plan(scene, looks, (left, top), width, size, trails)
     block = Block(list(plan.marks), plan.bottom + size * 0.7, set(plan.kinds))
-    _margin(block, scene, looks, left, width, size)
+    below = scene if listed is None else replace(scene, stores=tuple(listed))
+    _margin(block, below, looks, left, width, size)
     if plan.unnamed:
         paragraph(block, f"too close for a name: {', '.join(plan.unnamed)}", left, width, size)
     return block

@@ -137,6 +137,11 @@ class Store:
     teller: str = ""
 
     @property
+    def unknown(self) -> bool:
+        """Return True if nothing is known about the contents."""
+        return not self.items and not self.complete
+
+    @property
     def words(self) -> str:
         """Return the known contents in words."""
         return contents_words(self.items, complete=self.complete, ones=False)

@@ -284,6 +284,8 @@ class _Teller:
             return
         for each in sights:
             seen = self._seen(each.agents, each.places)
+            if not seen:
+                continue
             yield _sentence(f"At first {self._object(each.viewer)} could see {listed(seen)}")
 
     def _changes(self, sights: Sequence[Sight]) -> Iterator[str]:

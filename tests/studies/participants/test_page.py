@@ -51,16 +51,23 @@ def test_the_film_shows_what_the_asked_mind_perceived(written):
     assert any("Anne opened the chest" in each for each in captions[None])
     assert not any("Anne opened" in each for each in captions["Sally"])
     assert captions["Sally"][0].startswith("At first you could see Anne")
-    # The last picture of the narrator has the item in the chest, that of Sally in the left box.
-    last = {owner: _last(views[owner]["film"]) for owner in views}
-    assert "chest: " in last[None]
-    assert "left box: empty" in last[None]
-    assert "chest: nothing known" in last["Sally"]
-    assert "left box: empty" not in last["Sally"]
-
-
-def _last(film):
-    return film["pictures"][film["frames"][-1][0]]
+    item = "diamond" if "diamond" in captions[None][0] else "apple"
+    last = views[None]["film"]["pictures"][views[None]["film"]["frames"][-1][0]]
+    assert f"chest: {item}" in last
+    assert "left box: empty" in last
+    # Sally sees the item when she puts it in. What she remembers is no part of the film.
+    film = views["Sally"]["film"]
+    shows = {
+        caption: f"left box: {item}" in film["pictures"][picture]
+        for picture, _, caption in reversed(film["frames"])
+    }
+    assert [words for words, shown in shows.items() if shown] == [
+        words for words in captions["Sally"] if words.startswith("You put")
+    ][:1]
+    last = film["pictures"][film["frames"][-1][0]]
+    assert ">Sally<" in last
+    assert ">Anne<" not in last
+    assert not any(f"chest: {item}" in picture for picture in film["pictures"])
 
 
 def test_pictures_have_one_size_and_neither_paths_nor_ticks_nor_positions(written):
