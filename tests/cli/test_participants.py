@@ -65,5 +65,7 @@ def test_errors_say_what_to_do(tmp_path, capsys):
     assert f"{none} cannot be read" in capsys.readouterr().err
     assert run(study, "--read", none, "-o", tmp_path / "out", "--post", "https://x.org") == 2
     assert "--post belongs to writing a page" in capsys.readouterr().err
+    assert run(study, "-o", tmp_path / "page", "--pseudonyms") == 2
+    assert "--pseudonyms belongs to reading answers" in capsys.readouterr().err
     assert run(study) == 2
     assert "--out" in capsys.readouterr().err

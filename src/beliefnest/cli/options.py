@@ -332,6 +332,9 @@ class ParticipantsOptions:
     instructions: Annotated[
         Path | None, typer.Option(help="Text file with instructions or consent for people.")
     ] = None
+    ending: Annotated[
+        Path | None, typer.Option(help="Text file for the end of a session, such as a code.")
+    ] = None
     title: Annotated[str, typer.Option(help="Title of the browser's tab.")] = "Study"
     post: Annotated[
         str | None,
@@ -345,6 +348,9 @@ class ParticipantsOptions:
         ),
     ] = None
     name: Annotated[str, typer.Option(help="Name of the people in the column model.")] = "people"
+    pseudonyms: Annotated[
+        bool, typer.Option("--pseudonyms", help="With --read: p1, p2 ... in place of ids.")
+    ] = False
     json: Json = False
 
 

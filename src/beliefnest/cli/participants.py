@@ -14,7 +14,7 @@ from beliefnest.world.words import counted, listed
 
 __all__ = ["run_participants"]
 
-_OF_PAGE = ("instructions", "post")
+_OF_PAGE = ("instructions", "ending", "post")
 
 
 def run_participants(options: ParticipantsOptions) -> None:
@@ -23,10 +23,9 @@ def run_participants(options: ParticipantsOptions) -> None:
     Raises:
         BeliefNestError: The study or a file is wrong, or a script failed.
     """
-    if options.read:
-        told, lines = _read(options)
-    else:
-        told, lines = _written(options)
+    if options.pseudonyms and not options.read:
+        raise InputError("--pseudonyms belongs to reading answers; give their files with --read")
+    told, lines = _read(options) if options.read else _written(options)
     if options.json:
         sys.stdout.write(json.dumps(told, indent=2) + "\n")
     else:
@@ -39,6 +38,7 @@ def _written(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
             options.out,
             options.show,
             instructions=options.instructions,
+            ending=options.ending,
             title=options.title,
             post=options.post,
             on_item=on_progress,
@@ -63,7 +63,11 @@ def _read(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
             raise InputError(f"--{name} belongs to writing a page; leave it out with --read")
     with progress_on(options.study.stem) as on_progress:
         result, notes = Study.load(options.study).read_participants(
-            options.out, options.read or (), options.name, on_item=on_progress
+            options.out,
+            options.read or (),
+            options.name,
+            pseudonyms=options.pseudonyms,
+            on_item=on_progress,
         )
         on_progress("writing tables", 1, 1)
         write_files(result, result.groups)

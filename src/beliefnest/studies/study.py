@@ -257,6 +257,7 @@ class Study:
         show: Shown = "both",
         *,
         instructions: str | Path | None = None,
+        ending: str | Path | None = None,
         title: str = "Study",
         post: str | None = None,
         on_item: OnItem | None = None,
@@ -270,6 +271,7 @@ class Study:
             folder: Folder to write.
             show: `film`, `story` or `both`.
             instructions: Text file with instructions; None: the default ones.
+            ending: Text file for the end of the session, such as a code; None: no text.
             title: Title of the browser's tab.
             post: Address to which the page sends the answers as JSON; None: participants save them.
             on_item: Function that receives the progress.
@@ -287,6 +289,7 @@ class Study:
             Path(folder),
             show,
             None if instructions is None else Path(instructions),
+            None if ending is None else Path(ending),
             title,
             post,
             on_item or _say_nothing_of_items,
@@ -298,6 +301,7 @@ class Study:
         files: Sequence[str | Path],
         name: str = "people",
         *,
+        pseudonyms: bool = False,
         on_item: OnItem | None = None,
     ) -> tuple[StudyResult, tuple[str, ...]]:
         """Read answers of participants into the study's folder, as rows beside those of models.
@@ -309,6 +313,8 @@ class Study:
             folder: Folder of the study; made if it does not exist.
             files: Files of answers, or folders of such files.
             name: Name of the people in the column `model`.
+            pseudonyms: Replace ids of participants by `p1`, `p2` and so on, in the order in which
+                their sessions began.
             on_item: Function that receives the progress.
 
         Returns:
@@ -331,6 +337,7 @@ class Study:
             [Path(each) for each in files],
             name,
             on_item or _say_nothing_of_items,
+            pseudonyms=pseudonyms,
         )
         place = StudyFolder.open(folder)
         place.check_subjects(self._plan_json(self.plan()))

@@ -127,6 +127,28 @@ def test_reading_again_replaces_people_of_that_name_only(study, answers, tmp_pat
         study.read_participants(out, [answers], "offline")
 
 
+def test_pseudonyms_replace_ids_in_all_files(page, study, tmp_path):
+    content = content_of(page / "page")
+    for number, name in ((2, "secret-b"), (1, "secret-a")):
+        in_json(tmp_path / f"{number}.json", answers_of(content, name, number))
+    files = [tmp_path / "2.json", tmp_path / "1.json"]
+    result, _ = study.read_participants(tmp_path / "out", files, pseudonyms=True)
+    result.write_page(tmp_path / "out" / "page.html")
+    lists = {(row["participant"], row["list"]) for row in result.rows}
+    assert lists == {("p1", 1), ("p2", 2)}
+    for file in result.folder.path.rglob("*.*"):
+        assert b"secret" not in file.read_bytes()
+
+
+def test_a_parameter_cannot_be_called_participant(page, tmp_path):
+    text = TRANSFER.replace("  item: {", "  participant: {default: 1, values: [1, 2]}\n  item: {")
+    varied = STUDY.replace("variations: {", "variations: {participant: [1, 2], ")
+    study = bn.Study.load(transfer_in(tmp_path, varied, text))
+    file = in_json(tmp_path / "a.json", answers_of(content_of(page / "page"), "anna", 1))
+    with pytest.raises(bn.InputError, match="'participant' has the name of the column"):
+        study.read_participants(tmp_path / "out", [file])
+
+
 def test_positions_of_options_are_those_that_people_saw(study, answers, tmp_path):
     result, _ = study.read_participants(tmp_path / "out", [answers])
     counted = {each["right_at"]: each for each in result.counted_positions(["model"])}

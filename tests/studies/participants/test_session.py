@@ -31,8 +31,12 @@ def page(tmp_path_factory):
     folder = tmp_path_factory.mktemp("page")
     (folder / "consent.md").write_text(CONSENT, encoding="utf-8")
     study = bn.Study.load(transfer_in(folder, scenario=MARKED))
+    (folder / "end.md").write_text("The code is <b>C4</b>.", encoding="utf-8")
     study.participants(
-        folder / "page", instructions=folder / "consent.md", title="A <title> of ours"
+        folder / "page",
+        instructions=folder / "consent.md",
+        ending=folder / "end.md",
+        title="A <title> of ours",
     )
     return folder
 
@@ -93,6 +97,7 @@ def test_a_session_from_the_disk_gives_rows_of_the_study(browser, page, download
     assert len(set(questions)) == 5  # "Who is there?" is asked about both items
     browser.until_script("return document.getElementById('page').dataset.ended")
     assert browser.script("return document.querySelector('progress').value") == 6
+    assert "The code is <b>C4</b>." in browser.one(".bn-screen").text
     for button in browser.driver.find_elements("css selector", ".bn-controls .bn-button"):
         button.click()
     names = [downloads / f"answers-ann_1.{ending}" for ending in ("csv", "json")]

@@ -4,7 +4,7 @@ import csv
 import io
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular_text
 
-__all__ = ["Answer", "answer_files", "read_answers"]
+__all__ = ["Answer", "answer_files", "read_answers", "with_pseudonyms"]
 
 _TRIAL = "beliefnest-question"
 """Value of `trial_type` of our trials, which jsPsych writes as well."""
@@ -90,6 +90,24 @@ def read_answers(file: Path) -> list[Answer]:
     if not found:
         raise InputError(f"{file} has no answers: no row has the trial_type {_TRIAL!r}")
     return found
+
+
+def with_pseudonyms(answers: Sequence[Answer]) -> list[Answer]:
+    """Return answers with `p1`, `p2` and so on for ids, in the order in which sessions began."""
+    began: dict[str, str] = {}
+    for answer in answers:
+        first = began.setdefault(answer.participant, answer.started)
+        began[answer.participant] = min(first, answer.started)
+    ordered = sorted(began, key=lambda participant: (began[participant], participant))
+    names = {participant: f"p{number}" for number, participant in enumerate(ordered, 1)}
+    return [
+        replace(
+            answer,
+            participant=names[answer.participant],
+            plain={**answer.plain, "participant": names[answer.participant]},
+        )
+        for answer in answers
+    ]
 
 
 def _json_rows(file: Path, text: str) -> list[tuple[str, Mapping[str, Any]]]:

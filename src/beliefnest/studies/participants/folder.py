@@ -103,7 +103,11 @@ def check_folder(folder: Path) -> None:
 
 
 def page_files(
-    content: Mapping[str, Any], title: str, pages: Sequence[Any], post: str | None
+    content: Mapping[str, Any],
+    title: str,
+    pages: Sequence[Any],
+    ending: Sequence[Any],
+    post: str | None,
 ) -> dict[str, str]:
     """Return the files of the folder, by name.
 
@@ -111,10 +115,12 @@ def page_files(
         content: Result of `experiment`.
         title: Title of the browser's tab.
         pages: Pages of instructions.
+        ending: Blocks of text below the thanks at the end.
         post: Address to which `index.html` sends the answers; None: participants save them.
     """
     plain_title = on_one_line(title)
-    data = packed({**content, "title": plain_title, "pages": list(pages), "post": post})
+    texts = {"title": plain_title, "pages": list(pages), "ending": list(ending), "post": post}
+    data = packed({**content, **texts})
     plugin, session, style = (_web(name) for name in ("plugin.js", "session.js", "style.css"))
     program = inlined("\n".join([plugin, session, _web("runner.js")]))
     example = _web("example.js")

@@ -55,7 +55,7 @@ def read_instructions(file: Path) -> list[list[dict[str, Any]]]:
         raise InputError(f"{file} is not UTF-8; save it as UTF-8") from None
     pages = _pages(text)
     if not pages:
-        raise InputError(f"{file} has no text; write instructions, or leave --instructions out")
+        raise InputError(f"{file} has no text; write one, or leave the option out")
     return pages
 
 

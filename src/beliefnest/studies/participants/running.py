@@ -10,7 +10,12 @@ from beliefnest.errors import InputError
 from beliefnest.scenarios.document import Document
 from beliefnest.studies.cells import Cell
 from beliefnest.studies.design import Design
-from beliefnest.studies.participants.answers import Answer, answer_files, read_answers
+from beliefnest.studies.participants.answers import (
+    Answer,
+    answer_files,
+    read_answers,
+    with_pseudonyms,
+)
 from beliefnest.studies.participants.folder import (
     check_folder,
     check_post,
@@ -61,6 +66,7 @@ def make_page(
     folder: Path,
     shown: str,
     instructions: Path | None,
+    ending: Path | None,
     title: str,
     post: str | None,
     on_item: OnItem,
@@ -74,6 +80,7 @@ def make_page(
         folder: Folder to write.
         shown: `film`, `story` or `both`.
         instructions: File of instructions; None: the default ones.
+        ending: File of a text for the end; None: no text.
         title: Title of the browser's tab.
         post: Address to which answers are sent; None: participants save them.
         on_item: Function that receives the progress.
@@ -88,9 +95,10 @@ def make_page(
     if post is not None:
         check_post(post)
     pages = instruction_pages(shown) if instructions is None else read_instructions(instructions)
+    end = [] if ending is None else [each for page in read_instructions(ending) for each in page]
     items = items_of(cells, documents)
     content = experiment(shown_items(items, shown, on_item), shown, design.seed)
-    write_folder(folder, page_files(content, title, pages, post))
+    write_folder(folder, page_files(content, title, pages, end, post))
     return Page(
         folder=folder,
         items=len(items),
@@ -107,6 +115,8 @@ def join_answers(
     files: Sequence[Path],
     name: str,
     on_item: OnItem,
+    *,
+    pseudonyms: bool,
 ) -> Joined:
     """Read answers of participants and judge them as those of models.
 
@@ -117,6 +127,7 @@ def join_answers(
         files: Files of answers, or folders of such files.
         name: Name of the people in the column `model`.
         on_item: Function that receives the progress.
+        pseudonyms: Replace ids of participants by `p1`, `p2` and so on.
 
     Raises:
         BeliefNestError: A file does not fit the study, or a script failed.
@@ -125,6 +136,8 @@ def join_answers(
     check_name(name, design.models)
     items = items_of(cells, documents)
     answers = [each for file in answer_files(files) for each in read_answers(file)]
+    if pseudonyms:
+        answers = with_pseudonyms(answers)
     notes: list[str] = []
     sessions = counted_answers(answers, {item.name: item for item in items}, notes)
     answered = {cell for given in sessions.values() for cell in given}

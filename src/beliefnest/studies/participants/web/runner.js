@@ -104,7 +104,7 @@
     const name = `answers-${rows[0].participant.replace(/[^\w-]/g, '_')}`
     const csv = saving('Save answers (CSV)', `${name}.csv`, 'text/csv', csvOf(rows))
     const json = saving('Save answers (JSON)', `${name}.json`, 'application/json', JSON.stringify(rows, null, 1))
-    show(element('h1', {}, 'Thank you.'), told, element('div', { className: 'bn-controls' }, csv, json))
+    show(element('h1', {}, 'Thank you.'), ...study.ending.map(block), told, element('div', { className: 'bn-controls' }, csv, json))
     if (study.post) told.textContent = await sent(rows)
     root.dataset.ended = 'yes'
   }
