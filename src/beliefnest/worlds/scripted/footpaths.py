@@ -1,11 +1,11 @@
 """Paths on foot in the scripted world: from one free cell to the next, one step a tick."""
 
-import heapq
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -16,15 +16,17 @@ from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, feet_in
 
-__all__ = ["Goal", "Ground", "InReach", "Near", "find_way"]
+if TYPE_CHECKING:  # Compiled code takes its time to load.
+    from beliefnest.worlds.scripted.footpath_kernels import Aim, Cells
 
-_DEEPEST_DROP = 3
-_SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
-_CORNERS = ((1, 1), (-1, 1), (-1, -1), (1, -1))
+__all__ = ["Goal", "Ground", "InReach", "Near"]
+
 _MOST_CELLS = 100_000
 _MARGIN = 2
 _MOST_WAYS = 20_000
 """Largest number of paths that a ground caches."""
+_MOST_STEPS = 8
+"""Largest number of cells that one step leads to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +45,6 @@ class Near:
         """Return True if a cell meets the goal."""
         return math.dist(cell, self.block) <= self.within
 
-    def steps_left(self, cell: Position) -> float:
-        """Return a lower bound of the steps from a cell to the goal."""
-        return max(0.0, math.dist(cell, self.block) - self.within)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +75,6 @@ class InReach:
             return False
         return self.has_free_line is None or self.has_free_line(eye, self.block)
 
-    def steps_left(self, cell: Position) -> float:
-        """Return a lower bound of the steps from a cell to the goal."""
-        return max(0.0, math.dist(cell, self.block) - self.reach)
 
     def _is_within(self, cell: Position) -> bool:
         x, y, z = self.block
@@ -93,46 +89,54 @@ class Ground:
     """Cells in which agents can stand: two free cells above one another, with a solid one below.
 
     Unknown cells count as free to walk through and solid to stand on. Open doors and gates are
-    free, but can only be crossed straight.
+    free, but can only be crossed straight. `footpath_kernels` has the rules of steps.
 
     Args:
         registry: Shapes of blocks.
         box: The known part of space.
         blocks: Block state ids, -1 is unknown.
         opens: True if doors and gates that can be opened by hand count as open.
+
+    Attributes:
+        has_doorways: True if there is a door or gate that is open or counts as open.
     """
 
     def __init__(
         self, registry: Registry, box: Box, blocks: BlockGrid, *, opens: bool = False
     ) -> None:
         self._registry, self._box, self._blocks, self._opens = registry, box, blocks, opens
-        states, places = np.unique(blocks, return_inverse=True)
+        # Counting is faster than sorting, as `np.unique` does.
+        states = np.flatnonzero(np.bincount(blocks.ravel() + 1)) - 1
         doorways = [s for s in states.tolist() if s >= 0 and is_doorway(registry.name(s))]
         ways = {s: passage(registry, s) for s in doorways if self._is_way(s)}
+        self.has_doorways = bool(ways)
         self._has_shut_doors = any(
             moves_by_hand(registry.name(s)) for s in doorways if s not in ways
         )
-        free_states = [s < 0 or s in ways or not registry.boxes(s) for s in states.tolist()]
-        free = np.array(free_states, dtype=np.bool_)[places].reshape(blocks.shape)
-        doors = places_of(np.isin(blocks, list(ways)), box) if ways else ()
-        self._doorways = {place: ways[int(blocks[index])] for place, index in doors}
+        is_free = np.zeros(int(states[-1]) + 2, dtype=np.bool_)
+        is_free[states + 1] = [s < 0 or s in ways or not registry.boxes(s) for s in states.tolist()]
+        free = is_free[blocks + 1]
         # Add a margin, so that every neighbour of a cell has an index; above the box is air.
         passing, holding = _widened(free), _widened((blocks < 0) | ~free)
         passing[1:-1, _MARGIN + blocks.shape[1], 1:-1] = True
         standing = np.zeros_like(passing)
         standing[:, 1:-1] = holding[:, :-2] & passing[:, 1:-1] & passing[:, 2:]
-        self._passing, self._standing = passing.tobytes(), standing.tobytes()
+        self._passing, self._standing = passing, standing
+        self._stands = standing.tobytes()
+        self._count = int(np.count_nonzero(standing))
+        self._doors = places_of(np.isin(blocks, list(ways)), box) if ways else ()
+        self._directions = ways
         self._corner = (box.low[0] - 1, box.low[1] - _MARGIN, box.low[2] - 1)
         width, height, depth = passing.shape
         self._shape = (int(width), int(height), int(depth))
-        self._steps: dict[Position, tuple[Position, ...]] = {}
         self._ways: dict[tuple[Position, Goal], tuple[Position, ...] | None] = {}
-        self._areas: list[frozenset[Position]] = []
+        self._areas: list[npt.NDArray[np.uint8]] = []
         self._met: dict[tuple[int, Goal], bool] = {}
 
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
-        return self._at(self._standing, cell)
+        index = self._index(cell)
+        return index is not None and self._stands[index] != 0
 
     def may_hold(self, place: Position) -> bool:
         """Return True if a position has a container or is unknown."""
@@ -148,13 +152,14 @@ class Ground:
 
     def steps(self, cell: Position) -> tuple[Position, ...]:
         """Return the cells that one step leads to: sideways, up one block, or down up to three."""
-        found = self._steps.get(cell)
-        if found is None:
-            steps = self._steps_from(cell)
-            if self._doorways:
-                steps = (step for step in steps if self._is_straight(cell, step))
-            found = self._steps[cell] = tuple(steps)
-        return found
+        from beliefnest.worlds.scripted.footpath_kernels import write_steps
+
+        index = self._index(cell)
+        if index is None:
+            return ()
+        found = np.empty(_MOST_STEPS, dtype=np.int32)
+        count = write_steps(self._cells, index, found)
+        return tuple(self._cell(step) for step in found[:count].tolist())
 
     @cached_property
     def with_doors_opened(self) -> "Ground":
@@ -163,46 +168,37 @@ class Ground:
             return self
         return Ground(self._registry, self._box, self._blocks, opens=True)
 
-    @property
-    def has_doorways(self) -> bool:
-        """True if there is a door or gate that is open or counts as open."""
-        return bool(self._doorways)
-
-    def _is_way(self, state: int) -> bool:
-        """Return True if a door or gate can be crossed."""
-        by_hand = self._opens and moves_by_hand(self._registry.name(state))
-        return by_hand or is_open(self._registry, state) is True
-
-    def _is_straight(self, cell: Position, step: Position) -> bool:
-        """Return True if a step leads through no doorway, or straight through it."""
-        moved = (step[0] - cell[0], step[2] - cell[2])
-        for at in (cell, step):
-            along = self._doorways.get(at)
-            if along is not None and (abs(moved[0]), abs(moved[1])) != along:
-                return False
-        around = ((step[0], cell[1], cell[2]), (cell[0], cell[1], step[2]))
-        return 0 in moved or not any(at in self._doorways for at in around)
-
     def way(
         self, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
     ) -> tuple[Position, ...] | None:
-        """Return the path of `find_way`, cached if no cells are to be avoided."""
+        """Return the shortest path on foot; among several always the same one.
+
+        Paths are cached if no cells are to be avoided.
+
+        Args:
+            start: Cell in which the agent stands.
+            goal: Goal of the path.
+            avoiding: Cells that the path must not contain.
+
+        Returns:
+            The cells after `start`, in order; None if there is no path.
+        """
         # Do not cache by what an agent knows of free lines: it changes, and does not belong to the
         # ground.
         if avoiding or (isinstance(goal, InReach) and goal.has_free_line is not None):
-            return find_way(self, start, goal, avoiding)
+            return self._found_way(start, goal, avoiding)
         wanted = (start, goal)
         if wanted not in self._ways:
             if len(self._ways) >= _MOST_WAYS:
                 self._ways.clear()
-            known = any(start in area for area in self._areas)
-            if known and not self.may_lead(start, goal):
+            number = self._first_area(start)
+            if number is not None and not self.may_lead(start, goal):
                 self._ways[wanted] = None
             else:
-                self._ways[wanted] = found = find_way(self, start, goal)
-                if found is None and not known:
+                self._ways[wanted] = found = self._found_way(start, goal)
+                if found is None and number is None:
                     # Remember the area, so that the next search there need not explore all of it.
-                    self._areas.append(self._area(start))
+                    self._add_area(start)
         return self._ways[wanted]
 
     def may_lead(self, start: Position, goal: Goal) -> bool:
@@ -211,105 +207,117 @@ class Ground:
         An area is the set of all cells that can be reached from one cell. A path exists only if
         some cell in the area of `start` meets the goal.
         """
-        number = next((n for n, area in enumerate(self._areas) if start in area), None)
+        from beliefnest.worlds.scripted.footpath_kernels import holds_target
+
+        if self._index(start) is None:
+            return goal.is_met(start)
+        number = self._first_area(start)
         if number is None:
-            number = len(self._areas)
-            self._areas.append(self._area(start))
+            number = self._add_area(start)
         asked = (number, goal)
         if asked not in self._met:
-            self._met[asked] = any(goal.is_met(cell) for cell in self._areas[number])
+            self._met[asked] = holds_target(self._cells, self._aim(goal), self._areas[number])
         return self._met[asked]
 
-    def _area(self, start: Position) -> frozenset[Position]:
-        """Return all cells that can be reached from a cell, within the limit of searches."""
-        area, waiting = {start}, [start]
-        while waiting and len(area) < _MOST_CELLS:
-            for cell in self.steps(waiting.pop()):
-                if cell not in area:
-                    area.add(cell)
-                    waiting.append(cell)
-        return frozenset(area)
+    @cached_property
+    def _cells(self) -> "Cells":
+        from beliefnest.worlds.scripted.footpath_kernels import ALONG_X, ALONG_Z, Cells
 
-    def _steps_from(self, cell: Position) -> Iterator[Position]:
-        x, y, z = cell
-        for dx, dz in _SIDES:
-            aside = (x + dx, y, z + dz)
-            if self.stands(aside):
-                yield aside
-            elif self._passes((x, y + 2, z)) and self.stands((x + dx, y + 1, z + dz)):
-                yield (x + dx, y + 1, z + dz)
-            elif self._passes(aside) and self._passes((x + dx, y + 1, z + dz)):
-                yield from self._drop(aside)
-        for dx, dz in _CORNERS:
-            open_sides = all(
-                self._passes((x + a, y + up, z + b)) for a, b in ((dx, 0), (0, dz)) for up in (0, 1)
-            )
-            if open_sides and self.stands((x + dx, y, z + dz)):
-                yield (x + dx, y, z + dz)
+        doorways = np.zeros(self._passing.size, dtype=np.uint8)
+        for place, at in self._doors:
+            direction = self._directions[int(self._blocks[at])]
+            doorways[self._index(place)] = ALONG_X if direction == (1, 0) else ALONG_Z
+        flags = (each.ravel().view(np.uint8) for each in (self._standing, self._passing))
+        return Cells(*flags, doorways, self._shape)
 
-    def _drop(self, aside: Position) -> Iterator[Position]:
-        for depth in range(1, _DEEPEST_DROP + 1):
-            below = (aside[0], aside[1] - depth, aside[2])
-            if not self._passes(below):
-                return
-            if self.stands(below):
-                yield below
-                return
+    def _found_way(
+        self, start: Position, goal: Goal, avoiding: Iterable[Position] = ()
+    ) -> tuple[Position, ...] | None:
+        """Search for a path with A*; see `way`."""
+        from beliefnest.worlds.scripted.footpath_kernels import AVOIDED, Queue, Trail, find
 
-    def _passes(self, cell: Position) -> bool:
-        return self._at(self._passing, cell)
+        first = self._index(start)
+        if first is None:
+            return () if goal.is_met(start) else None
+        size, room = self._passing.size, _MOST_STEPS * min(self._count + 1, _MOST_CELLS) + 1
+        # Memory of `zeros` is not touched before it is needed.
+        came, marks = np.zeros(size, dtype=np.int32), np.zeros(size, dtype=np.uint8)
+        trail = Trail(came, np.empty(size), marks)
+        orders, cells = np.empty((2, room), dtype=np.int32)
+        queue = Queue(np.empty(room), orders, cells, np.array([1, 0, 0, -1]))
+        for cell in avoiding:
+            if (at := self._index(cell)) is not None:
+                marks[at] = AVOIDED
+        came[first], trail.costs[first], queue.keys[0] = -1, 0.0, 0.0
+        orders[0], cells[0] = 0, first
+        found, is_free = np.empty(_MOST_STEPS, dtype=np.int32), _free_line_of(goal)
+        while True:
+            end = find(self._cells, self._aim(goal), trail, queue, found, _MOST_CELLS)
+            if end < 0:
+                return None
+            if is_free is None or is_free(self._cell(end)):
+                return self._traced(came, end)
 
-    def _at(self, flags: bytes, cell: Position) -> bool:
+    def _traced(self, came: npt.NDArray[np.int32], end: int) -> tuple[Position, ...]:
+        way, at = [], end
+        while (before := int(came[at])) > 0:
+            way.append(self._cell(at))
+            at = before - 1
+        return tuple(way[::-1])
+
+    def _aim(self, goal: Goal) -> "Aim":
+        from beliefnest.worlds.scripted.footpath_kernels import Aim
+
+        x, y, z = (a - b for a, b in zip(goal.block, self._corner, strict=True))
+        if isinstance(goal, Near):
+            return Aim(x, y, z, float(goal.within), False, False)
+        return Aim(x, y, z, float(goal.reach), True, goal.beside)
+
+    def _first_area(self, start: Position) -> int | None:
+        """Return the number of the first known area that contains a cell; None: there is none."""
+        index = self._index(start)
+        if index is None:
+            return None
+        return next((n for n, area in enumerate(self._areas) if area[index]), None)
+
+    def _add_area(self, start: Position) -> int:
+        """Add the area of all cells that can be reached from a cell; return its number."""
+        from beliefnest.worlds.scripted.footpath_kernels import flood
+
+        area = np.zeros(self._passing.size, dtype=np.uint8)
+        waiting = np.empty(self._count + 1, dtype=np.int32)
+        found = np.empty(_MOST_STEPS, dtype=np.int32)
+        index = self._index(start)
+        if index is not None:
+            flood(self._cells, index, area, waiting, found, _MOST_CELLS)
+        self._areas.append(area)
+        return len(self._areas) - 1
+
+    def _index(self, cell: Position) -> int | None:
+        """Return the flat index of a cell; None: it is outside the grid and its margin."""
         x, y, z = cell[0] - self._corner[0], cell[1] - self._corner[1], cell[2] - self._corner[2]
         width, height, depth = self._shape
         inside = 0 <= x < width and 0 <= y < height and 0 <= z < depth
-        return inside and flags[(x * height + y) * depth + z] != 0
+        return (x * height + y) * depth + z if inside else None
+
+    def _cell(self, index: int) -> Position:
+        _, height, depth = self._shape
+        x, y, z = self._corner
+        return (x + index // (height * depth), y + index // depth % height, z + index % depth)
+
+    def _is_way(self, state: int) -> bool:
+        """Return True if a door or gate can be crossed."""
+        by_hand = self._opens and moves_by_hand(self._registry.name(state))
+        return by_hand or is_open(self._registry, state) is True
+
+
+def _free_line_of(goal: Goal) -> Callable[[Position], bool] | None:
+    """Return the test of free lines from a cell that a goal has besides distance; None: none."""
+    if isinstance(goal, Near) or goal.has_free_line is None:
+        return None
+    return goal.is_met
 
 
 def _widened(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
     wide: npt.NDArray[np.bool_] = np.pad(flags, ((1, 1), (_MARGIN, _MARGIN), (1, 1)))
     return wide
-
-
-def find_way(
-    ground: Ground, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
-) -> tuple[Position, ...] | None:
-    """Return the shortest path on foot; among several always the same one.
-
-    Args:
-        ground: Cells in which agents can stand.
-        start: Cell in which the agent stands.
-        goal: Goal of the path.
-        avoiding: Cells that the path must not contain.
-
-    Returns:
-        The cells after `start`, in order; None if there is no path.
-    """
-    came: dict[Position, Position | None] = {start: None}
-    costs: dict[Position, float] = {start: 0.0}
-    waiting: list[tuple[float, int, Position]] = [(goal.steps_left(start), 0, start)]
-    order = 0
-    done: set[Position] = set()
-    while waiting and len(done) < _MOST_CELLS:
-        _, _, cell = heapq.heappop(waiting)
-        if cell in done:
-            continue
-        if goal.is_met(cell):
-            return _traced(came, cell)
-        done.add(cell)
-        for following in ground.steps(cell):
-            cost = costs[cell] + math.dist(cell, following)
-            if following not in avoiding and cost < costs.get(following, math.inf):
-                costs[following], came[following] = cost, cell
-                order += 1
-                heapq.heappush(waiting, (cost + goal.steps_left(following), order, following))
-    return None
-
-
-def _traced(came: Mapping[Position, Position | None], cell: Position) -> tuple[Position, ...]:
-    way = []
-    at: Position | None = cell
-    while at is not None and came[at] is not None:
-        way.append(at)
-        at = came[at]
-    return tuple(way[::-1])
