@@ -103,7 +103,9 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
     world = mind.world
     if agent not in world.agents:
         return
-    mine, others = world.agents[agent].inventory, _partners(mind, agent, goals)
+    agents = world.agents
+    mine, others = agents[agent].inventory, _partners(mind, agent, goals)
+    is_crowd = len(agents) - 1 > _MOST_PARTNERS
     near = [
         (at, held) for at, held in sorted(world.containers.items()) if mind.may_reach(agent, at)
     ]
@@ -117,16 +119,27 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
                 yield Call("getItemFromChest", (place, {item: 1}))
         if not mine.get(item, 0):
             continue
+        # In a crowd, agents hand over only what they cannot bring themselves where it belongs.
+        takers = [] if is_crowd and _brings(mind, agent, item, goals) else others
         for place, _ in near:
             # Put the item where it belongs, or where another agent can take it.
-            if place in wanted or any(mind.may_reach(other, place) for other in others):
+            if place in wanted or any(mind.may_reach(other, place) for other in takers):
                 yield Call("depositItemIntoChest", (place, {item: 1}))
-        for other in others:
+        for other in takers:
             # Only an agent in sight can be given something; go first to where another one may be.
             if other in seen:
                 yield Call("giveItemToOther", (other, item, 1))
             else:
                 yield Call("goToPosition", (block_at(world.agents[other].position), 2))
+
+
+def _brings(mind: Imagination, agent: str, item: str, goals: Sequence[Goal]) -> bool:
+    """Return True if goals want an item only where an agent may bring it, or with that agent."""
+    facts = [fact for fact in _facts(goals) if item in fact.items]
+    return bool(facts) and all(
+        fact.holder == agent if fact.store is None else mind.may_reach(agent, fact.store)
+        for fact in facts
+    )
 
 
 def _partners(mind: Imagination, agent: str, goals: Sequence[Goal]) -> list[str]:
