@@ -12,7 +12,6 @@ from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_open, is_switch
 from beliefnest.world.registry import Registry, block_name, parse_state
 from beliefnest.world.values import Position, block_at
-from beliefnest.worlds.scripted.powered import switches_in
 
 _MOST_PARTNERS = 3
 """Number of agents to whom items may be handed in a crowd."""
@@ -104,15 +103,13 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
     if agent not in world.agents:
         return
     agents = world.agents
-    mine, others = agents[agent].inventory, _partners(mind, agent, goals)
-    is_crowd = len(agents) - 1 > _MOST_PARTNERS
+    mine, is_crowd = agents[agent].inventory, len(agents) - 1 > _MOST_PARTNERS
     near = [
         (at, held) for at, held in sorted(world.containers.items()) if mind.may_reach(agent, at)
     ]
     wanted = {fact.store for fact in _facts(goals)}
     named, facts = [*items_of(goals), *_materials(mind, agent, goals)], MindFacts(mind)
     removed = {item for fact in _facts(goals) for item in fact.removed(agent, facts)}
-    seen = mind.seen_by(agent) if mine and others else {}
     for item in [*named, *sorted(removed - {*named})]:
         for place, items in near:
             if items.get(item, 0):
@@ -120,17 +117,19 @@ def _moving_items(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Itera
         if not mine.get(item, 0):
             continue
         # In a crowd, agents hand over only what they cannot bring themselves where it belongs.
-        takers = [] if is_crowd and _brings(mind, agent, item, goals) else others
+        is_bringing = is_crowd and _brings(mind, agent, item, goals)
+        takers = [] if is_bringing else _partners(mind, agent, goals)
         for place, _ in near:
             # Put the item where it belongs, or where another agent can take it.
             if place in wanted or any(mind.may_reach(other, place) for other in takers):
                 yield Call("depositItemIntoChest", (place, {item: 1}))
+        seen = mind.seen_by(agent) if takers else {}
         for other in takers:
             # Only an agent in sight can be given something; go first to where another one may be.
             if other in seen:
                 yield Call("giveItemToOther", (other, item, 1))
             else:
-                yield Call("goToPosition", (block_at(world.agents[other].position), 2))
+                yield Call("goToPosition", (block_at(agents[other].position), 2))
 
 
 def _brings(mind: Imagination, agent: str, item: str, goals: Sequence[Goal]) -> bool:
@@ -213,7 +212,7 @@ def _doors(mind: Imagination, goals: Sequence[Goal]) -> Iterator[Call]:
 def _switches(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[Call]:
     """Yield calls that give power to doors or to blocks in goals, or take it from them."""
     world, wanted = mind.world, set(_block_places(goals))
-    for place in switches_in(world.box, world.blocks):
+    for place in mind.switches:
         if not mind.may_reach(agent, place):
             continue
         moved = world.moved_by(place)

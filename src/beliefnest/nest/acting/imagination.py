@@ -8,6 +8,7 @@ of courses. An imagination contains nothing from the simulators above the believ
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position, block_at
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
+from beliefnest.worlds.scripted.powered import switches_in
 from beliefnest.worlds.scripted.skills import perform
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -118,6 +120,7 @@ class Imagination:
         self._grounds = grounds
         self._ground: tuple[BlockGrid, Ground] | None = None
         self._geometry: tuple[BlockGrid, Geometry] | None = None
+        self._switches: tuple[BlockGrid, Sequence[Position]] | None = None
         self._news = news
         self._sight = sight
         self._unseen, self._feet = start
@@ -182,11 +185,20 @@ class Imagination:
         True means that it may; the test is coarse. It is False for an agent of unknown position.
         Doors that open by hand are no obstacle.
         """
-        state = self.world.agents.get(agent)
+        state = self.world.state_of(agent)
         if state is None:
             return False
-        start, goal = block_at(state.position), InReach(place, REACH)
-        return self._standing().with_doors_opened.may_lead(start, goal)
+        return self._standing().with_doors_opened.may_lead(
+            block_at(state.position), _in_reach(place)
+        )
+
+    @property
+    def switches(self) -> Sequence[Position]:
+        """Positions of levers, buttons and pressure plates, in order."""
+        blocks = self.world.blocks
+        if self._switches is None or self._switches[0] is not blocks:
+            self._switches = (blocks, switches_in(self.world.box, blocks))
+        return self._switches[1]
 
     def seen_by(self, agent: str) -> Mapping[str, AgentState]:
         """Return the other agents that an agent of this world sees at the latest tick."""
@@ -271,6 +283,7 @@ class Imagination:
         made.happened += self.happened
         # They hold as long as the blocks are the same.
         made._ground, made._geometry = self._ground, self._geometry
+        made._switches = self._switches
         return made
 
     def doubting(self, speakers: Collection[str]) -> tuple["Imagination", frozenset[Position]]:
@@ -428,6 +441,11 @@ class Imagination:
             self._held = len(columns.held)
             forest.advance(columns.end)
         return forest
+
+
+@cache
+def _in_reach(place: Position) -> InReach:
+    return InReach(place, REACH)
 
 
 def _print(view: NodeView) -> tuple[object, ...]:

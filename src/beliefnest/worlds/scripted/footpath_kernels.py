@@ -1,4 +1,4 @@
-"""Compiled search for paths on foot: steps between cells, A*, and areas.
+"""Compiled search for paths on foot: steps between cells, and A*.
 
 A grid of cells has a margin, so that every neighbour of a cell in which agents can stand has an
 index. A cell is a flat index into the grid; x is slowest, z is fastest.
@@ -10,21 +10,20 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.perception.compiling import compiled, inlined, inner
+from beliefnest.perception.compiling import compiled, inlined, merged
 from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = [
     "ALONG_X",
     "ALONG_Z",
     "AVOIDED",
+    "NOWHERE",
     "Aim",
     "Cells",
     "Queue",
     "Trail",
     "find",
-    "flood",
     "holds_target",
-    "write_steps",
 ]
 
 Flags = npt.NDArray[np.uint8]
@@ -32,7 +31,9 @@ Ints = npt.NDArray[np.int32]
 
 _DEEPEST_DROP = 3
 _DONE, AVOIDED = 1, 2
+"""Marks of cells."""
 ALONG_X, ALONG_Z = 1, 2
+"""Directions through doorways."""
 
 
 class Cells(NamedTuple):
@@ -71,11 +72,15 @@ class Aim(NamedTuple):
     beside: bool
 
 
+NOWHERE = Aim(0, 0, 0, -1.0, False, False)
+"""Aim that no cell meets; a search for it finds the whole area."""
+
+
 class Trail(NamedTuple):
     """Cells that a search has found.
 
     Attributes:
-        came: By cell, 1 + the cell before it; 0: not found yet.
+        came: By cell, 1 + the cell before it; -1: the start; 0: not found yet.
         costs: By found cell, length of the path to it.
         marks: By cell, `_DONE` if the search has left it, `AVOIDED` if paths must not contain it.
     """
@@ -121,7 +126,7 @@ def _may_cross(door: int, dx: int, dz: int) -> bool:
     return door == 0 or (dz == 0 and door == ALONG_X) or (dx == 0 and door == ALONG_Z)
 
 
-@inner
+@merged
 def _landing(cells: Cells, x: int, y: int, z: int, dx: int, dz: int) -> int:
     """Return the height to which a step sideways leads; -1: it leads nowhere."""
     standing, passing, sizes = cells.standing, cells.passing, cells.sizes
@@ -141,8 +146,13 @@ def _landing(cells: Cells, x: int, y: int, z: int, dx: int, dz: int) -> int:
     return -1
 
 
-@inner
+@merged
 def _write_steps(cells: Cells, cell: int, found: Ints) -> int:
+    """Write the cells that one step leads to; return their number.
+
+    A step leads sideways, up one block, or down up to three. Diagonal steps need free sides, and
+    lead neither up nor down. Doorways are only crossed straight.
+    """
     passing, sizes = cells.passing, cells.sizes
     x, y, z = cell // (sizes[1] * sizes[2]), cell // sizes[2] % sizes[1], cell % sizes[2]
     count = 0
@@ -174,22 +184,12 @@ def _write_steps(cells: Cells, cell: int, found: Ints) -> int:
     return count
 
 
-@compiled
-def write_steps(cells: Cells, cell: int, found: Ints) -> int:
-    """Write the cells that one step leads to, at most 8; return their number.
-
-    A step leads sideways, up one block, or down up to three. Diagonal steps need free sides, and
-    lead neither up nor down. Doorways are only crossed straight.
-    """
-    return _write_steps(cells, cell, found)
-
-
 @inlined
 def _far(x: float, y: float, z: float) -> float:
     return math.sqrt(x * x + y * y + z * z)
 
 
-@inner
+@inlined
 def _is_met(aim: Aim, x: int, y: int, z: int) -> bool:
     """Return True if a cell meets an aim; free lines are not considered."""
     if aim.beside and x == aim.x and z == aim.z and (y == aim.y or y == aim.y - 1):
@@ -246,7 +246,7 @@ def find(cells: Cells, aim: Aim, trail: Trail, queue: Queue, found: Ints, most: 
         cell = -1
 
 
-@inner
+@merged
 def _push(queue: Queue, key: float, cell: int) -> None:
     keys, orders, cells, counts = queue
     at = counts[0]
@@ -261,7 +261,7 @@ def _push(queue: Queue, key: float, cell: int) -> None:
     keys[at], orders[at], cells[at] = key, counts[1], cell
 
 
-@inner
+@merged
 def _pop(queue: Queue) -> int:
     keys, orders, cells, counts = queue
     first = int(cells[0])
@@ -283,31 +283,6 @@ def _pop(queue: Queue) -> int:
         at = below
     keys[at], orders[at], cells[at] = key, order, cell
     return first
-
-
-@compiled
-def flood(
-    cells: Cells, start: int, area: Flags, waiting: Ints, found: Ints, most: int
-) -> None:
-    """Mark all cells that can be reached from a cell.
-
-    Args:
-        cells: Cells of the ground.
-        start: The cell.
-        area: 0 everywhere; becomes 1 in the area.
-        waiting: Scratch memory for all cells in which agents can stand, and the start.
-        found: Scratch memory for 8 cells.
-        most: Number of cells after which the search ends.
-    """
-    area[start], waiting[0] = 1, start
-    size, left = 1, 1
-    while left > 0 and size < most:
-        left -= 1
-        for number in range(_write_steps(cells, int(waiting[left]), found)):
-            step = found[number]
-            if not area[step]:
-                area[step], waiting[left] = 1, step
-                size, left = size + 1, left + 1
 
 
 @compiled

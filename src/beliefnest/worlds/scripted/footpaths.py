@@ -130,8 +130,9 @@ class Ground:
         width, height, depth = passing.shape
         self._shape = (int(width), int(height), int(depth))
         self._ways: dict[tuple[Position, Goal], tuple[Position, ...] | None] = {}
-        self._areas: list[npt.NDArray[np.uint8]] = []
+        self._areas: list[npt.NDArray[np.bool_]] = []
         self._met: dict[tuple[int, Goal], bool] = {}
+        self._leads: dict[tuple[Position, Goal], bool] = {}
 
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
@@ -149,17 +150,6 @@ class Ground:
         """Return True if there is a sign at a position; None if the position is unknown."""
         state = int(self._blocks[self._box.index(place)]) if place in self._box else AIR
         return None if state < 0 else is_sign(self._registry.name(state))
-
-    def steps(self, cell: Position) -> tuple[Position, ...]:
-        """Return the cells that one step leads to: sideways, up one block, or down up to three."""
-        from beliefnest.worlds.scripted.footpath_kernels import write_steps
-
-        index = self._index(cell)
-        if index is None:
-            return ()
-        found = np.empty(_MOST_STEPS, dtype=np.int32)
-        count = write_steps(self._cells, index, found)
-        return tuple(self._cell(step) for step in found[:count].tolist())
 
     @cached_property
     def with_doors_opened(self) -> "Ground":
@@ -207,6 +197,15 @@ class Ground:
         An area is the set of all cells that can be reached from one cell. A path exists only if
         some cell in the area of `start` meets the goal.
         """
+        asked = (start, goal)
+        known = self._leads.get(asked)
+        if known is None:
+            if len(self._leads) >= _MOST_WAYS:
+                self._leads.clear()
+            known = self._leads[asked] = self._leads_there(start, goal)
+        return known
+
+    def _leads_there(self, start: Position, goal: Goal) -> bool:
         from beliefnest.worlds.scripted.footpath_kernels import holds_target
 
         if self._index(start) is None:
@@ -233,30 +232,22 @@ class Ground:
     def _found_way(
         self, start: Position, goal: Goal, avoiding: Iterable[Position] = ()
     ) -> tuple[Position, ...] | None:
-        """Search for a path with A*; see `way`."""
-        from beliefnest.worlds.scripted.footpath_kernels import AVOIDED, Queue, Trail, find
+        """Search for a path; see `way`."""
+        from beliefnest.worlds.scripted.footpath_kernels import AVOIDED
 
         first = self._index(start)
         if first is None:
             return () if goal.is_met(start) else None
-        size, room = self._passing.size, _MOST_STEPS * min(self._count + 1, _MOST_CELLS) + 1
-        # Memory of `zeros` is not touched before it is needed.
-        came, marks = np.zeros(size, dtype=np.int32), np.zeros(size, dtype=np.uint8)
-        trail = Trail(came, np.empty(size), marks)
-        orders, cells = np.empty((2, room), dtype=np.int32)
-        queue = Queue(np.empty(room), orders, cells, np.array([1, 0, 0, -1]))
-        for cell in avoiding:
-            if (at := self._index(cell)) is not None:
-                marks[at] = AVOIDED
-        came[first], trail.costs[first], queue.keys[0] = -1, 0.0, 0.0
-        orders[0], cells[0] = 0, first
-        found, is_free = np.empty(_MOST_STEPS, dtype=np.int32), _free_line_of(goal)
-        while True:
-            end = find(self._cells, self._aim(goal), trail, queue, found, _MOST_CELLS)
-            if end < 0:
-                return None
-            if is_free is None or is_free(self._cell(end)):
-                return self._traced(came, end)
+        search = _Search(self._cells, first, self._count)
+        for index in map(self._index, avoiding):
+            if index is not None:
+                search.trail.marks[index] = AVOIDED
+        has_free_line = isinstance(goal, InReach) and goal.has_free_line is not None
+        aim = self._aim(goal)
+        while (end := search.next(aim)) is not None:
+            if not has_free_line or goal.is_met(self._cell(end)):
+                return self._traced(search.trail.came, end)
+        return None
 
     def _traced(self, came: npt.NDArray[np.int32], end: int) -> tuple[Position, ...]:
         way, at = [], end
@@ -282,15 +273,15 @@ class Ground:
 
     def _add_area(self, start: Position) -> int:
         """Add the area of all cells that can be reached from a cell; return its number."""
-        from beliefnest.worlds.scripted.footpath_kernels import flood
+        from beliefnest.worlds.scripted.footpath_kernels import NOWHERE
 
-        area = np.zeros(self._passing.size, dtype=np.uint8)
-        waiting = np.empty(self._count + 1, dtype=np.int32)
-        found = np.empty(_MOST_STEPS, dtype=np.int32)
         index = self._index(start)
-        if index is not None:
-            flood(self._cells, index, area, waiting, found, _MOST_CELLS)
-        self._areas.append(area)
+        if index is None:
+            self._areas.append(np.zeros(self._passing.size, dtype=np.bool_))
+        else:
+            search = _Search(self._cells, index, self._count)
+            search.next(NOWHERE)
+            self._areas.append(search.trail.came != 0)
         return len(self._areas) - 1
 
     def _index(self, cell: Position) -> int | None:
@@ -311,11 +302,38 @@ class Ground:
         return by_hand or is_open(self._registry, state) is True
 
 
-def _free_line_of(goal: Goal) -> Callable[[Position], bool] | None:
-    """Return the test of free lines from a cell that a goal has besides distance; None: none."""
-    if isinstance(goal, Near) or goal.has_free_line is None:
-        return None
-    return goal.is_met
+class _Search:
+    """A* from one cell, which finds one goal cell after the other.
+
+    Args:
+        cells: Cells of the ground.
+        first: Flat index of the first cell.
+        count: Number of cells in which agents can stand.
+
+    Attributes:
+        trail: Cells found so far.
+    """
+
+    def __init__(self, cells: "Cells", first: int, count: int) -> None:
+        from beliefnest.worlds.scripted.footpath_kernels import Queue, Trail
+
+        size, room = len(cells.passing), _MOST_STEPS * min(count + 1, _MOST_CELLS) + 1
+        self._cells = cells
+        # Memory of `zeros` is not touched before it is needed.
+        came, marks = np.zeros(size, dtype=np.int32), np.zeros(size, dtype=np.uint8)
+        self.trail = Trail(came, np.empty(size), marks)
+        orders, waiting = np.empty((2, room), dtype=np.int32)
+        self._queue = Queue(np.empty(room), orders, waiting, np.array([1, 0, 0, -1]))
+        self._found = np.empty(_MOST_STEPS, dtype=np.int32)
+        came[first], self.trail.costs[first] = -1, 0.0
+        self._queue.keys[0], orders[0], waiting[0] = 0.0, 0, first
+
+    def next(self, aim: "Aim") -> int | None:
+        """Return the next cell that meets an aim, the same in each call; None: there is none."""
+        from beliefnest.worlds.scripted.footpath_kernels import find
+
+        end = find(self._cells, aim, self.trail, self._queue, self._found, _MOST_CELLS)
+        return None if end < 0 else end
 
 
 def _widened(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:

@@ -70,6 +70,10 @@ class ScriptedState(Barred):
         """Return the state of an agent; WorldError if there is none of that name."""
         return self._agent(name)
 
+    def state_of(self, name: str) -> AgentState | None:
+        """Return the state of an agent; None if there is none of that name."""
+        return self._facts.agents.get(name)
+
     @property
     def containers(self) -> Mapping[Position, Items]:
         """Contents of all containers; must not be changed."""
