@@ -193,6 +193,33 @@ class NodeTable:
             self._rows["parent"][node] = self.index[path[:-1]]
         return node
 
+    def forked(self) -> "NodeTable":
+        """Return a table with copies of all nodes and poses of its own, as `copy_node` makes them.
+
+        Node 0 holds everything that it knows as current, and no pose counts as recorded.
+        """
+        made = NodeTable(self.context, PoseTable())
+        made.count = made._linked = self.count
+        made.index, made._tracked = dict(self.index), self._tracked
+        made._child_at, made._child = self._child_at, self._child
+        made._rows = {name: row[: self.count].copy() for name, row in self._rows.items()}
+        rows, names = made._rows, [name for name in ("pose", "equipment", "met") if name in self._rows]
+        numbers = np.concatenate([rows[name].ravel() for name in names])
+        used = np.unique(numbers[numbers >= 0])
+        table = np.full(len(self.poses) + 1, UNKNOWN, dtype=np.int32)
+        table[used] = made.poses.take(self.poses, used, recorded=False)
+        for name in names:
+            # -1, which is no pose, indexes the last place of the table, where -1 stands.
+            rows[name] = table[rows[name]]
+        for name in ("eye", "seen_geometry", "tried"):
+            rows[name][:] = UNKNOWN
+        rows["geometry"][:] = 0
+        rows["fresh"][1:] |= rows["pending"][1:].any(axis=1)
+        rows["parent"][0] = rows["agent"][0] = UNKNOWN
+        rows["current"][0] = rows["pose"][0] >= 0
+        rows["basis_current"][0] = rows["blocks"][0][self._tracked] >= 0
+        return made
+
     def path(self, node: int) -> BeliefPath:
         """Return the path of a node."""
         return next(path for path, number in self.index.items() if number == node)

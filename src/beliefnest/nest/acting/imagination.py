@@ -129,9 +129,7 @@ class Imagination:
         self._held = 0
         self._stride = 1
         if forest is not None:
-            context = forest.context
-            self._columns = Columns(context)
-            forest.enter(self._columns)
+            self._columns = forest.columns
         world.listen(self._take)
 
     @classmethod
