@@ -324,6 +324,7 @@ class Simulator(ShownSimulator):
         moment = recording.moment(self._path, tick)
         paths = paths_below(self._path, depth, recording.agents)
         if tick is None:
+            recording.history.expect(moment.timeline, paths)
             for path in paths:
                 forest = recording.history.shared(moment.timeline, path, moment.entries)
         else:

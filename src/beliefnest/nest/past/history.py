@@ -264,6 +264,15 @@ class History:
             head = self.walk(key, below)
         if head is not None:
             self._heads[key] = head
+            self._fold_into(key, head, [path for path in below if path not in head])
+
+    def _fold_into(self, key: TimelineKey, head: Forest, missing: Sequence[BeliefPath]) -> None:
+        """Add several nodes to a head at once, unless a checkpoint holds them."""
+        if len(missing) > 1 and self._saved(key, head.position, missing[-1]) is None:
+            folded = self.walk(key, missing)
+            self.advance(key, folded, head.position)
+            for path in missing:
+                _adopt(head, folded, key.path, path)
 
     def close(self) -> None:
         """Save checkpoints at the heads of timelines, so that a resumed run begins there."""
