@@ -203,16 +203,17 @@ class NodeTable:
         made.index, made._tracked = dict(self.index), self._tracked
         made._child_at, made._child = self._child_at, self._child
         made._rows = {name: row[: self.count].copy() for name, row in self._rows.items()}
-        rows, names = made._rows, [name for name in ("pose", "equipment", "met") if name in self._rows]
-        numbers = np.concatenate([rows[name].ravel() for name in names])
+        rows = made._rows
+        names = [each for each in ("pose", "equipment", "met") if each in rows]
+        numbers = np.concatenate([rows[each].ravel() for each in names])
         used = np.unique(numbers[numbers >= 0])
         table = np.full(len(self.poses) + 1, UNKNOWN, dtype=np.int32)
         table[used] = made.poses.take(self.poses, used, recorded=False)
-        for name in names:
+        for each in names:
             # -1, which is no pose, indexes the last place of the table, where -1 stands.
-            rows[name] = table[rows[name]]
-        for name in ("eye", "seen_geometry", "tried"):
-            rows[name][:] = UNKNOWN
+            rows[each] = table[rows[each]]
+        for unset in ("eye", "seen_geometry", "tried"):
+            rows[unset][:] = UNKNOWN
         rows["geometry"][:] = 0
         rows["fresh"][1:] |= rows["pending"][1:].any(axis=1)
         rows["parent"][0] = rows["agent"][0] = UNKNOWN

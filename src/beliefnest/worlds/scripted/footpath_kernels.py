@@ -213,9 +213,7 @@ def find(cells: Cells, aim: Aim, trail: Trail, queue: Queue, found: Ints, most: 
     Returns:
         The cell; -1: there is none. If it does not do, call the function again.
     """
-    came, costs, marks = trail
-    keys, orders, waiting, counts = queue
-    sizes = cells.sizes
+    (came, costs, marks), counts, sizes = trail, queue.counts, cells.sizes
     cell = int(counts[3])
     counts[3] = -1
     while True:
@@ -286,8 +284,8 @@ def _pop(queue: Queue) -> int:
 
 
 @compiled
-def holds_target(cells: Cells, aim: Aim, area: Flags) -> bool:
-    """Return True if a cell of an area meets an aim."""
+def holds_target(cells: Cells, aim: Aim, area: npt.NDArray[np.bool_]) -> bool:
+    """Return True if a cell of an area meets an aim; `area` is True in it."""
     sizes, far = cells.sizes, int(min(aim.within, 1e6)) + 2
     for x in range(max(0, aim.x - far), min(sizes[0], aim.x + far + 1)):
         for y in range(max(0, aim.y - far), min(sizes[1], aim.y + far + 1)):

@@ -46,7 +46,6 @@ class Near:
         return math.dist(cell, self.block) <= self.within
 
 
-
 @dataclass(frozen=True, slots=True)
 class InReach:
     """Goal of standing where a hand reaches a block.
@@ -74,7 +73,6 @@ class InReach:
         if math.dist(eye, middle) > self.reach:
             return False
         return self.has_free_line is None or self.has_free_line(eye, self.block)
-
 
     def _is_within(self, cell: Position) -> bool:
         x, y, z = self.block
@@ -226,8 +224,10 @@ class Ground:
         for place, at in self._doors:
             direction = self._directions[int(self._blocks[at])]
             doorways[self._index(place)] = ALONG_X if direction == (1, 0) else ALONG_Z
-        flags = (each.ravel().view(np.uint8) for each in (self._standing, self._passing))
-        return Cells(*flags, doorways, self._shape)
+        standing, passing = (
+            each.ravel().view(np.uint8) for each in (self._standing, self._passing)
+        )
+        return Cells(standing, passing, doorways, self._shape)
 
     def _found_way(
         self, start: Position, goal: Goal, avoiding: Iterable[Position] = ()
