@@ -1,6 +1,7 @@
 """Benchmarks of episodes: rounds against real time, branches of planners, solved tasks."""
 
 import time
+from typing import Any
 
 from beliefnest.belief.facts import StateFacts
 from beliefnest.episodes.episode import Episode
@@ -18,6 +19,7 @@ __all__ = ["measure"]
 _TICKS = 100
 _TRIED = 40
 _PROCESSES = 2
+_WANTED = ("apple", "bread", "carrot")
 _WALK = """
 for (let n = 0; n < 4; n++) {
   await goToPosition(bot, new Vec3(%d, 1, 1), 0)
@@ -28,10 +30,11 @@ await waitTicks(bot, 200)
 
 
 def measure() -> list[Metric]:
-    """Return figures of a round of four agents, of an order-1 search, and of each task."""
+    """Return figures of rounds, of an order-1 search, and of each task."""
     return [
         _round(),
         _branches(),
+        *(_crowd(order) for order in (0, 1)),
         _branches_in_minecraft(),
         *(_solved(name) for name in Task.names()),
     ]
@@ -73,6 +76,56 @@ def _branches() -> Metric:
         seconds = time.perf_counter() - started
     rate = planner.tried / seconds
     return Metric("branches, order 1, 3 agents", rate, "1/s", 200.0, at_least=True)
+
+
+def _crowd(order: int) -> Metric:
+    """Time the slowest round of eight agents in a hall of 64 x 64 blocks."""
+    task = Task.of(Scenario.from_mapping(_hall()))
+    with Episode(task, dict.fromkeys(task.players, f"search:{order}")) as episode:
+        seconds = []
+        while not episode.is_over:
+            started = time.perf_counter()
+            episode.play(1)
+            seconds.append(time.perf_counter() - started)
+        assert episode.success
+    return Metric(f"slowest round of search:{order}, 8 agents, 64 x 64", max(seconds), "s", 2.0)
+
+
+def _hall() -> dict[str, Any]:
+    """Return a scenario: agents who each know one of three items must bring all to one barrel."""
+    spots = [(8, 8), (55, 8), (8, 55), (55, 55), (32, 6), (6, 32), (57, 32), (32, 57)]
+    names = ["ann", "bob", "carl", "dora", "eve", "finn", "gus", "hal"]
+    chests = [(12, 14), (51, 14), (12, 49), (51, 49), (32, 16), (16, 32)]
+    held = [{"apple": 1}, {"bread": 1}, {"carrot": 1}, {"bone": 1}, {"stick": 2}, {}]
+    contents = [
+        {"at": [x, 1, z], "items": items} for (x, z), items in zip(chests, held, strict=True)
+    ]
+    barrel = [32, 1, 32]
+    return {
+        "name": "hall",
+        "box": [[0, 0, 0], [63, 3, 63]],
+        "blocks": [{"block": "stone", "fill": [[0, 0, 0], [63, 0, 63]]}],
+        "static_blocks": ["stone", "chest", "barrel"],
+        "containers": [
+            *({"label": "chest", **each} for each in contents),
+            {"label": "barrel", "at": barrel, "block": "barrel"},
+        ],
+        "agents": {
+            name: {"position": [x + 0.5, 1, z + 0.5]}
+            for name, (x, z) in zip(names, spots, strict=True)
+        },
+        "perception": {"max_visible_distance": 64, "testimony": "accept", "hearing": "global"},
+        "initial_beliefs": [
+            {"path": f"/{name}", "containers": [contents[number % 3]]}
+            for number, name in enumerate(names)
+        ],
+        "episode": {
+            "goal": {"reach": [{"container": barrel, "items": dict.fromkeys(_WANTED, 1)}]},
+            "talk": names,
+            "rounds": 8,
+            "round_ticks": 20,
+        },
+    }
 
 
 def _branches_in_minecraft() -> Metric:
