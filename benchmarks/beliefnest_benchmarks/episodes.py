@@ -84,11 +84,12 @@ def _crowd(order: int) -> Metric:
     with Episode(task, dict.fromkeys(task.players, f"search:{order}")) as episode:
         seconds = []
         while not episode.is_over:
-            started = time.perf_counter()
+            started = time.process_time()
             episode.play(1)
-            seconds.append(time.perf_counter() - started)
+            seconds.append(time.process_time() - started)
         assert episode.success
-    return Metric(f"slowest round of search:{order}, 8 agents, 64 x 64", max(seconds), "s", 2.0)
+    title = f"slowest round of search:{order}, 8 agents, 64 x 64, processor time"
+    return Metric(title, max(seconds), "s", 2.0)
 
 
 def _hall() -> dict[str, Any]:

@@ -1,0 +1,206 @@
+"""Paths on foot: compared with a slow search that follows the rules of steps literally."""
+
+import heapq
+import math
+from collections.abc import Iterator
+from random import Random
+
+import numpy as np
+import pytest
+
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box, Position
+from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach, Near
+
+STONE, AIR, UNKNOWN = "stone", "air", ""
+ALONG_X = "oak_fence_gate[facing=east,open=true]"
+ALONG_Z = "oak_fence_gate[facing=north,open=true]"
+SHUT = "oak_fence_gate[facing=east,open=false]"
+LOW = (-7, 3, 20)
+
+Blocks = dict[Position, str]
+
+
+def ground_of(blocks: Blocks, shape: tuple[int, int, int]) -> Ground:
+    """Return the ground of blocks that are given by position, else air."""
+    registry = Registry.load()
+    grid = np.zeros(shape, dtype=np.int32)
+    for place, text in blocks.items():
+        index = tuple(a - b for a, b in zip(place, LOW, strict=True))
+        grid[index] = registry.state_id(text) if text else -1
+    high = tuple(a + size - 1 for a, size in zip(LOW, shape, strict=True))
+    return Ground(registry, Box(LOW, (high[0], high[1], high[2])), grid)
+
+
+class Rules:
+    """Rules of steps, read cell by cell."""
+
+    def __init__(self, blocks: Blocks, shape: tuple[int, int, int], *, opens: bool) -> None:
+        self._blocks, self._shape, self._opens = blocks, shape, opens
+
+    def text(self, cell: Position) -> str | None:
+        """Return the block at a cell; None outside the box."""
+        inside = (0 <= a - b < size for a, b, size in zip(cell, LOW, self._shape, strict=True))
+        return self._blocks.get(cell, AIR) if all(inside) else None
+
+    def gate(self, cell: Position) -> str | None:
+        """Return the axis of an open gate."""
+        text = self.text(cell)
+        if self._opens and text == SHUT:
+            return "x"
+        return {ALONG_X: "x", ALONG_Z: "z"}.get(text or "")
+
+    def passes(self, cell: Position) -> bool:
+        """Return True if a body passes through a cell; above the box there is air."""
+        (x, y, z), (_, height, _) = cell, self._shape
+        if y == LOW[1] + height:
+            return self.text((x, y - 1, z)) is not None
+        return self.text(cell) in (AIR, UNKNOWN) or self.gate(cell) is not None
+
+    def stands(self, cell: Position) -> bool:
+        """Return True if an agent can stand in a cell."""
+        x, y, z = cell
+        below = self.text((x, y - 1, z))
+        holds = below is not None and (below == UNKNOWN or not self.passes((x, y - 1, z)))
+        return holds and self.passes(cell) and self.passes((x, y + 1, z))
+
+    def steps(self, cell: Position) -> Iterator[Position]:
+        """Yield the cells that one step leads to."""
+        x, y, z = cell
+        for dx in (-1, 0, 1):
+            for dz in (-1, 0, 1):
+                for up in range(-3, 2):
+                    step = (x + dx, y + up, z + dz)
+                    if (dx or dz) and self.stands(step) and self._leads(cell, dx, dz, up):
+                        yield step
+
+    def _leads(self, cell: Position, dx: int, dz: int, up: int) -> bool:
+        x, y, z = cell
+        for at in (cell, (x + dx, y + up, z + dz)):
+            if (axis := self.gate(at)) and (dx, dz)["xz".index(axis) ^ 1]:
+                return False
+        if dx and dz:
+            sides = [(x + dx, y, z), (x, y, z + dz)]
+            clear = all(self.passes(s) and self.passes((s[0], y + 1, s[2])) for s in sides)
+            return up == 0 and clear and not any(map(self.gate, sides))
+        aside = (x + dx, y, z + dz)
+        if up == 0:
+            return True
+        above = (aside[0], y + 1, aside[2])
+        climbs = self.passes((x, y + 2, z)) and self.stands(above)
+        if self.stands(aside) or up == 1:
+            return up == 1 and climbs and not self.stands(aside)
+        fallen = [(aside[0], y - depth, aside[2]) for depth in range(1, -up + 1)]
+        free = all(map(self.passes, (aside, above, *fallen)))
+        return not climbs and free and not any(map(self.stands, fallen[:-1]))
+
+    def lengths(self, start: Position) -> dict[Position, float]:
+        """Return the lengths of shortest paths to all cells that can be reached."""
+        found, waiting = {start: 0.0}, [(0.0, start)]
+        while waiting:
+            length, cell = heapq.heappop(waiting)
+            for step in self.steps(cell):
+                further = length + math.dist(cell, step)
+                if further < found.get(step, math.inf) - 1e-9:
+                    found[step] = further
+                    heapq.heappush(waiting, (further, step))
+        return found
+
+
+def drawn(random: Random) -> tuple[Blocks, tuple[int, int, int]]:
+    """Return a rough terrain with gates and unknown blocks."""
+    shape = (random.randint(3, 8), random.randint(3, 6), random.randint(3, 8))
+    blocks: Blocks = {}
+    for i in range(shape[0]):
+        for k in range(shape[2]):
+            top = random.choice((0, 0, 0, 1, 1, 2, 3))
+            for j in range(min(top, shape[1] - 1) + 1):
+                blocks[LOW[0] + i, LOW[1] + j, LOW[2] + k] = STONE
+            odd = random.choice((AIR, AIR, AIR, AIR, UNKNOWN, ALONG_X, ALONG_Z, SHUT))
+            if top + 1 < shape[1] and odd != AIR:
+                blocks[LOW[0] + i, LOW[1] + top + 1, LOW[2] + k] = odd
+    return blocks, shape
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_paths_are_shortest_and_keep_the_rules(seed: int) -> None:
+    random = Random(seed)
+    blocks, shape = drawn(random)
+    plain = ground_of(blocks, shape)
+    for opens, ground in ((False, plain), (True, plain.with_doors_opened)):
+        rules = Rules(blocks, shape, opens=opens)
+        around = [
+            (LOW[0] + i, LOW[1] + j, LOW[2] + k)
+            for i in range(-1, shape[0] + 1)
+            for j in range(-1, shape[1] + 3)
+            for k in range(-1, shape[2] + 1)
+        ]
+        standing = [cell for cell in around if rules.stands(cell)]
+        assert standing == [cell for cell in around if ground.stands(cell)]
+        for _ in range(10):
+            start, block = random.choice(standing), random.choice(around)
+            goal: Goal = random.choice(
+                (Near(block, 0), Near(block, 1.5), InReach(block, 4.0), InReach(block, 2.0, True))
+            )
+            _check(ground, rules, start, goal)
+
+
+def _check(ground: Ground, rules: Rules, start: Position, goal: Goal) -> None:
+    lengths = {cell: length for cell, length in rules.lengths(start).items() if goal.is_met(cell)}
+    way = ground.way(start, goal)
+    if way is None:
+        assert not lengths
+        return
+    course = [start, *way]
+    assert goal.is_met(course[-1])
+    assert all(step in rules.steps(cell) for cell, step in zip(course, way, strict=False))
+    length = sum(map(math.dist, course, way))
+    assert length == pytest.approx(min(lengths.values()))
+    assert ground.may_lead(start, goal)
+
+
+def floor() -> tuple[Blocks, tuple[int, int, int]]:
+    """Return an empty floor of 7 x 7 blocks."""
+    return {(LOW[0] + i, LOW[1], LOW[2] + k): STONE for i in range(7) for k in range(7)}, (7, 4, 7)
+
+
+def at(i: int, k: int) -> Position:
+    """Return a cell on the floor."""
+    return (LOW[0] + i, LOW[1] + 1, LOW[2] + k)
+
+
+def test_cells_to_avoid_are_gone_around() -> None:
+    ground = ground_of(*floor())
+    goal = Near(at(4, 0), 0)
+    assert ground.way(at(0, 0), goal) == tuple(at(i, 0) for i in range(1, 5))
+    assert at(2, 0) not in (ground.way(at(0, 0), goal, {at(2, 0)}) or ())
+    assert ground.way(at(0, 0), goal, {at(i, k) for i in (2,) for k in range(7)}) is None
+
+
+def test_a_path_goes_on_until_the_line_is_free() -> None:
+    asked = []
+
+    def is_free(eye: tuple[float, float, float], block: Position) -> bool:
+        asked.append(eye[0])
+        return eye[0] > LOW[0] + 5
+
+    ground = ground_of(*floor())
+    way = ground.way(at(0, 3), InReach(at(6, 3), 4.0, has_free_line=is_free))
+    assert way is not None
+    assert way[-1][0] == LOW[0] + 5
+    assert min(asked) < LOW[0] + 4  # the nearest cells in reach are asked first
+    never = InReach(at(6, 3), 4.0, has_free_line=lambda eye, block: False)
+    assert ground.way(at(0, 3), never) is None
+
+
+def test_areas_behind_a_wall_are_out_of_reach() -> None:
+    blocks, shape = floor()
+    wall = {(LOW[0] + 3, LOW[1] + j, LOW[2] + k): STONE for j in range(4) for k in range(7)}
+    ground = ground_of(blocks | wall, shape)
+    for start, end, is_apart in ((0, 2, False), (0, 6, True), (6, 0, True), (6, 4, False)):
+        goal = Near(at(end, 3), 0)
+        assert ground.may_lead(at(start, 3), goal) is not is_apart
+        assert (ground.way(at(start, 3), goal) is None) is is_apart
+    outside = (LOW[0] - 9, LOW[1], LOW[2])
+    assert ground.way(outside, Near(at(0, 0), 0)) is None
+    assert not ground.may_lead(outside, Near(at(0, 0), 0))
