@@ -121,15 +121,19 @@ def _kernels() -> str:
     from beliefnest.minds import relaxing
     from beliefnest.perception import eye_loops
     from beliefnest.perception.compiling import is_compiled, kernel_folder
+    from beliefnest.worlds.scripted import footpath_kernels
 
-    kernels = (kernel.fold, eye_loops.seen_blocks, relaxing.raise_values)
+    kernels = (
+        *(kernel.fold, eye_loops.seen_blocks, relaxing.raise_values),
+        *(footpath_kernels.find, footpath_kernels.holds_target),
+    )
     folder = kernel_folder(kernel.fold)
     if folder is None:
         return "compiled by each process anew; let NUMBA_CACHE_DIR name a folder that you can write"
     if all(is_compiled(each) for each in kernels):
         return f"compiled, kept in {folder}"
     return (
-        "not compiled yet; the first belief or inference will wait for it, "
+        "not compiled yet; the first belief, walk or inference will wait for it, "
         f"or `beliefnest doctor --warm` now; they will be kept in {folder}"
     )
 
@@ -143,6 +147,8 @@ def _use_kernels() -> None:
     from beliefnest.perception.options import Perception
     from beliefnest.perception.sight import Sight
     from beliefnest.world.registry import Registry
+    from beliefnest.world.values import Box
+    from beliefnest.worlds.scripted.footpaths import Ground, Near
     from beliefnest.worlds.scripted.world import ScriptedWorld
 
     sys.stderr.write(
@@ -165,6 +171,7 @@ def _use_kernels() -> None:
     for block in ("air", "stone"):
         blocks = np.full((3, 3, 3), registry.state_id(block), dtype=np.int32)
         Sight(registry).geometry(blocks, (0, 0, 0)).visible_blocks((1.5, 1.5, 1.5), 0.0, 0.0)
+    Ground(registry, Box((0, 0, 0), (2, 2, 2)), blocks).may_lead((0, 3, 0), Near((0, 0, 0), 0))
 
 
 def _world() -> str:
