@@ -159,3 +159,77 @@ def test_captions_are_the_sentences_of_the_story_with_their_ticks(nest: bn.Nest)
         assert ticks == sorted(ticks)
         events = {event.tick for event in nest[path].state.events}
         assert {tick for tick, sentence in told if " put " in sentence} <= events
+
+
+TURNS = """
+name: turns
+map:
+  legend:
+    "#": bricks
+    r: {container: barrel, label: red box}
+    b: {container: barrel, label: blue box}
+    e: {agent: eva, facing: north, inventory: {diamond: 1}}
+    l: {agent: lia, facing: east}
+    w: {agent: wim, facing: north}
+  floors: |
+    #########
+    #r.....b#
+    #...e...#
+    #l......#
+    #...w...#
+    #########
+static_blocks: [stone, bricks]
+perception: {field_of_view: 170}
+script:
+  - {agent: eva, program: "await depositItemIntoChest(bot, new Vec3(1, 1, 1), {diamond: 1});"}
+"""
+SOUTH, NORTH = (4, 2, 20), (1, 2, -20)
+WIM_IS_AWAY = "Wim could no longer see Eva, Lia or any of the things there. "
+WIM_IS_BACK = "Wim could now see Eva, Lia, the red box and the blue box. "
+LIA_IS_AWAY = "Lia could no longer see Wim. "
+
+
+@pytest.mark.parametrize(
+    ("turns", "told"),
+    [
+        # Lia sees Wim turn away, and not that he turns back.
+        (
+            [("wim", SOUTH), ("lia", NORTH), ("wim", NORTH)],
+            WIM_IS_AWAY + LIA_IS_AWAY + WIM_IS_BACK,
+        ),
+        # Lia sees neither; Wim has missed nothing.
+        ([("lia", NORTH), ("wim", SOUTH), ("wim", NORTH)], LIA_IS_AWAY),
+        # Lia sees both.
+        ([("wim", SOUTH), ("wim", NORTH), ("lia", NORTH)], LIA_IS_AWAY),
+        # The order shows what Lia saw.
+        ([("wim", SOUTH), ("lia", NORTH)], WIM_IS_AWAY + LIA_IS_AWAY),
+        ([("lia", NORTH), ("wim", SOUTH)], LIA_IS_AWAY + WIM_IS_AWAY),
+    ],
+)
+def test_a_narrator_tells_turns_before_others_cease_to_see_them(tmp_path, turns, told):
+    looks = [
+        f"  - {{agent: {who}, program: 'await lookAt(bot, new Vec3{where});'}}\n"
+        for who, where in turns
+    ]
+    take = "'await getItemFromChest(bot, new Vec3(1, 1, 1), {diamond: 1});'"
+    file = tmp_path / "turns.yaml"
+    file.write_text(TURNS + "".join(looks) + f"  - {{agent: eva, program: {take}}}\n")
+    with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as nest:
+        nest.play()
+        course = nest["/"].render("{{ branch | story }}")
+    first, last = "put a diamond into it. ", "Eva opened the red box and took"
+    assert course.partition(first)[2].partition(last)[0] == told
+
+
+def test_changes_of_sight_before_the_first_event_belong_to_the_course(tmp_path):
+    turn = "  - {agent: wim, program: 'await lookAt(bot, new Vec3(4, 2, 20));'}\n"
+    first, mark, script = TURNS.partition("script:\n")
+    file = tmp_path / "turns.yaml"
+    file.write_text(first + mark + turn + script)
+    with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as nest:
+        nest.play()
+        beginning, course = (
+            nest["/"].render("{{ branch | %s }}" % part) for part in ("beginning", "story")
+        )
+    assert "At first Wim could see Eva, Lia, the red box and the blue box." in beginning
+    assert course.startswith(WIM_IS_AWAY + "Eva opened the red box")

@@ -304,6 +304,37 @@ def test_names_are_drawn_beside_parameters_but_for_those_that_parameters_have(tm
     assert all(each.values["who"] == "ann" and "agents" not in each.values for each in named)
 
 
+DRAWN = """
+name: drawn
+map:
+  legend:
+    c: {container: chest, items: {bone: 1}}
+    a: {agent: ann, inventory: {"${item}": 1}}
+    b: {agent: bob}
+  floors: |
+    c...
+    .a.b
+parameters: {item: {default: diamond, values: [diamond, apple]}}
+"""
+
+
+def test_what_a_map_draws_is_renamed_as_if_it_were_written(tmp_path):
+    file = tmp_path / "drawn.yaml"
+    file.write_text(DRAWN)
+    many = drawn_variations(read_document(str(file)), 30, "seed")
+    assert len({each.values["agents"]["bob"] for each in many}) > 5
+    assert {tuple(each.values["items"]) for each in many} == {("bone",)}
+    assert {each.values["item"] for each in many} == {"diamond", "apple"}
+    plan = bn.Study(str(file), variations=30).plan()
+    assert len(plan.cells) == 30 and not plan.invalid
+
+
+def test_more_variations_than_there_can_be_are_refused_at_once(tmp_path):
+    document = read_document(small_in(tmp_path, SMALL.replace("range: [1, 64]", "values: [1]")))
+    with pytest.raises(InputError, match=r"variations is 40,000,000, and there are at most 1,104"):
+        drawn_variations(document, 40_000_000, "seed")
+
+
 def test_a_study_s_constraints_take_no_variation_from_those_asked_for(tmp_path):
     study = bn.Study(small_in(tmp_path), variations=20, constraints=["count > 32"])
     plan = study.plan()

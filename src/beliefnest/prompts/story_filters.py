@@ -54,7 +54,7 @@ def beginning(branch: BranchView, narrated: bool = False, coordinates: bool = Fa
     tells everything, with what each agent can see. `coordinates=true` adds positions.
     """
     teller = _Teller(branch, narrated=narrated, coordinates=coordinates)
-    return " ".join(teller.scene(itertools.takewhile(_is_scene, branch.observations)))
+    return " ".join(teller.scene(_scene(branch.observations)))
 
 
 @filter("story")
@@ -66,7 +66,7 @@ def story(branch: BranchView, narrated: bool = False, coordinates: bool = False)
     """
     teller = _Teller(branch, narrated=narrated, coordinates=coordinates)
     all_ = branch.observations
-    before = list(itertools.takewhile(_is_scene, all_))
+    before = list(_scene(all_))
     return " ".join(teller.course(all_[len(before) :], before)) or "Nothing happened."
 
 
@@ -78,7 +78,7 @@ def captions(branch: BranchView) -> list[tuple[int, str]]:
     all_ = branch.observations
     if not all_:
         return []
-    before = list(itertools.takewhile(_is_scene, all_))
+    before = list(_scene(all_))
     opening = " ".join(_teller_of(branch).scene(before))
     course = _teller_of(branch).dated_course(all_[len(before) :], before)
     return [*([(all_[0].tick, opening)] if opening else []), *course]
@@ -88,8 +88,13 @@ def _teller_of(branch: BranchView) -> "_Teller":
     return _Teller(branch, narrated=False, coordinates=False)
 
 
-def _is_scene(each: Observation) -> bool:
-    return not isinstance(each, Happened)
+def _scene(told: Sequence[Observation]) -> Iterator[Observation]:
+    """Yield the observations before the first event and the first later change of sight."""
+    first = told[0].tick if told else 0
+    for each in told:
+        if isinstance(each, Happened) or (isinstance(each, Sight) and each.tick > first):
+            return
+        yield each
 
 
 def _rows(each: Observation, owner: str | None) -> Iterator[str]:
@@ -304,6 +309,7 @@ class _Teller:
                 nor = f", nor could {listed(back, 'or')} see {self._object(each.viewer)}"
                 told = f"{self._subject(each.viewer)} could no longer see {listed(parts, 'or')}"
                 yield _sentence(told + (nor if back else ""))
+            lost[each.viewer] = []
             self._keep_sight(each)
         for each in sorted(sights, key=lambda each: -len(seen[each.viewer])):
             parts = self._seen(seen[each.viewer], each.places)
@@ -312,6 +318,7 @@ class _Teller:
                 also = f", and {listed(back)} could see {self._object(each.viewer)}"
                 told = f"{self._subject(each.viewer)} could now see {listed(parts)}"
                 yield _sentence(told + (also if back else ""))
+            seen[each.viewer] = []
 
     def _mutual(self, viewer: str, changed: dict[str, list[str]]) -> list[str]:
         """Remove and return those for whom the same changed about the viewer, if all of them."""

@@ -10,8 +10,14 @@ from typing import Any
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.scenarios.document import Document, plain
+from beliefnest.scenarios.drawn_map import with_map
 from beliefnest.scenarios.loading import condition_numbers
-from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in
+from beliefnest.scenarios.parameters import (
+    broken_constraint,
+    choices,
+    declared_in,
+    with_parameters,
+)
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.symmetry import SYMMETRIES
 from beliefnest.studies.variation import Variation
@@ -54,6 +60,11 @@ def drawn_variations(
         InputError: There are fewer variations, or almost none keeps the constraints.
     """
     drawing = _Drawing.of(document)
+    if _MOST_LISTED < count > drawing.size:
+        raise InputError(
+            f"{document.source}: variations is {count:,}, and there are at most "
+            f"{drawing.size:,}: all combinations of {drawing.text}; ask for fewer"
+        )
     draws = _draws(document, drawing, random.Random(seed), keeps or (lambda _: True))
     found = list(itertools.islice(draws, count))
     if not found:
@@ -122,8 +133,9 @@ class _Drawing:
         content: Any = plain(document.root)
         taken = frozenset(_words(content))
         fixed = _named_by_parameters(content)
-        agents = tuple(name for name in _proper_names(content) if name not in fixed)
-        items = tuple(name for name in _carried(content) if name not in fixed)
+        scene = _resolved(document)
+        agents = tuple(name for name in _proper_names(scene) if name not in fixed)
+        items = tuple(name for name in _carried(scene) if name not in fixed)
         return cls(
             lists={name: choices(entry) for name, entry in declared.items()},
             ranges={name: entry.range for name, entry in declared.items() if entry.range},
@@ -186,6 +198,13 @@ class _Drawing:
             ]
         for values in itertools.product(*choices.values()):
             yield Variation(dict(zip(choices, values, strict=True)))
+
+
+def _resolved(document: Document) -> Any:
+    """Return the plain content of a document, with what a map draws among its agents."""
+    if "map" in document.root.value:
+        document = with_map(with_parameters(document, {}))
+    return plain(document.root)
 
 
 def _symmetries(document: Document) -> tuple[str, ...]:

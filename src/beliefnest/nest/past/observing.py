@@ -47,6 +47,15 @@ class _Look:
     agents: Mapping[str, Point]
     places: frozenset[Position]
 
+    @property
+    def all(self) -> frozenset[str | Position]:
+        """Return everything in view: names of agents, positions of containers and signs."""
+        return frozenset((*self.agents, *self.places))
+
+
+_Looks = Mapping[str, _Look]
+_NOTHING_SEEN = _Look({}, frozenset())
+
 
 @dataclass(frozen=True)
 class _Scene:
@@ -59,7 +68,7 @@ class _Scene:
         items: Dropped items that the owner sees, by number.
     """
 
-    looks: Mapping[str, _Look]
+    looks: _Looks
     contents: Mapping[Position, Items]
     texts: Mapping[Position, str]
     items: Mapping[int, DroppedItem]
@@ -70,11 +79,62 @@ def observations_of(
 ) -> tuple[Observation, ...]:
     """Return the observations of a node's owner until a tick; None: until now.
 
-    Changes of sight are told before the next perceived event: those in between have no
-    consequences. In the real world every event and every agent's sight is told.
+    Changes of sight are told before the next perceived event; those that are undone before it have
+    no consequences. In the real world every event and every agent's sight is told, also that an
+    agent turned before another one stopped or began to see it.
     """
     moment = recording.moment(path, tick)
     return tuple(_Observer(recording, path).read(moment))
+
+
+class _Turns:
+    """Follow turns of agents that no story has told yet, and who saw them.
+
+    A turn is a change of what an agent sees while it and the things in question stand still.
+    """
+
+    def __init__(self) -> None:
+        self._tick = 0
+        self._looks: _Looks = {}
+        self._feet: Mapping[str, Point | None] = {}
+        self._turned: dict[str, set[str | Position]] = {}
+
+    def before(
+        self, told: _Looks, tick: int, looks: _Looks, feet: Mapping[str, Point | None]
+    ) -> tuple[int, _Looks] | None:
+        """Return the looks to tell before those of a tick, and take these over.
+
+        Args:
+            told: Looks as they were told last.
+            tick: The tick.
+            looks: Looks at this tick.
+            feet: Feet of all agents at this tick.
+
+        Returns:
+            The previous tick and its looks, if at this tick another agent loses or gains sight of
+            one that has turned untold; None: nothing to tell.
+        """
+        previous, self._looks = self._looks, looks
+        last, self._tick = self._tick, tick
+        stands = {name for name, point in feet.items() if self._feet.get(name) == point}
+        self._feet = feet
+        if looks == previous:
+            return None
+        is_told = False
+        for viewer, look in looks.items():
+            past = previous.get(viewer, _NOTHING_SEEN).all
+            untold = past ^ told.get(viewer, _NOTHING_SEEN).all
+            turned = self._turned.get(viewer, set()) & untold
+            if turned and _watchers(viewer, looks) != _watchers(viewer, previous):
+                is_told = True
+            changed = (past ^ look.all) if viewer in stands else frozenset()
+            still = {each for each in changed if not isinstance(each, str) or each in stands}
+            self._turned[viewer] = turned | still
+        return (last, previous) if is_told else None
+
+
+def _watchers(viewer: str, looks: _Looks) -> frozenset[str]:
+    return frozenset(who for who, look in looks.items() if viewer in look.agents)
 
 
 class _Observer:
@@ -89,6 +149,7 @@ class _Observer:
         self._signs = frozenset(sign_places(recording.setting))
         self._places = tuple(sorted({*snapshot.containers, *self._signs}))
         self._seen: dict[str, _Look] = {}
+        self._turns = _Turns()
         self._contents: dict[Position, Items | None] = {}
         self._texts: dict[Position, str] = {}
         self._lying: set[int] = set()
@@ -113,6 +174,8 @@ class _Observer:
                 after = journal.events_until(key, number + 1)
                 before = self._scene(forest) if after > count else None
                 history.advance(key, forest, number + 1)
+                if self._owner is None:
+                    yield from self._turned(forest)
                 if before is not None:
                     tick = forest.tick
                     events = NodeView(forest, self._path).events_since(count)
@@ -186,9 +249,20 @@ class _Observer:
             now[name] = now.get(name, 0) + stores * count
         self._contents[place] = {name: count for name, count in now.items() if count > 0}
 
+    def _turned(self, forest: Forest) -> Iterator[Observation]:
+        """Yield the turns that must be told before what others see at this tick."""
+        feet = {name: forest.feet(self._path, name) for name in forest.context.agents}
+        told = self._turns.before(self._seen, forest.tick, self._looks(forest), feet)
+        if told is not None:
+            yield from self._sights(*told)
+
     def _changes(self, tick: int, scene: _Scene) -> Iterator[Observation]:
-        for viewer, look in scene.looks.items():
-            past = self._seen.get(viewer, _Look({}, frozenset()))
+        yield from self._sights(tick, scene.looks)
+        yield from self._findings(tick, scene)
+
+    def _sights(self, tick: int, looks: _Looks) -> Iterator[Observation]:
+        for viewer, look in looks.items():
+            past = self._seen.get(viewer, _NOTHING_SEEN)
             sight = Sight(
                 tick,
                 viewer,
@@ -200,7 +274,6 @@ class _Observer:
             self._seen[viewer] = look
             if sight.agents or sight.places or sight.lost_agents or sight.lost_places:
                 yield sight
-        yield from self._findings(tick, scene)
 
     def _findings(self, tick: int, scene: _Scene) -> Iterator[Observation]:
         for at, text in scene.texts.items():
@@ -218,7 +291,7 @@ class _Observer:
 
     def _scene(self, forest: Forest) -> _Scene:
         view = NodeView(forest, self._path)
-        looks = {name: self._look(forest, name, node) for name, node in self._nodes.items()}
+        looks = self._looks(forest)
         box = forest.context.box
         if self._owner is None:
             contents = {at: held.items for at, held in view.containers.items()}
@@ -243,9 +316,12 @@ class _Observer:
         # A sign without text is not among `view.signs`.
         return {at: view.signs.get(at, "") for at in sorted(signs)}
 
+    def _looks(self, forest: Forest) -> _Looks:
+        return {name: self._look(forest, name, node) for name, node in self._nodes.items()}
+
     def _look(self, forest: Forest, viewer: str, node: BeliefPath) -> _Look:
         if not forest.is_current(node, viewer):
-            return _Look({}, frozenset())
+            return _NOTHING_SEEN
         box = forest.context.box
         cells = {cell_of(box, at): at for at in self._places}
         seen = forest.current_blocks(node, cells)
