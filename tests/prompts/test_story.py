@@ -228,8 +228,7 @@ def test_changes_of_sight_before_the_first_event_belong_to_the_course(tmp_path):
     file.write_text(first + mark + turn + script)
     with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as nest:
         nest.play()
-        beginning, course = (
-            nest["/"].render("{{ branch | %s }}" % part) for part in ("beginning", "story")
-        )
+        beginning = nest["/"].render("{{ branch | beginning }}")
+        course = nest["/"].render("{{ branch | story }}")
     assert "At first Wim could see Eva, Lia, the red box and the blue box." in beginning
     assert course.startswith(WIM_IS_AWAY + "Eva opened the red box")

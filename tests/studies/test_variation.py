@@ -331,7 +331,7 @@ def test_what_a_map_draws_is_renamed_as_if_it_were_written(tmp_path):
 
 def test_more_variations_than_there_can_be_are_refused_at_once(tmp_path):
     document = read_document(small_in(tmp_path, SMALL.replace("range: [1, 64]", "values: [1]")))
-    with pytest.raises(InputError, match=r"variations is 40,000,000, and there are at most 1,104"):
+    with pytest.raises(InputError, match=r"variations is 40,000,000, and there are at most 1,152"):
         drawn_variations(document, 40_000_000, "seed")
 
 
