@@ -137,7 +137,9 @@ probes:
         run_scenario(nest, scenario, model, 0, 0.0, lambda what, done, total: None)
     assert model.asked[0][-1].text == "ann: Rest."
     (tmp_path / "short.yaml").write_text(text.replace("short.txt", "shirt.txt"), encoding="utf-8")
-    with pytest.raises(bn.ScenarioError, match=r"short\.yaml:5: .*shirt\.txt cannot be read"):
+    with pytest.raises(
+        bn.ScenarioError, match=r"short\.yaml:5: .*no template 'shirt\.txt'; .* story"
+    ):
         bn.Scenario.load(str(tmp_path / "short.yaml"))
 
 

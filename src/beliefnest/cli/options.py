@@ -384,6 +384,13 @@ class StatsOptions:
     positions: Annotated[
         bool, typer.Option("--positions", help="Count chosen options by their position.")
     ] = False
+    figure: Annotated[
+        Path | None,
+        typer.Option(
+            help="Draw the accuracies to this .svg, .pdf or .png file: the first --by along the "
+            "axis, the others by colour."
+        ),
+    ] = None
     json: Json = False
 
 

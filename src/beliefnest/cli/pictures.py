@@ -11,6 +11,7 @@ from beliefnest.pictures.overview import Card, ConditionPicture, Note
 from beliefnest.pictures.palette import Mark, age_text
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores
 from beliefnest.scenarios.expected_acts import Arrives
+from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_kinds import Infers
 from beliefnest.scenarios.inferring import means_text
 from beliefnest.scenarios.naming import container_name, named_place, titled
@@ -19,7 +20,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
-from beliefnest.world.words import with_the
+from beliefnest.world.words import listed, with_the
 
 __all__ = ["read_condition", "read_trails"]
 
@@ -151,6 +152,17 @@ def _held(state: State, outcome: Outcome) -> bool | None:
     return all(verdicts) if verdicts else None
 
 
+def _right(outcome: ProbeOutcome) -> str:
+    """Return the right answers to questions with other answers, in words."""
+    wrong = [each.expected for each in outcome.verdicts if not each.ok]
+    right = [
+        listed([repr(text) for text in each.right], "or")
+        for each in wrong
+        if isinstance(each, Answers)
+    ]
+    return f" (right: {' and '.join(right)})" if right else ""
+
+
 def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
     """Return a card with the prediction of a probe, and if it is as expected."""
     probe = outcome.probe
@@ -160,7 +172,7 @@ def _prediction_card(outcome: ProbeOutcome, scenario: Scenario) -> Card:
         deed = means_text(outcome.inferred.means, factors)
     elif outcome.trial is None:
         answers = [repr(reply.answer) for reply in outcome.replies if reply.answer]
-        deed = f"{agent} answers {' and '.join(answers) or 'nothing'}"
+        deed = f"The model answers {' and '.join(answers) or 'nothing'}{_right(outcome)}"
     elif any(isinstance(each, Arrives) for each in probe.expect):
         where = (
             "nowhere" if outcome.arrived is None else named_place(outcome.arrived, scenario.setting)

@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from rich import box
@@ -50,11 +51,26 @@ def run_stats(options: StatsOptions) -> int:
         }
     if options.positions:
         found["positions"] = result.counted_positions(result.checked(by or result.position_groups))
+    if options.figure is not None:
+        _draw(result, options.figure, by)
     if options.json:
         sys.stdout.write(json.dumps(found, indent=2) + "\n")
     else:
         _print(found, options.by or list(result.groups))
+    if options.figure is not None and not options.json:
+        stdout().print(f"figure: {printable(str(options.figure))}", highlight=False, soft_wrap=True)
     return 0
+
+
+def _draw(result: StudyResult, file: Path, by: list[str] | None) -> None:
+    kinds = (".svg", ".pdf", ".png")
+    if file.suffix not in kinds:
+        raise InputError(f"{file} is no picture; give a name that ends with {', '.join(kinds)}")
+    figure = result.plot(by)
+    try:
+        figure.savefig(file)
+    except OSError as error:
+        raise InputError(f"{file} cannot be written: {error.strerror}") from None
 
 
 def _fitted(result: StudyResult, options: StatsOptions) -> Regression | None:

@@ -11,6 +11,7 @@ from beliefnest.llm.cache import CachedModel, CacheMode
 from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.llm.offline import OfflineModel
+from beliefnest.llm.option_models import OPTION_MODELS
 from beliefnest.llm.providers import PROVIDERS, endpoint
 from beliefnest.llm.recorded_models import FileRecordingModel, load_replay, load_script
 from beliefnest.llm.remote import AnswerLimits, RemoteModel
@@ -59,7 +60,7 @@ class Connection:
 def model_names() -> tuple[str, ...]:
     """Return the forms of names that `resolve_model` accepts."""
     remote = (f"{name}:MODEL" for name in PROVIDERS)
-    return ("offline", "replay:FILE", "scripted:FILE", *remote)
+    return ("offline", *OPTION_MODELS, "replay:FILE", "scripted:FILE", *remote)
 
 
 def resolve_model(
@@ -72,7 +73,8 @@ def resolve_model(
     """Return the bare model of a name; each answer takes one request.
 
     Args:
-        name: `offline`, `replay:FILE`, `scripted:FILE` or `PROVIDER:MODEL`.
+        name: `offline`, `chance`, `first-option`, `replay:FILE`, `scripted:FILE` or
+            `PROVIDER:MODEL`.
         environment: Variables with keys and base URLs, usually those of the process.
         limits: Limits on one answer of a provider.
         clock: Clock for these limits.
@@ -84,6 +86,8 @@ def resolve_model(
     """
     if name == "offline":
         return OfflineModel()
+    if name in OPTION_MODELS:
+        return OPTION_MODELS[name]
     kind, _, rest = name.partition(":")
     if kind not in ("replay", "scripted", *PROVIDERS):
         raise UnknownNameError(f"no model {name!r}{_nearest(kind)}")
@@ -168,6 +172,8 @@ def _placeholder(kind: str) -> str:
 
 
 def _nearest(kind: str) -> str:
-    close = difflib.get_close_matches(kind, ["offline", "replay", "scripted", *PROVIDERS], n=1)
+    close = difflib.get_close_matches(
+        kind, ["offline", *OPTION_MODELS, "replay", "scripted", *PROVIDERS], n=1
+    )
     hint = f"; did you mean {close[0]}?" if close else ""
     return f"{hint}; a model is one of {', '.join(model_names())}"

@@ -147,7 +147,8 @@ class Answers(Expected):
 
     def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
         answers = {each.question: each.answer for each in outcome.replies}
-        return f"answers {answers.get(self.question) or 'nothing'}"
+        told = f"answers {answers.get(self.question) or 'nothing'}"
+        return told if judged.ok else f"{told}, right is {listed(self.right, 'or')}"
 
     def account(self, judged: Judgement, outcome: Happened, setting: Setting, agent: str) -> str:
         told = "" if judged.ok else f": {judged.why_not}"

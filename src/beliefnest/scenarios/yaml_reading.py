@@ -15,6 +15,7 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from beliefnest.errors import ScenarioError
 from beliefnest.files import decode_json, read_regular_text
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import MAX_DEPTH, Document, KeyPath, YamlNode
 
 __all__ = ["parse_yaml", "read_yaml", "template_text", "templates_file"]
@@ -67,6 +68,12 @@ def template_text(document: Document, path: KeyPath, name: str) -> str:
     file = document.folder / name
     try:
         return read_regular_text(file)
+    except FileNotFoundError:
+        message = (
+            f"there is no template {name!r}; give a file beside the scenario, or the name of a "
+            f"built-in template: {', '.join(BUILT_IN_TEMPLATES)}"
+        )
+        raise document.fault(path, message) from None
     except (OSError, ValueError) as error:
         raise document.fault(path, f"{file} cannot be read: {error}") from None
 

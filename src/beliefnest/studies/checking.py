@@ -1,5 +1,6 @@
 """Checks of a study's keys; each error names the key."""
 
+import difflib
 import json
 import math
 import os
@@ -21,6 +22,7 @@ __all__ = [
     "is_amount",
     "is_count",
     "is_whole",
+    "nearest_or_all",
     "several",
 ]
 
@@ -50,6 +52,12 @@ def several(key: str, names: object) -> tuple[str, ...]:
     raise StudyKeyError(key, f"{key} is {names!r}; give a name, or a list of names")
 
 
+def nearest_or_all(name: str, known: Sequence[str]) -> str:
+    """Return the end of a message about an unknown name: a similar name, or else all names."""
+    close = difflib.get_close_matches(name, known, n=1)
+    return f"; did you mean {close[0]!r}?" if close else f"; there are {', '.join(known)}"
+
+
 def checked_columns(names: object, known: Sequence[str]) -> list[str]:
     """Return one or several names of columns as a list.
 
@@ -60,7 +68,7 @@ def checked_columns(names: object, known: Sequence[str]) -> list[str]:
     chosen = several("by", names)
     for name in chosen:
         if name not in known:
-            raise InputError(f"there is no column {name!r}; there are {', '.join(known)}")
+            raise InputError(f"there is no column {name!r}{nearest_or_all(name, known)}")
     return list(chosen)
 
 

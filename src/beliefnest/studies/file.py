@@ -12,7 +12,7 @@ from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.sources import builtin_names
 from beliefnest.scenarios.yaml_reading import read_yaml
-from beliefnest.studies.checking import StudyKeyError, several
+from beliefnest.studies.checking import StudyKeyError, nearest_or_all, several
 from beliefnest.studies.design import Design, template_named
 from beliefnest.studies.episode_design import EpisodeDesign, Policies, listed
 from beliefnest.studies.study_keys import StudyKeys, design_of
@@ -82,6 +82,6 @@ def _fault(document: Document, error: str) -> ScenarioError:
     key = place.rstrip("`").partition("[")[0].partition(".")[0]
     if what.startswith("Object contains unknown field"):
         key = what.split("`")[1]
-        what = f"unknown key; keys are {', '.join(StudyKeys.__struct_fields__)}"
+        what = f"unknown key{nearest_or_all(key, StudyKeys.__struct_fields__)}"
     what = what[:1].lower() + what[1:].replace("`", "'")
     return document.fault((key,) if key else (), what)

@@ -1,6 +1,7 @@
 """Paragraph for a methods section, from what a study or a run has recorded."""
 
 import hashlib
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -278,7 +279,9 @@ def _subjects(plan: Mapping[str, Any]) -> str:
 def _factors(plan: Mapping[str, Any]) -> Iterator[str]:
     variations = plan["variations"]
     if isinstance(variations, int):
-        yield f"{counted(variations, 'drawn variation')} of each scenario"
+        told = f"{counted(variations, 'drawn variation')} of each scenario"
+        varied = _varied(plan)
+        yield f"{told} (in {_listed(varied)})" if varied else told
     elif variations:
         lists = [f"{_code(n)} ({counted(len(v), 'value')})" for n, v in variations.items()]
         yield f"all valid combinations of {_listed(lists)}"
@@ -295,6 +298,14 @@ def _factors(plan: Mapping[str, Any]) -> Iterator[str]:
         yield "a balanced design, in which each variation is played under one condition"
     elif design is not None:
         yield "a Latin square, which divides the cells into lists"
+
+
+def _varied(plan: Mapping[str, Any]) -> list[str]:
+    """Return what differs between drawn variations, with names in code marks."""
+    drawn = [cell["key"]["variation"] for cell in plan["cells"]]
+    names = dict.fromkeys(name for each in drawn for name in each)
+    texts = {name: {json.dumps(each.get(name)) for each in drawn} for name in names}
+    return [_code(name) for name, values in texts.items() if len(values) > 1]
 
 
 def _asking(plan: Mapping[str, Any]) -> str:

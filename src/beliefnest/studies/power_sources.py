@@ -22,7 +22,7 @@ def assumed_sources(
     by: Sequence[str],
     assumed: Mapping[str, float],
     *,
-    paired: bool,
+    between: str | None,
 ) -> Iterator[Named]:
     """Yield a source for each number of rows that variations of a planned study have in a group.
 
@@ -30,7 +30,7 @@ def assumed_sources(
         rows: Planned rows.
         by: Columns that define the groups.
         assumed: `accuracy`, `difference` and `correlation` of `Assumed`.
-        paired: True if groups are compared on the same variations.
+        between: Column whose values are compared on the same variations; None: none.
     """
     counts: dict[tuple[Any, ...], Counter[str]] = {}
     for row in rows:
@@ -40,7 +40,9 @@ def assumed_sources(
     sizes = {Counter(each.values()).most_common(1)[0][0] for each in counts.values()}
     for size in sorted(sizes):
         told = f"{size} row{'' if size == 1 else 's'} in each variation"
-        yield told, Assumed(**assumed, rows=size, pairs=size if paired else 0)
+        if between is not None:
+            told += f" and {between}"
+        yield told, Assumed(**assumed, rows=size, pairs=0 if between is None else size)
 
 
 def recorded_sources(

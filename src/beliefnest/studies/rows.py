@@ -54,9 +54,20 @@ def _variation(source: Source) -> str:
     return source.cell.get("variation") or variation_id(key["scenario"], key["variation"])
 
 
-def _order(path: str | None) -> int | None:
-    """Return the number of agents in a belief path: 0 for the real world."""
-    return None if path is None else len(normalised(filter(None, path.split("/"))))
+def _order(source: Source) -> int | None:
+    """Return the greatest number of agents in the belief paths of a probe: 0 for the real world.
+
+    The paths are that of the belief which the prompt tells, and those of the beliefs that give the
+    right answers: a narrator can ask about any belief.
+    """
+    path = source.result.get("path")
+    if path is None:
+        return None
+    questions = (source.result.get("expected") or {}).get("answers", ())
+    # Plans have the source of an answer in the place of the answer.
+    sources = (each.get("right_from", each["right"]) for each in questions)
+    paths = [path, *(each["believed"] for each in sources if isinstance(each, Mapping))]
+    return max(len(normalised(filter(None, each.split("/")))) for each in paths)
 
 
 def _opened(places: list[list[float]] | None) -> str | None:
@@ -105,8 +116,8 @@ PROBES = Table(
             identifies=True,
         ),
         Column("path", "string", of_result("path"), shown=True, identifies=True),
-        # The order of the probed belief.
-        Column("order", "int64", of_result("path", _order), shown=True),
+        # The order of the probed belief, or of the one that gives the right answer.
+        Column("order", "int64", _order, shown=True),
         Column("acts_in", "string", of_result("acts_in"), identifies=True),
         Column("agent", "string", of_result("agent"), identifies=True),
         Column("task", "string", of_result("task"), identifies=True),

@@ -387,9 +387,9 @@ class Study:
             raise InputError(f"{between!r} does not vary in this study; name a column that does")
         columns = (*self._table.groups, *self._table.further_groups)
         by = [name for name in columns if name in varied]
-        paired = between is not None and plan.get("design") != "balanced"
+        paired = None if plan.get("design") == "balanced" else between
         assumed = {"accuracy": accuracy, "difference": difference, "correlation": correlation}
-        return list(assumed_sources(rows, by, assumed, paired=paired))
+        return list(assumed_sources(rows, by, assumed, between=paired))
 
     def power(
         self,
