@@ -139,7 +139,7 @@ def test_columns_to_sum_up_by_are_asked_for_on_the_command_line(
     file = study_in(tmp_path, "scenarios: [small.yaml]\nworld: scripted\nvariations: 3\n")
     command = ["study", str(file), "--out", str(tmp_path / "out"), "--jobs", "1"]
     assert run_command_line([*command, "--by", "itme", "--json"]) == 2
-    assert "there is no column 'itme'" in capsys.readouterr().err
+    assert "there is no column 'itme'; did you mean 'item'?" in capsys.readouterr().err
     assert not list(tmp_path.glob("out/cells/*"))
     assert run_command_line([*command, "--by", "variation", "--by", "order", "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)["summary"]
@@ -175,3 +175,35 @@ def test_a_cell_that_was_played_with_another_seed_is_played_again(tmp_path: Path
     result.folder.write_cell(cell["name"], {**content, "seed": 0, "ticks": -1})
     (row,) = study.run(tmp_path / "out", jobs=1).rows
     assert row["seed"] == cell["seed"] and row["script_ticks"] == content["ticks"]
+
+
+NARRATED = """
+  - label: narrated
+    path: /
+    expect:
+      answers:
+        question: Where does Ann think the ${item} is?
+        options: [box, floor]
+        right: {believed: /ann, item: "${item}"}
+"""
+
+
+def test_a_narrated_question_has_the_order_of_the_belief_that_answers_it(tmp_path: Path) -> None:
+    study = study_in(tmp_path, "{scenarios: [small.yaml], models: [chance], variations: 6}")
+    small_in(tmp_path, SMALL + NARRATED.lstrip("\n"))
+    played = bn.Study.load(study).run(tmp_path / "out", jobs=1)
+    rows = played.frame()
+    assert set(rows[rows["probe"] == "narrated"]["path"]) == {"/"}
+    assert set(rows["order"]) == {1}
+    # Before it is played, too: both probes are in one group.
+    (label, _), *others = bn.Study.load(study).power_sources()
+    assert label == "2 rows in each variation"
+    assert not others
+
+
+def test_a_wrong_key_of_a_study_names_the_nearest_one(tmp_path: Path) -> None:
+    study = study_in(tmp_path, "{scenarios: [small.yaml], variation: 6}")
+    with pytest.raises(
+        bn.ScenarioError, match=r"variation: unknown key; did you mean 'variations'\?"
+    ):
+        bn.Study.load(study)
