@@ -106,6 +106,11 @@ def test_an_instance_is_the_same_under_all_conditions_and_given_values_stay(own:
     assert first["agents"]["bob"] != second["agents"]["bob"]
     given = bn.Task.load("hunt.yaml", 5, box=[1, 1, 1]).form.scenario
     assert given["containers"][0]["at"] == [1, 1, 1]
+    # A given value may be the default of a parameter that is drawn.
+    on_default = bn.Task.load("hunt.yaml", 5, box=[9, 1, 2]).form.scenario["containers"]
+    assert on_default[0]["at"] == [9, 1, 2] != on_default[1]["at"]
+    with pytest.raises(bn.ScenarioError, match="no parameter 'bax'; declared are box, lure"):
+        bn.Task.load("hunt.yaml", 5, bax=[1, 1, 1])
 
 
 @pytest.mark.parametrize(

@@ -151,6 +151,25 @@ def test_the_command_tells_if_a_task_is_not_what_it_claims(
     assert '"policy": "search:2"' in told
 
 
+def test_the_baselines_of_a_file_have_a_table(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.yaml"
+    goal = {"reach": [{"agent": "ann", "at": [11, 1, 3], "within": 1}]}
+    rules = {"goal": goal, "players": ["ann"], "policies": {"bob": "random"}, "rounds": 2}
+    file.write_text(json.dumps({**HALL, "episode": rules}), encoding="utf-8")
+    command = ["play", str(file), "--baselines", "--seeds", "1"]
+    # The task needs no Theory of Mind, but its file states order 1.
+    assert run_command_line([*command, "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)["baselines"]
+    assert {each["policy"]: each["right"] for each in found}["search:0"] == 1
+    assert {each["task"] for each in found} == {"hall"}
+    assert run_command_line([*command, "--page", str(tmp_path / "page.md")]) == 2
+    assert "--page is for built-in tasks" in capsys.readouterr().err
+    assert run_command_line([*command, "--rounds", "2"]) == 2
+    assert "--rounds has no effect on --baselines" in capsys.readouterr().err
+
+
 def test_the_command_goes_on_with_no_other_episode(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -1,8 +1,10 @@
 """Requests to policies; a policy that fails or is slow loses only its own round."""
 
 import threading
+import traceback
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import msgspec
 
@@ -101,7 +103,7 @@ def _decided(policy: Policy, view: AgentView) -> Decision:
     try:
         program: object = policy.act(view)
     except Exception as error:  # noqa: BLE001 - a policy may be anybody's, and raise anything
-        fault = f"{type(error).__name__}: {error}"
+        fault = f"{_place_of(error)}{type(error).__name__}: {error}"
         return Decision(fault=fault[:1000], spent=_spent(policy) - before)
     spent = _spent(policy) - before
     fault = ""
@@ -120,6 +122,16 @@ def _decided(policy: Policy, view: AgentView) -> Decision:
             return Decision(fault="it has no interrupted program to continue")
         return Decision(view.last.program, spent=spent, goes_on=True, considered=view.considered)
     return Decision(program if program.strip() else "", spent=spent, considered=view.considered)
+
+
+def _place_of(error: Exception) -> str:
+    """Return the line of a policy's own file at which it failed, such as `mine.py:7: `.
+
+    A run has only the name of the file, so that it does not depend on the folder.
+    """
+    frames = traceback.extract_tb(error.__traceback__)[1:]
+    own = [frame for frame in frames if frame.filename == frames[0].filename]
+    return f"{Path(own[-1].filename).name}:{own[-1].lineno}: " if own else ""
 
 
 def _spent(policy: Policy) -> Spent:

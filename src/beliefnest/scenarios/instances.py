@@ -23,7 +23,12 @@ from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.format import InstanceEntry, ParameterEntry
 from beliefnest.scenarios.loading import condition_numbers, scenario_in
-from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in
+from beliefnest.scenarios.parameters import (
+    broken_constraint,
+    check_declared,
+    choices,
+    declared_in,
+)
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EYE_HEIGHT, Box, Position
 from beliefnest.world.words import counted
@@ -55,8 +60,10 @@ def drawn_instance(document: Document, seed: int, given: Mapping[str, object]) -
         ScenarioError: The scenario or a rule is wrong, or no draw keeps all rules.
     """
     drawing = _Drawing.of(document, given)
-    # A draw that makes no scenario is rejected; what is wrong in every draw is said at once.
-    written = scenario_in(document, None, given)
+    # A draw that makes no scenario is rejected; what is wrong in every draw is said at once. Given
+    # values need not fit the defaults of parameters that are drawn.
+    written = scenario_in(document, None)
+    check_declared(document, drawing.declared, given)
     drawing.check_agents(written.setting.snapshot.agents)
     chance = random.Random(f"{written.setting.name} {seed}")
     refused: Counter[str] = Counter()

@@ -19,7 +19,14 @@ from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, un
 from beliefnest.scenarios.expressions import evaluate, names_in
 from beliefnest.scenarios.format import ParameterEntry
 
-__all__ = ["broken_constraint", "choices", "declared_in", "text_of", "with_parameters"]
+__all__ = [
+    "broken_constraint",
+    "check_declared",
+    "choices",
+    "declared_in",
+    "text_of",
+    "with_parameters",
+]
 
 _HOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}", re.ASCII)
@@ -119,6 +126,20 @@ def broken_constraint(
     return None
 
 
+def check_declared(
+    document: Document, declared: Mapping[str, ParameterEntry], given: Mapping[str, object]
+) -> None:
+    """Check that all given parameters are declared.
+
+    Raises:
+        ScenarioError: One is not.
+    """
+    unknown = [name for name in given if name not in declared]
+    if unknown:
+        known = ", ".join(declared) or "none"
+        raise document.fault((), f"there is no parameter {unknown[0]!r}; declared are {known}")
+
+
 def with_parameters(
     document: Document, given: Mapping[str, object], condition: int | None = None
 ) -> Document:
@@ -135,10 +156,7 @@ def with_parameters(
     """
     _check_instances(document, condition)
     declared = declared_in(document, condition)
-    unknown = [name for name in given if name not in declared]
-    if unknown:
-        known = ", ".join(declared) or "none"
-        raise document.fault((), f"there is no parameter {unknown[0]!r}; declared are {known}")
+    check_declared(document, declared, given)
     if not declared:
         return document
     values = {name: given.get(name, entry.default) for name, entry in declared.items()}

@@ -1,7 +1,10 @@
 """Tasks as environments: their rules are those of episodes; copies; turns."""
 
+import json
 import os
 import warnings
+from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -108,8 +111,39 @@ def test_the_episode_of_a_scenario_gives_rewards_and_costs() -> None:
 def test_options_that_do_not_fit_are_refused(options: dict[str, Any], message: str) -> None:
     with pytest.raises(bn.BeliefNestError, match=message):
         parallel_env("joint-lift", **options)
-    with pytest.raises(bn.InputError, match="parameters are for built-in tasks"):
+    with pytest.raises(bn.ScenarioError, match="no parameter 'far'"):
         parallel_env("sally-anne", parameters={"far": 3})
+    with pytest.raises(bn.InputError, match="parameters are for names and files"):
+        parallel_env(Task.load("joint-lift"), parameters={"far": 3})
+
+
+def test_seeds_of_a_file_are_its_instances_and_parameters_can_be_given(tmp_path: Path) -> None:
+    spots = [[1, 1, 7], [4, 1, 7], [7, 1, 7]]
+    declared = {"default": spots[0], "values": spots}
+    drawn = {
+        **HALL,
+        "parameters": {"box": declared, "decoy": {**declared, "default": spots[1]}},
+        "instances": {"box": {}, "decoy": {"differs_from": ["box"]}},
+        "containers": [{"at": "${box}", "items": {"diamond": 1}}, {"at": "${decoy}"}],
+    }
+    file = tmp_path / "hall.yaml"
+    file.write_text(json.dumps(drawn), encoding="utf-8")
+
+    def full(env: Any, seed: int) -> list[tuple[int, ...]]:
+        env.reset(seed=seed)
+        containers = env.nest["/"].state.containers
+        assert env.layout.containers == tuple(sorted(containers))
+        return [place for place, content in containers.items() if content.items]
+
+    with closing(parallel_env(str(file))) as env:
+        found = [full(env, seed) for seed in range(8)]
+    assert len({place for (place,) in found}) > 1
+    for seed, places in enumerate(found):
+        held = Task.load(str(file), seed).scenario.setting.snapshot.containers
+        assert [place for place, items in held.items() if items] == places
+    # A given value may be the default of a parameter that is drawn.
+    with closing(parallel_env(str(file), parameters={"box": spots[1]})) as env:
+        assert {place for seed in range(4) for place in full(env, seed)} == {tuple(spots[1])}
 
 
 def test_the_conformance_tests_of_the_library_pass() -> None:

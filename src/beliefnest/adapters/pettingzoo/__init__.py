@@ -1,5 +1,6 @@
 """Scenarios as multi-agent environments of PettingZoo (extra `pettingzoo`)."""
 
+import functools
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -49,8 +50,8 @@ def parallel_env(
 
     Args:
         scenario: Name of a built-in task or scenario, path of a file of either, a scenario, or a
-            task. A built-in task has an instance for each seed.
-        parameters: Parameters of a built-in task, such as `{"far": 20}`.
+            task. A built-in task, and a file with `instances`, has an instance for each seed.
+        parameters: Parameters of the task or scenario of a name or file, such as `{"far": 20}`.
         condition: Number of a condition, if `scenario` is a name or a path; None for the
             scenario as written.
         world: `scripted`, without physics, or `embedded`, Minecraft.
@@ -162,17 +163,41 @@ def _loaded(
     from beliefnest.scenarios.rules import GoalEntry
     from beliefnest.scenarios.scenario import Scenario
 
-    if isinstance(scenario, str) and scenario in Task.names():
-        if condition is not None:
-            raise InputError(f"{scenario} is a task and has no conditions; leave the condition out")
-        return Instances(None, scenario, parameters, rounds, round_ticks)
-    if parameters:
-        raise InputError("parameters are for built-in tasks; leave them out")
     if isinstance(scenario, str):
-        is_task = Task.scenario_document(scenario) is None
-        scenario = Task.load(scenario) if is_task else Scenario.load(scenario, condition)
-    if isinstance(scenario, Scenario):
-        if scenario.rules is None or scenario.rules.goal == GoalEntry():
-            return scenario
-        scenario = Task.of(scenario)
-    return Instances(scenario, "", {}, rounds, round_ticks)
+        found = _named(scenario, condition, parameters)
+    elif parameters:
+        raise InputError("parameters are for names and files; give the task or scenario its own")
+    elif isinstance(scenario, Scenario):
+        has_goal = scenario.rules is not None and scenario.rules.goal != GoalEntry()
+        found = functools.partial(_same, Task.of(scenario)) if has_goal else scenario
+    else:
+        found = functools.partial(_same, scenario)
+    return found if isinstance(found, Scenario) else Instances(found, rounds, round_ticks)
+
+
+def _named(
+    name: str, condition: int | None, parameters: "Mapping[str, Any]"
+) -> "Scenario | Callable[[int], Task]":
+    """Return a scenario without a goal, or else a function that returns a task's instances."""
+    from beliefnest.episodes.task import Task
+    from beliefnest.scenarios.instances import has_instances
+    from beliefnest.scenarios.rules import GoalEntry
+    from beliefnest.scenarios.scenario import Scenario
+
+    document = Task.scenario_document(name)
+    if document is None:
+        return functools.partial(Task.load, name, condition=condition, **parameters)
+    is_drawn = has_instances(document)
+    scenario = Scenario.varied(document, condition, {} if is_drawn else parameters)
+    if scenario.rules is None or scenario.rules.goal == GoalEntry():
+        return scenario
+    if not is_drawn:
+        return functools.partial(_same, Task.of(scenario))
+    return functools.partial(
+        Task.instance_of, document, condition=condition, parameters=parameters
+    )
+
+
+def _same(task: "Task", seed: int) -> "Task":
+    """Return a task that has no instances."""
+    return task

@@ -1,9 +1,8 @@
 """Tasks as environments: joint steps are rounds of an episode, and its rules give the rewards."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import msgspec
 
@@ -27,16 +26,12 @@ class Instances:
     """Instances of a task, by seed.
 
     Attributes:
-        task: The task, if there is one instance only.
-        name: Name of a built-in task, which has an instance for each seed.
-        parameters: Parameters of the built-in task.
+        load: Function that returns the instance of a seed.
         rounds: Number of rounds in place of the task's; None: the task's.
         round_ticks: Ticks of a round in place of the task's; None: the task's.
     """
 
-    task: Task | None = None
-    name: str = ""
-    parameters: Mapping[str, Any] = field(default_factory=dict)
+    load: Callable[[int], Task]
     rounds: int | None = None
     round_ticks: int | None = None
 
@@ -46,8 +41,9 @@ class Instances:
         Raises:
             UnknownNameError: A parameter does not exist.
             InputError: A parameter is out of range.
+            ScenarioError: No draw keeps the rules of the file's instances.
         """
-        task = self.task or Task.load(self.name, seed, **self.parameters)
+        task = self.load(seed)
         changes = {"rounds": self.rounds, "round_ticks": self.round_ticks}
         given = {name: value for name, value in changes.items() if value is not None}
         return replace(task, form=msgspec.structs.replace(task.form, **given)) if given else task
