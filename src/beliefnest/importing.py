@@ -1,5 +1,6 @@
 """Import of Python objects that command lines and files name as `module:NAME` or `FILE.py:NAME`."""
 
+import difflib
 import importlib
 import importlib.util
 import sys
@@ -36,9 +37,7 @@ def imported_object(text: str, what: str) -> object:
     try:
         return getattr(module, name)
     except AttributeError:
-        raise InputError(
-            f"{place} has no {what} {name!r}; check the name after the colon"
-        ) from None
+        raise InputError(f"{place} has no {what} {name!r}{_hint(name, module)}") from None
 
 
 def text_of_object(text: str) -> str:
@@ -61,6 +60,19 @@ def text_of_object(text: str) -> str:
         raise InputError(f"{file} cannot be read: {error}") from None
 
 
+def _hint(name: str, module: ModuleType) -> str:
+    """Return a hint to the names that a module defines."""
+    own = [
+        known
+        for known, value in vars(module).items()
+        if callable(value) and getattr(value, "__module__", None) == module.__name__
+    ]
+    close = difflib.get_close_matches(name, own, n=1)
+    if close:
+        return f"; did you mean {close[0]!r}?"
+    return f"; it defines {', '.join(own)}" if own else "; it defines no class and no function"
+
+
 def _spec_of(module: str) -> str | None:
     try:
         spec = importlib.util.find_spec(module)
@@ -80,7 +92,9 @@ def _module(place: str, what: str) -> ModuleType:
                 f"there is no module {place!r} for a {what}; put its folder into PYTHONPATH, or "
                 f"name its file, as FILE.py:NAME"
             ) from error
-        raise InputError(f"{place} of a {what} cannot be imported: {error}") from error
+        beside = " (to import modules beside it, put its folder into PYTHONPATH)"
+        hint = beside if place.endswith(_SUFFIX) else ""
+        raise InputError(f"{place} of a {what} cannot be imported: {error}{hint}") from error
     except Exception as error:  # Code of users may raise anything.
         told = f"{type(error).__name__}: {error}"
         raise InputError(f"{place} of a {what} cannot be imported: {told}") from error

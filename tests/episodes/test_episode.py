@@ -61,8 +61,9 @@ def test_a_policy_that_fails_costs_its_own_round() -> None:
     task = bn.Task.load(TASK)
     with bn.Episode(task, {"anne": Fails()}) as episode:
         episode.play(2)
+        line = Fails.act.__code__.co_firstlineno + 1
         assert [part.decisions["anne"].fault for part in episode.parts] == [
-            "ValueError: no idea"
+            f"test_episode.py:{line}: ValueError: no idea"
         ] * 2
         assert [part.ended["anne"].how for part in episode.parts] == ["lost", "lost"]
         assert [part.ended["sally"].how for part in episode.parts] == ["cut", "cut"]

@@ -175,7 +175,10 @@ def test_classes_and_functions_play_by_their_names(
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        ("own.py:Absent", "own.py has no policy 'Absent'"),
+        ("own.py:Absent", "no policy 'Absent'; it defines Greeter, shouter, Mute, Needy"),
+        ("own.py:Greter", "own.py has no policy 'Greter'; did you mean 'Greeter'?"),
+        ("needs.py:Greeter", "'other_file' (to import modules beside it, put its folder into"),
+        ("serch:1", "there is no policy 'serch:1'; did you mean 'search'? Policies are search:"),
         ("absent.py:Greeter", "there is no file absent.py"),
         ("absent_module:Greeter", "there is no module 'absent_module' for a policy; put its"),
         ("own.py:Mute", "Mute has no method act"),
@@ -186,6 +189,7 @@ def test_classes_and_functions_play_by_their_names(
 )
 def test_what_is_no_policy_is_refused(own: Path, name: str, told: str) -> None:
     Path("broken.py").write_text("class Greeter(", encoding="utf-8")
+    Path("needs.py").write_text("import other_file", encoding="utf-8")
     with pytest.raises(bn.BeliefNestError) as caught:
         resolve_policy(name)
     assert told in str(caught.value)

@@ -156,10 +156,11 @@ def test_the_baselines_of_a_file_have_a_table(
 ) -> None:
     file = tmp_path / "mine.yaml"
     goal = {"reach": [{"agent": "ann", "at": [11, 1, 3], "within": 1}]}
-    rules = {"goal": goal, "players": ["ann"], "policies": {"bob": "random"}, "rounds": 2}
+    others = {"players": ["ann"], "policies": {"bob": "random"}}
+    rules = {"goal": goal, **others, "rounds": 2, "order": 1}
     file.write_text(json.dumps({**HALL, "episode": rules}), encoding="utf-8")
     command = ["play", str(file), "--baselines", "--seeds", "1"]
-    # The task needs no Theory of Mind, but its file states order 1.
+    # The file states order 1, but the task needs no Theory of Mind.
     assert run_command_line([*command, "--json"]) == 1
     found = json.loads(capsys.readouterr().out)["baselines"]
     assert {each["policy"]: each["right"] for each in found}["search:0"] == 1
@@ -225,7 +226,8 @@ def test_rounds_lost_by_a_policy_are_told_with_the_reason() -> None:
 
     with bn.Episode(task(rounds=2), {"ann": Breaks(), "bob": Says()}) as played:
         failures = [str(each) for each in played.play().failures]
-    why = "ann: RuntimeError: no answer today"
+    line = Breaks.act.__code__.co_firstlineno + 1
+    why = f"ann: test_playing.py:{line}: RuntimeError: no answer today"
     assert failures == [f"round 1, {why}", f"round 2, {why}"]
 
 

@@ -14,6 +14,7 @@ from beliefnest.scenarios.json_schema import schema
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.variation import Variation
+from beliefnest.world.registry import Registry
 
 DRAWN = """\
 name: rooms
@@ -110,6 +111,43 @@ def test_a_map_is_the_scene_that_it_shows(tmp_path):
     assert not list(validator.iter_errors(plain))
     del plain["map"]
     assert list(validator.iter_errors(plain))
+
+
+def test_blocks_that_agents_walk_through_are_one_high_and_no_walls(tmp_path):
+    text = """\
+name: circuit
+map:
+  legend:
+    "#": bricks
+    L: "lever[face=floor]"
+    w: redstone_wire
+    P: stone_pressure_plate
+    "%": glass
+    D: {door: iron}
+    a: {agent: ann}
+  floors: |
+    L#%
+    wD.
+    aPP
+"""
+    snapshot = Scenario.load(file_of(tmp_path, text)).setting.snapshot
+    registry = Registry.load()
+
+    def text_at(*place: int) -> str:
+        return registry.text(int(snapshot.blocks[snapshot.box.index(place)]))
+
+    heights = {
+        (x, z): sum(text_at(x, y, z) != "air" for y in (1, 2, 3))
+        for x in range(3)
+        for z in range(3)
+    }
+    assert heights == {
+        (0, 0): 1, (1, 0): 3, (2, 0): 3,
+        (0, 1): 1, (1, 1): 2, (2, 1): 0,
+        (0, 2): 0, (1, 2): 1, (2, 2): 1,
+    }  # fmt: skip
+    # A plate south of the door is no wall, so that the door does not face east.
+    assert "facing=north" in text_at(1, 1, 1)
 
 
 @pytest.mark.parametrize("symmetry", ["mirrored", "turned-90", "mirrored-270"])

@@ -247,6 +247,8 @@ def test_a_model_that_cannot_be_asked_is_no_result(here: Path, monkeypatch: Any)
         ("policies: [random]\nvariations: 3", "variations of tasks must be lists"),
         ("policies: [random, random]", "'random' is named twice"),
         ("policies: ['program:none.js']", "none.js cannot be read"),
+        ("policies: [{ours: {ann: random}}, {ours: {bob: random}}]", "two of the policies have"),
+        ("policies: [{ours: {ann: {bob: random}}}]", "study.yaml:2: policies: expected 'str'"),
     ],
 )
 def test_a_wrong_study_is_told_in_one_line(
@@ -263,6 +265,23 @@ def test_policies_of_a_study_are_names(here: Path) -> None:
     for policies in ([bn], [{"ann": 5}], [None]):
         with pytest.raises(bn.InputError, match="policies has"):
             bn.Study(tasks="bring.yaml", policies=policies)  # type: ignore[arg-type]
+
+
+def test_policies_by_agent_can_have_a_name_and_lost_rounds_are_told(
+    here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("own.py").write_text("class Bad:\n    def act(self, view):\n        return {}['x']\n")
+    Path("study.yaml").write_text(
+        "tasks: [bring.yaml]\npolicies: [{ours: {ann: 'own.py:Bad'}}, {ann: 'own.py:Bad'}]\n"
+    )
+    assert run_command_line(["study", "study.yaml", "--out", "out", "--jobs", "1"]) == 1
+    rows = bn.StudyResult.read("out").rows
+    assert {row["policy"] for row in rows} == {"ours", f"ann={Path('own.py')}:Bad"}
+    (ours,) = (row for row in rows if row["policy"] == "ours")
+    told = f"ours gave no program in {ours['lost_rounds']} rounds of 1 episode; the first failure"
+    shown = " ".join(capsys.readouterr().out.split())
+    assert f"{told}: round 1, ann: own.py:3: KeyError: 'x'" in shown
+    assert "own.py:Bad" in ours["policies"]
 
 
 def test_a_name_alone_is_a_list_of_one_in_files_too(here: Path) -> None:

@@ -3,7 +3,7 @@
 import json
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -116,6 +116,7 @@ def _print(result: StudyResult, by: Sequence[str]) -> None:
     failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
     told = [f"no result: {why}" for why in dict.fromkeys(failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
+    told += _lost_rounds(result.rows)
     for line in told[:_MOST_TOLD]:
         console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
     if len(told) > _MOST_TOLD:
@@ -125,6 +126,19 @@ def _print(result: StudyResult, by: Sequence[str]) -> None:
         console.print(text_of_copies(copies), highlight=False, soft_wrap=True)
     page = result.folder.path / "study.html"
     console.print(f"all rows, intervals and differences: {page}", highlight=False, soft_wrap=True)
+
+
+def _lost_rounds(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield a line for each policy that failed in rounds of its episodes."""
+    lost: dict[str, list[Mapping[str, Any]]] = {}
+    for row in rows:
+        if row.get("lost_rounds"):
+            lost.setdefault(row["policy"], []).append(row)
+    for policy, found in lost.items():
+        rounds = counted(sum(row["lost_rounds"] for row in found), "round")
+        first = json.loads(found[0]["failures"])[0]
+        episodes = counted(len(found), "episode")
+        yield f"{policy} gave no program in {rounds} of {episodes}; the first failure: {first}"
 
 
 def _invalid_text(invalid: Mapping[str, Any]) -> str:

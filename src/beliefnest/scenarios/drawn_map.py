@@ -13,13 +13,14 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from beliefnest.errors import ScenarioError
+from beliefnest.errors import BeliefNestError, ScenarioError
 from beliefnest.scenarios.cuboids import cuboids
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, wrapped
 from beliefnest.scenarios.document_form import check_written
 from beliefnest.scenarios.format import FloorEntry, LegendEntry, MapEntry, WrittenFile
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import box_fault
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Position
 
 __all__ = ["with_map"]
@@ -291,7 +292,8 @@ class _Drawing:
         if isinstance(entry, str):
             if entry != _AIR:
                 state = self._meaning(cell, entry)
-                yield from (((x, each, z), state) for each in range(y, top))
+                end = top if _is_wall(entry) else y + 1
+                yield from (((x, each, z), state) for each in range(y, end))
             return
         if entry.floor is not None:
             yield (x, y - 1, z), self._meaning(cell, entry.floor, "floor")
@@ -333,7 +335,7 @@ class _Drawing:
         if not (0 <= row < len(rows) and 0 <= column < len(rows[row])):
             return False
         entry = self._legend.get(rows[row][column])
-        return isinstance(entry, str) and entry != _AIR
+        return isinstance(entry, str) and entry != _AIR and _is_wall(entry)
 
     def _blocks(self, cells: Sequence[_Cell]) -> list[YamlNode]:
         """Return entries for all blocks, each a cuboid."""
@@ -449,6 +451,18 @@ class _Drawing:
         if is_there and self._lines[line].strip() == floor.rows[row].strip():
             return line + 1
         return floor.node.line
+
+
+def _is_wall(state: str) -> bool:
+    """Return False for blocks that agents walk through, such as a lever, wire or a pressure plate.
+
+    An unknown block counts as a wall; the scenario's builder names its place in the file.
+    """
+    registry = Registry.load()
+    try:
+        return bool(registry.boxes(registry.state_id(state)))
+    except BeliefNestError:
+        return True
 
 
 def _extent(entry: str | LegendEntry, height: int) -> tuple[int, int]:

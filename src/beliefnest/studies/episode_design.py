@@ -25,8 +25,8 @@ __all__ = [
 ]
 
 Order = int | Literal["omniscient"]
-Policies = str | Mapping[str, str]
-"""Name of a policy for all players, or names of policies by agent."""
+Policies = str | Mapping[str, str | Mapping[str, str]]
+"""A policy of all players, policies by agent, or a name for the table with policies by agent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,21 +34,19 @@ class Player:
     """Player of a study: a policy at an order.
 
     Attributes:
-        name: `search`, `model:MODEL`, or the name of a policy.
+        name: `search`, `model:MODEL`, the name of a policy, or that of policies by agent.
         order: Order of Theory of Mind; None: the name is complete without it.
-        policies: Policies as the command line takes them.
+        policies: A policy as the command line takes it, or policies by agent.
     """
 
     name: str
     order: Order | None
-    policies: Policies
+    policies: str | Mapping[str, str]
 
     @property
     def text(self) -> str:
         """Return the policies as one text."""
-        if isinstance(self.policies, str):
-            return self.policies
-        return ",".join(f"{agent}={policy}" for agent, policy in self.policies.items())
+        return self.policies if isinstance(self.policies, str) else self.name
 
 
 _ORDERED = ("search", "infer")
@@ -110,6 +108,11 @@ class EpisodeDesign:
                 "orders",
                 "orders is empty; models, search and infer play at the orders named there",
             )
+        named = [player.text for player in self.players]
+        if twice := next((name for name in named if named.count(name) > 1), None):
+            raise StudyKeyError(
+                "policies", f"two of the policies have the name {twice!r}; give each its own"
+            )
         for order in self.orders:
             if order != "omniscient" and (isinstance(order, bool) or not isinstance(order, int)):
                 raise StudyKeyError(
@@ -130,8 +133,8 @@ class EpisodeDesign:
                 for order in self.orders:
                     yield Player(policies, order, policy_named(policies, str(order)))
             else:
-                player = Player("", None, policies)
-                yield Player(player.text, None, policies)
+                name, own = _named(policies)
+                yield Player(name, None, own)
         for model in self.models:
             for order in self.orders:
                 name = f"model:{model}"
@@ -163,13 +166,28 @@ class EpisodeDesign:
 
 
 def _check_policies(policies: object) -> None:
-    names = policies.values() if isinstance(policies, Mapping) else [policies]
+    own = policies
+    if isinstance(policies, Mapping) and len(policies) == 1:
+        (value,) = policies.values()
+        own = value if isinstance(value, Mapping) else policies
+    names = own.values() if isinstance(own, Mapping) else [own]
     if not names or not all(isinstance(name, str) for name in names):
         raise StudyKeyError(
             "policies",
-            f"policies has {policies!r}; give names as `beliefnest play --agent` takes them, or "
-            "mappings from agent to such a name",
+            f"policies has {policies!r}; give names as `beliefnest play --agent` takes them, "
+            "mappings from agent to such a name, or a mapping from a name to one such mapping",
         )
+
+
+def _named(policies: Policies) -> tuple[str, str | Mapping[str, str]]:
+    """Return the name of policies in the table, and the policies."""
+    if isinstance(policies, str):
+        return policies, policies
+    ((first, value), *_) = policies.items()
+    if isinstance(value, Mapping):
+        return first, value
+    own = {agent: str(policy) for agent, policy in policies.items()}
+    return ",".join(f"{agent}={policy}" for agent, policy in own.items()), own
 
 
 def listed(policies: Sequence[Policies] | Policies) -> tuple[Policies, ...]:

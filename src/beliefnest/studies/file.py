@@ -1,6 +1,6 @@
 """YAML files of studies."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import msgspec
@@ -74,7 +74,12 @@ def _beside(keys: StudyKeys, path: Path) -> StudyKeys:
 def _policies_beside(policies: Policies, folder: Path) -> Policies:
     if isinstance(policies, str):
         return policy_beside(policies, folder)
-    return {agent: policy_beside(name, folder) for agent, name in policies.items()}
+    return {
+        agent: {each: policy_beside(own, folder) for each, own in name.items()}
+        if isinstance(name, Mapping)
+        else policy_beside(name, folder)
+        for agent, name in policies.items()
+    }
 
 
 def _fault(document: Document, error: str) -> ScenarioError:

@@ -85,7 +85,8 @@ class Study:
         tasks: Instead of scenarios: names of tasks or scenarios to play as episodes, or paths of
             their files.
         policies: Policies of the players as `beliefnest play` takes them, `search` and
-            `infer` for these at each of the orders, or mappings from agent to policy.
+            `infer` for these at each of the orders, mappings from agent to policy, or mappings
+            from a name for the table to one such mapping.
         orders: Orders of Theory of Mind of models and search: 0, 1, 2, `omniscient`.
         seeds: Numbers of instances of tasks; a single number n: n instances from `seed` on.
         help: Measure help, which plays further branches.

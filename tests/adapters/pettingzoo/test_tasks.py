@@ -146,6 +146,37 @@ def test_seeds_of_a_file_are_its_instances_and_parameters_can_be_given(tmp_path:
         assert {place for seed in range(4) for place in full(env, seed)} == {tuple(spots[1])}
 
 
+class Fetches:
+    """Policy that takes the diamond in its second round."""
+
+    def act(self, view: bn.AgentView) -> str:
+        take = f"await getItemFromChest(bot, new Vec3({CHEST[0]}, 1, 2), {{diamond: 1}})"
+        return take if view.round and view.agent == "ann" else ""
+
+
+def test_a_policy_of_play_acts_in_the_environment_as_it_does_there() -> None:
+    policy, scenario = Fetches(), bn.Scenario.from_mapping(HALL)
+    with closing(parallel_env(scenario, actions="programs")) as env:
+        with pytest.raises(bn.InputError, match=r"no view of 'ann': call reset\(\) first"):
+            env.view("ann")
+        env.reset(seed=3)
+        with pytest.raises(bn.InputError, match="'eve' does not act now"):
+            env.view("eve")
+        steps = 0
+        while env.agents:
+            *_, infos = env.step({agent: policy.act(env.view(agent)) for agent in env.agents})
+            steps += 1
+        ended = infos["ann"]["success"], steps, env.nest.tick
+    with Episode(Task.of(scenario), {"ann": policy, "bob": policy}, seed=3) as episode:
+        episode.play()
+        assert (episode.success, episode.rounds, episode.nest.tick) == ended
+        assert episode.success
+    with closing(parallel_env("sally-anne")) as env:
+        env.reset(seed=0)
+        with pytest.raises(bn.InputError, match="only tasks have rounds"):
+            env.view("anne")
+
+
 def test_the_conformance_tests_of_the_library_pass() -> None:
     hall = bn.Scenario.from_mapping(HALL)
     with warnings.catch_warnings():

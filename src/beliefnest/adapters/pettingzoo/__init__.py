@@ -193,9 +193,7 @@ def _named(
         return scenario
     if not is_drawn:
         return functools.partial(_same, Task.of(scenario))
-    return functools.partial(
-        Task.instance_of, document, condition=condition, parameters=parameters
-    )
+    return functools.partial(Task.instance_of, document, condition=condition, parameters=parameters)
 
 
 def _same(task: "Task", seed: int) -> "Task":

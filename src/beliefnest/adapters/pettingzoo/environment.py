@@ -16,6 +16,7 @@ from beliefnest.adapters.pettingzoo.layout import ObservationLayout, Phrases
 from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
 from beliefnest.belief.plain import belief_json
 from beliefnest.belief.view import State
+from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.face.nest import Nest
@@ -185,6 +186,21 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if self._nest is None:
             raise InputError("no episode has begun; call reset() first")
         return self._nest
+
+    def view(self, agent: str) -> AgentView:
+        """Return what a policy of `beliefnest play` gets for the next round of a task.
+
+        A policy that reads it can be trained here and then be played by its name.
+
+        Raises:
+            InputError: No episode has begun, the agent does not act now, or this is no task.
+        """
+        if not isinstance(self._acting, TaskActing):
+            told = "call reset() first" if self._acting is None else "only tasks have rounds"
+            raise InputError(f"there is no view of {agent!r}: {told}")
+        if agent not in self.agents:
+            raise InputError(f"{agent!r} does not act now; agents are {self.agents}")
+        return self._acting.view(agent)
 
     @property
     def first_seed(self) -> int:

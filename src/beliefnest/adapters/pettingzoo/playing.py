@@ -134,6 +134,10 @@ class TaskActing:
         deeds = {agent: self._deed(agent, refused) for agent in actions}
         return JointStep(deeds, spoken=bool(said))
 
+    def view(self, agent: str) -> AgentView:
+        """Return what an agent's policy would get at the beginning of the next round."""
+        return self._episode.view(agent)
+
     def reward(self, agent: str) -> float:
         """Return what an agent has earned in the latest round."""
         return self._rewards[agent]

@@ -1,5 +1,6 @@
 """Policies, which decide what agents do."""
 
+import difflib
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -85,7 +86,9 @@ def resolve_policy(
         return _WITHOUT_OPTIONS[name]()
     if _is_of_user(name):
         return _of_user(name)
-    raise UnknownNameError(f"there is no policy {name!r}; give one of {', '.join(POLICIES)}")
+    close = difflib.get_close_matches(kind, sorted(_KINDS), n=1)
+    hint = f"did you mean {close[0]!r}? Policies are" if close else "give one of"
+    raise UnknownNameError(f"there is no policy {name!r}; {hint} {', '.join(POLICIES)}")
 
 
 def _omniscient() -> Policy:
