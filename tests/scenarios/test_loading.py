@@ -138,6 +138,10 @@ def test_initial_beliefs_reach_the_setting() -> None:
     assert belief.containers == {(4, 1, 4): ({"apple": 1}, False)}
     assert belief.blocks == {(0, 0, 0): Registry.load().state_id("stone"), (1, 0, 0): -1}
     assert belief.agents == {"ann": (1.5, 1.0, 1.5)}
+    # Agents that are only named are believed to be where they stand.
+    content["initial_beliefs"] = [{"path": "/**", "agents": ["bob", "ann"]}]
+    (belief,) = Scenario.from_mapping(content).setting.initial_beliefs
+    assert belief.agents == {"bob": (2.5, 1.0, 2.5), "ann": (0.5, 1.0, 0.5)}
 
 
 @pytest.mark.parametrize("name", builtin_names())
@@ -201,6 +205,7 @@ FAULTS_OF_TALK = [
     ("grace: 5", "hearing: maybe", 4, "perception.hearing", "global, sight, {radius: ...}"),
     ("perception:", "testimony: accept\nperception:", 2, "testimony", "stands under 'perception'"),
     ("path: /ann", "path: /bob/", 7, "initial_beliefs[1].path", "put them into one"),
+    ("path: /ann,", "path: /ann, agents: [eve],", 7, "initial_beliefs[1].agents[0]", "no agent"),
     (
         "path: /ann",
         "path: /ann/**/bob",

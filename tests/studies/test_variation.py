@@ -27,6 +27,7 @@ from beliefnest.scenarios.format import (
     SignEntry,
     StepEntry,
 )
+from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry
 from beliefnest.scenarios.sources import builtin_names, read_document
 from beliefnest.studies.program_rewriting import Rewriting, rewritten
 from beliefnest.studies.random_variations import drawn_variations
@@ -377,10 +378,36 @@ def test_every_key_of_a_scenario_is_known_in_another_scene():
         DoubtEntry: _SHAPE["probes"].shape["infer"]["doubt"].shape,
         ExpectationEntry: _SHAPE["expectations"].shape,
         ConditionEntry: _SHAPE["episode"]["goal"]["reach"].shape,
+        EpisodeEntry: _SHAPE["episode"],
+        GoalEntry: _SHAPE["episode"]["goal"],
         InitialBeliefEntry: shape,
         BelievedSignEntry: shape["signs"].shape,
     }.items():
         assert set(entry.__struct_fields__) <= set(known), entry
+
+
+def test_rules_of_play_and_agents_at_their_places_move_and_get_new_names(tmp_path):
+    rules = """
+initial_beliefs: [{path: "/**", agents: [ann, bob]}]
+agents: {ann: {position: [0.5, 1, 0.5]}, bob: {position: [2.5, 1, 1.5]}}
+episode:
+  goal: {reach: [{agent: bob, at: [0, 1, 2]}]}
+  goals: {ann: {helps: bob}}
+  goals_known: false
+  possible_goals: {bob: {near: {reach: [{agent: bob, at: [0, 1, 2]}]}}}
+  rewards: {message: -0.5}
+"""
+    floor = "blocks: [{block: stone, fill: [[0, 0, 0], [4, 0, 4]]}]"
+    head = f"name: hall\nbox: [[0, 0, 0], [4, 3, 4]]\n{floor}"
+    file = tmp_path / "hall.yaml"
+    file.write_text(head + rules, encoding="utf-8")
+    moved = varied(str(file), symmetry="mirrored", agents={"bob": "tom"})
+    (belief,) = moved.setting.initial_beliefs
+    assert belief.agents == {"ann": (4.5, 1.0, 0.5), "tom": (2.5, 1.0, 1.5)}
+    (near,) = (moved.rules.possible_goals["tom"]["near"].reach[0],)
+    assert (near.agent, near.at) == ("tom", (4, 1, 2))
+    assert moved.rules.goals["ann"].helps == "tom"
+    assert moved.rules.rewards.message == -0.5
 
 
 TEMPLATE = (

@@ -41,7 +41,7 @@ from beliefnest.world.frames import Snapshot, places_of
 from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
-from beliefnest.world.values import Block, Position, block_at
+from beliefnest.world.values import Block, Point, Position, block_at
 
 __all__ = ["build_scenario"]
 
@@ -288,19 +288,30 @@ class _Builder:
             place = (*path, "containers", index)
             self.checks.container((*place, "at"), container.at)
             self.checks.contents((*place, "items"), container.at, container.items)
-        for agent, feet in entry.agents.items():
-            self.checks.agent((*path, "agents", agent), agent)
-            if block_at(feet) not in box:
-                raise self._document.fault(
-                    (*path, "agents", agent),
-                    f"{list(feet)} lies outside the box {list(box.low)} to {list(box.high)}",
-                )
         return InitialBelief(
             path=names,
             containers={c.at: (dict(c.items), c.complete) for c in entry.containers},
             blocks=blocks,
-            agents=dict(entry.agents),
+            agents=self._believed_places((*path, "agents"), entry.agents),
         )
+
+    def _believed_places(
+        self, path: KeyPath, written: Mapping[str, Point] | Sequence[str]
+    ) -> dict[str, Point]:
+        """Return believed positions of agents; those of names alone are the real ones."""
+        if not isinstance(written, Mapping):
+            for index, name in enumerate(written):
+                self.checks.agent((*path, index), name)
+            return {name: self._snapshot.agents[name].position for name in written}
+        box = self._snapshot.box
+        for agent, feet in written.items():
+            self.checks.agent((*path, agent), agent)
+            if block_at(feet) not in box:
+                raise self._document.fault(
+                    (*path, agent),
+                    f"{list(feet)} lies outside the box {list(box.low)} to {list(box.high)}",
+                )
+        return dict(written)
 
     def _believed_sign(
         self, path: KeyPath, entry: BelievedSignEntry, blocks: Mapping[Position, Block]

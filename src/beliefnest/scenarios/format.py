@@ -244,7 +244,10 @@ class InitialBeliefEntry(_Entry, frozen=True):
     ] = []
     blocks: Annotated[list[BlockEntry], note("Believed blocks; `block` null: unknown.")] = []
     signs: Annotated[list[BelievedSignEntry], note("Believed signs.")] = []
-    agents: Annotated[dict[str, Point], note("Believed positions of the feet.")] = {}
+    agents: Annotated[
+        dict[str, Point] | list[str],
+        note("Believed positions of the feet; or names of agents, which are where they stand."),
+    ] = {}
 
 
 class StepEntry(_Entry, frozen=True):

@@ -134,10 +134,14 @@ _GOAL = {
     "never": _Each(_CONDITION),
     "messages": "keep",
     "ticks": "keep",
+    "helps": "agent",
 }
 _EPISODE = {
     "goal": _GOAL,
     "goals": _Map("agent", _GOAL),
+    "goals_known": "keep",
+    "possible_goals": _Map("agent", _Map("keep", _GOAL)),
+    "rewards": "keep",
     "order": "keep",
     "players": _Each("agent"),
     "policies": _Map("agent", "keep"),
@@ -183,7 +187,7 @@ _SHAPE: Mapping[str, Any] = {
             "containers": _Each({"at": "block", "items": _ITEMS, "complete": "keep"}),
             "blocks": _BLOCKS,
             "signs": _SIGNS,
-            "agents": _Map("agent", "point"),
+            "agents": _OrMapping(_Each("agent"), _Map("agent", "point")),
         }
     ),
     "script": _Each(
