@@ -55,7 +55,9 @@ def test_from_the_page_to_the_statistics(tmp_path, capsys):
     pairs = [each["pairs"] for each in stats["differences"]["model"]]
     assert sum(pairs) == 8
     assert (out / "people.csv").is_file()
-    assert "people" in (out / "study.html").read_text(encoding="utf-8")
+    text = (out / "study.html").read_text(encoding="utf-8")
+    assert "2 participants;" in text
+    assert "over variations and participants" in text
 
 
 def test_errors_say_what_to_do(tmp_path, capsys):

@@ -8,10 +8,12 @@ from jinja2 import Environment, StrictUndefined
 
 from beliefnest.errors import UnknownNameError
 from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
+from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.copies import text_of_copies
 from beliefnest.studies.counting import Pairs
 from beliefnest.studies.table import Table, variation_columns
 from beliefnest.world.texts import visible
+from beliefnest.world.words import counted
 
 __all__ = ["page_text"]
 
@@ -54,6 +56,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
     """
     plan, rows, table = result.plan, result.rows, result.table
     groups = result.counted(by)
+    people = len({row[PARTICIPANT] for row in rows if row.get(PARTICIPANT)})
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     environment.filters["percent"] = _percent
     environment.filters["number"] = _number
@@ -64,7 +67,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
     text = template.render(
         kind="episodes" if "tasks" in plan else "scenarios",
         subjects=plan.get("tasks") or plan["scenarios"],
-        players=_players(plan),
+        players=_players(plan) + (f"; {counted(people, 'participant')}" if people else ""),
         plan=plan,
         by=by,
         groups=groups,
@@ -76,6 +79,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         left_out=max(0, len(rows) - _MOST_ROWS),
         variations=len({row["variation"] for row in rows}),
         copies=sum(row["copy_of"] is not None for row in rows),
+        people=people,
         failed=[row for row in rows if row["outcome"] == "error"],
     )
     return visible(text)
