@@ -1,6 +1,5 @@
 """Figures: drawings that can be laid out for any width and saved in several formats."""
 
-import io
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -192,11 +191,9 @@ def _pdf(drawing: Drawing, _: float) -> bytes:
 
 
 def _png(drawing: Drawing, dpi: float) -> bytes:
-    from beliefnest.pictures.raster import raster
+    from beliefnest.pictures.raster import png_bytes, raster
 
-    out = io.BytesIO()
-    raster(drawing, dpi).save(out, format="PNG", dpi=(dpi, dpi), compress_level=4)
-    return out.getvalue()
+    return png_bytes(raster(drawing, dpi), dpi=(dpi, dpi))
 
 
 _FORMS: Mapping[str, Callable[[Drawing, float], bytes]] = {

@@ -18,6 +18,7 @@ __all__ = [
     "Drawing",
     "Lines",
     "Mark",
+    "Pixels",
     "Polygon",
     "Rectangle",
     "Role",
@@ -142,7 +143,40 @@ class Text:
         return self.left, top, self.left + self.width, bottom
 
 
-Mark = Rectangle | Circle | Polygon | Lines | Text
+@dataclass(frozen=True, slots=True)
+class Pixels:
+    """A rectangle of equal coloured fields with its upper left corner at `x`, `y`.
+
+    Attributes:
+        x: Left end.
+        y: Upper end.
+        width: Width of all fields.
+        height: Height of all fields.
+        columns: Number of fields in a row.
+        colours: Red, green and blue of each field, row by row.
+        role: Purpose.
+    """
+
+    x: float
+    y: float
+    width: float
+    height: float
+    columns: int
+    colours: bytes
+    role: Role = "area"
+
+    @property
+    def bounds(self) -> Bounds:
+        """Bounding box."""
+        return self.x, self.y, self.x + self.width, self.y + self.height
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of fields."""
+        return len(self.colours) // (3 * self.columns)
+
+
+Mark = Rectangle | Circle | Polygon | Lines | Text | Pixels
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,6 +29,7 @@ __all__ = [
     "colours_of",
     "hypothesis_colours",
     "mix",
+    "parts",
     "shades",
     "told_text",
 ]
@@ -210,6 +211,12 @@ def mix(first: str, second: str, share: float) -> str:
     """Return the colour at a given share of the way from one `#RRGGBB` to another."""
     one, other = bytes.fromhex(first[1:]), bytes.fromhex(second[1:])
     return "#" + bytes(round(a + (b - a) * share) for a, b in zip(one, other, strict=True)).hex()
+
+
+def parts(colour: str) -> tuple[int, int, int]:
+    """Return red, green and blue of a colour, `#RRGGBB`."""
+    red, green, blue = bytes.fromhex(colour[1:])
+    return red, green, blue
 
 
 def _badge(name: str, names: list[str]) -> str:

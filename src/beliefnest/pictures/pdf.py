@@ -4,7 +4,17 @@ import io
 from typing import Any
 
 from beliefnest.pictures.lettering import font_bytes, lettered
-from beliefnest.pictures.marks import Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
+from beliefnest.pictures.marks import (
+    Circle,
+    Drawing,
+    Lines,
+    Mark,
+    Pixels,
+    Polygon,
+    Rectangle,
+    Text,
+)
+from beliefnest.pictures.raster import fields
 from beliefnest.world.texts import on_one_line
 
 __all__ = ["pdf_bytes"]
@@ -60,6 +70,9 @@ def _draw(canvas: Any, height: float, mark: Mark) -> None:
             if mark.closed:
                 path.close()
             canvas.drawPath(path, stroke=stroke, fill=fill)
+        case Pixels():
+            place = (mark.x, height - mark.y - mark.height, mark.width, mark.height)
+            canvas.drawInlineImage(fields(mark), *place)
 
 
 def _look(

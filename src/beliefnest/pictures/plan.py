@@ -2,16 +2,29 @@
 
 import math
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+
+import numpy as np
 
 from beliefnest.pictures import icons
 from beliefnest.pictures.labels import LINE, Label, Put, leader, put_labels
 from beliefnest.pictures.lettering import ASCENT, text_width
-from beliefnest.pictures.marks import XY, Bounds, Lines, Polygon, Rectangle, Text
+from beliefnest.pictures.marks import XY, Bounds, Lines, Pixels, Polygon, Rectangle, Text
 from beliefnest.pictures.marks import Mark as Drawn
-from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, age_text, mix
+from beliefnest.pictures.palette import (
+    INK,
+    MARKS,
+    PAPER,
+    QUIET,
+    AgentLook,
+    Mark,
+    age_text,
+    mix,
+    parts,
+)
+from beliefnest.pictures.relief import UNKNOWN, Relief
 from beliefnest.pictures.room import Room
 from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, Scene, Store
 from beliefnest.world.registry import Registry
@@ -28,6 +41,11 @@ _GRID = "#e4dfd4"
 _WALL = "#706c6a"
 _HEAT = "#4a1486"
 _HATCH = 4.2
+_MOST_DOTS = 40
+"""Greatest number of dots for unknown blocks along the longer side of a relief."""
+_STEEP = 0.1
+_SLOPES = 3
+"""Light on the ground by block that it rises to the south, and the greatest rise that counts."""
 _SMALLEST = 3.9
 """Least radius of an agent, in points, at which its letters can be read."""
 _KINDS: Mapping[str, str] = {
@@ -202,8 +220,14 @@ class _Sheet:
             for k, cell in enumerate(row):
                 yield i, k, cell
 
+    def _wrong_columns(self) -> Iterator[tuple[int, int]]:
+        return ((i, k) for i, k, cell in self._cells() if cell.wrong)
+
     def ground(self) -> None:
-        """Draw the floor, its unknown parts, and thin lines between columns."""
+        """Draw the floor, its unknown parts, and thin lines between columns; or the relief."""
+        if self._scene.relief is not None:
+            self._relief(self._scene.relief)
+            return
         fills = {(i, k): _ground_colour(cell) for i, k, cell in self._cells()}
         for i, k, count in self._runs(fills):
             x0, y0, x1, y1 = self._square(i, k, count)
@@ -219,9 +243,32 @@ class _Sheet:
         ]
         self.marks.append(Lines(tuple(lines), _GRID, 0.25))
 
+    def _relief(self, relief: Relief) -> None:
+        across, down = self._scene.size
+        grounds = [parts(_colour(name, _GROUND)) for name in relief.names]
+        other = [parts(_NOWHERE), parts(_GROUND)]
+        # The last two values are those for `NOWHERE` and `UNKNOWN`, as negative numbers.
+        colours = np.array([*grounds, *other], dtype=np.float64)[relief.blocks]
+        known = relief.blocks >= 0
+        rise = np.diff(relief.levels, axis=1, prepend=relief.levels[:, :1])
+        light = 1 + _STEEP * np.clip(rise, -_SLOPES, _SLOPES)
+        colours[known] *= light[known][:, None]
+        for sight in self._scene.sights[:1]:
+            tint = np.array(parts(self._looks[sight.name].colour))
+            colours[sight.seen] = 0.6 * colours[sight.seen] + 0.4 * tint
+        fields = np.clip(np.rint(colours), 0, 255).astype(np.uint8).transpose(1, 0, 2)
+        width, height = across * self._cell, down * self._cell
+        self.marks.append(Pixels(*self._at, width, height, across, fields.tobytes()))
+        step = -(-max(across, down) // _MOST_DOTS)
+        unknown = np.argwhere(relief.blocks == UNKNOWN).tolist()
+        self._dots([(i, k) for i, k in unknown if i % step == k % step == step // 2], step)
+
     def sights(self) -> None:
         """Draw a tint over the blocks that the first agent sees, hatching for other agents."""
         for number, sight in enumerate(self._scene.sights):
+            self.kinds.add(f"sight {number} {sight.name}")
+            if number == 0 and self._scene.relief is not None:
+                continue  # The relief has the tint.
             colour = self._looks[sight.name].colour
             seen = {(int(i), int(k)): True for i, k in zip(*sight.seen.nonzero(), strict=True)}
             segments: list[tuple[XY, XY]] = []
@@ -235,7 +282,6 @@ class _Sheet:
                     segments += hatching(bounds, number)
             if segments:
                 self.marks.append(Lines(tuple(segments), mix(_GROUND, colour, 0.8), 0.5))
-            self.kinds.add(f"sight {number} {sight.name}")
 
     def heat(self) -> None:
         """Add a tint over columns, by their probability."""
@@ -249,14 +295,13 @@ class _Sheet:
 
     def walls(self) -> None:
         """Draw blocks at this height, unknown blocks, and marks on false blocks."""
-        dots: list[tuple[XY, XY]] = []
+        dots: list[tuple[int, int]] = []
         fills: dict[tuple[int, int], str] = {}
         for i, k, cell in self._cells():
-            x0, y0, x1, y1 = self._square(i, k)
             if cell.standing is None:
-                middle, level, r = (x0 + x1) / 2, (y0 + y1) / 2, min(0.8, self._cell * 0.09)
-                dots.append(((middle - r, level), (middle + r, level)))
+                dots.append((i, k))
                 continue
+            x0, y0, _, _ = self._square(i, k)
             for part in _standing(cell.standing):
                 if part == (0.0, 0.0, 1.0, 1.0):
                     fills[i, k] = _colour(cell.standing, _WALL)
@@ -269,12 +314,22 @@ class _Sheet:
             x0, y0, x1, y1 = self._square(i, k, count)
             edge = mix(fills[i, k], INK, 0.35)
             self.marks.append(Rectangle(x0, y0, x1 - x0, y1 - y0, fills[i, k], edge, 0.3))
-        if dots:
-            self.marks.append(
-                Lines(tuple(dots), mix(QUIET, PAPER, 0.1), min(1.0, self._cell * 0.14))
-            )
-            self.kinds.add("unknown blocks")
+        self._dots(dots)
         self._false_blocks()
+
+    def _dots(self, columns: Sequence[tuple[int, int]], step: int = 1) -> None:
+        """Draw a dot in each of some columns, for unknown blocks; `step` is their distance."""
+        if not columns:
+            return
+        wide = step * self._cell
+        r = min(0.8, wide * 0.09)
+        lines = []
+        for i, k in columns:
+            x0, y0, x1, y1 = self._square(i, k)
+            middle, level = (x0 + x1) / 2, (y0 + y1) / 2
+            lines.append(((middle - r, level), (middle + r, level)))
+        self.marks.append(Lines(tuple(lines), mix(QUIET, PAPER, 0.1), min(1.0, wide * 0.14)))
+        self.kinds.add("unknown blocks")
 
     def _false_blocks(self) -> None:
         look = MARKS[Mark.FALSE]
@@ -285,8 +340,10 @@ class _Sheet:
             for shown in self._scene.devices
             if shown.false is not None
         }
-        for i, k, cell in self._cells():
-            if not cell.wrong or (i, k) in signed:
+        relief = self._scene.relief
+        wrong = relief.wrong if relief is not None else self._wrong_columns()
+        for i, k in wrong:
+            if (i, k) in signed:
                 continue
             x0, y0, x1, y1 = self._square(i, k)
             inset = self._cell * 0.12

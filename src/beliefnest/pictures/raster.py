@@ -1,16 +1,28 @@
 """Raster writer: a drawing as an image of pixels."""
 
+import io
 import itertools
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from PIL import Image, ImageDraw
 
 from beliefnest.pictures.lettering import font, lettered
-from beliefnest.pictures.marks import XY, Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
+from beliefnest.pictures.marks import (
+    XY,
+    Circle,
+    Drawing,
+    Lines,
+    Mark,
+    Pixels,
+    Polygon,
+    Rectangle,
+    Text,
+)
 from beliefnest.pictures.palette import PAPER
 
-__all__ = ["raster"]
+__all__ = ["fields", "png_bytes", "raster"]
 
 _FINER = 2
 """Factor of supersampling. Pillow draws hard edges, so the image is drawn larger and scaled
@@ -22,17 +34,30 @@ def raster(drawing: Drawing, dpi: float) -> Image.Image:
     scale = dpi / 72 * _FINER
     size = (round(drawing.width * dpi / 72), round(drawing.height * dpi / 72))
     image = Image.new("RGB", (size[0] * _FINER, size[1] * _FINER), PAPER)
-    pen = _Pen(ImageDraw.Draw(image), scale)
+    pen = _Pen(image, scale)
     for mark in drawing.marks:
         pen.draw(mark)
     return image.reduce(_FINER)
 
 
+def fields(mark: Pixels) -> Image.Image:
+    """Return the image of a mark, one pixel for each field."""
+    return Image.frombytes("RGB", (mark.columns, mark.rows), mark.colours)
+
+
+def png_bytes(image: Image.Image, level: int = 4, **options: Any) -> bytes:
+    """Return an image as PNG, with a level of compression from 0 to 9."""
+    out = io.BytesIO()
+    image.save(out, format="PNG", compress_level=level, **options)
+    return out.getvalue()
+
+
 class _Pen:
     """Pen that draws marks with `scale` pixels per point."""
 
-    def __init__(self, draw: ImageDraw.ImageDraw, scale: float) -> None:
-        self._draw = draw
+    def __init__(self, image: Image.Image, scale: float) -> None:
+        self._image = image
+        self._draw = ImageDraw.Draw(image)
         self._scale = scale
 
     def draw(self, mark: Mark) -> None:
@@ -49,6 +74,14 @@ class _Pen:
                 self._circle(mark)
             case Polygon():
                 self._polygon(mark)
+            case Pixels():
+                self._pixels(mark)
+
+    def _pixels(self, mark: Pixels) -> None:
+        (x0, y0), (x1, y1) = self._at(mark.bounds[:2]), self._at(mark.bounds[2:])
+        corner = round(x0), round(y0)
+        size = max(1, round(x1) - corner[0]), max(1, round(y1) - corner[1])
+        self._image.paste(fields(mark).resize(size, Image.Resampling.NEAREST), corner)
 
     def _rectangle(self, mark: Rectangle) -> None:
         low, high = mark.bounds[:2], mark.bounds[2:]

@@ -2,8 +2,9 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,7 @@ import numpy.typing as npt
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
+from beliefnest.pictures.relief import Relief, Window, is_wide, read_relief
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_words
@@ -48,6 +50,11 @@ _WIDEST = 40
 """Greatest width of a plan in blocks. Larger boxes are cut to the part around agents and things.
 """
 _EDGE = 4
+_STEP = 16
+"""Step in blocks of the corners of plans of wide worlds, so that they differ little over time, and
+the least distance of things from the edge."""
+_FLAT = 3
+"""Difference in height up to which the things of a wide world belong to one storey."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,6 +221,7 @@ class Scene:
         note: Further words for the title, such as the branch.
         heat: Probability of columns by x and z, drawn as a tint.
         heat_words: Question that these probabilities answer, for the legend.
+        relief: Ground of a wide world, in place of `cells`, which are then empty.
     """
 
     path: str
@@ -233,15 +241,22 @@ class Scene:
     note: str = ""
     heat: Mapping[tuple[int, int], float] = field(default_factory=dict)
     heat_words: str = ""
+    relief: Relief | None = None
 
     @property
     def size(self) -> tuple[int, int]:
         """Number of columns along x and along z."""
+        if self.relief is not None:
+            width, depth = self.relief.blocks.shape
+            return width, depth
         return len(self.cells), len(self.cells[0])
 
 
 def best_height(states: Iterable[State]) -> int:
-    """Return the y with the most containers, or else with the feet of the most agents."""
+    """Return the y with the most containers, or else with the feet of the most agents.
+
+    In a wide world with things at many heights it is the highest y: its plan hides nothing.
+    """
     found = list(states)
     heights = [place[1] for state in found for place in state.containers] or [
         math.floor(agent.position[1] + 1e-6)
@@ -251,6 +266,8 @@ def best_height(states: Iterable[State]) -> int:
     ]
     if not heights:
         return found[0].box.low[1] + 1
+    if is_wide(found[0].box) and max(heights) - min(heights) > _FLAT:
+        return found[0].box.high[1]
     counts = Counter(heights)
     return min(counts, key=lambda height: (-counts[height], height))
 
@@ -283,43 +300,87 @@ def read_scene(
     window = _window(state, places or {})
     by_place = {each.where: each for each in wrong if not each.is_owned}
     owned = {each.where: each for each in wrong if each.is_owned}
-    (x0, z0), (x1, z1) = window
-    layer = level - state.box.low[1]
-    cut = (
-        slice(x0 - state.box.low[0], x1 - state.box.low[0] + 1),
-        slice(z0 - state.box.low[2], z1 - state.box.low[2] + 1),
+    ground = _ground(state, window, level, by_place, sight or {})
+    people = (
+        replace(_person(name, agent, state.tick, level, by_place), owned=owned.get(name))
+        for name, agent in sorted(state.agents.items())
     )
-    cells = tuple(
-        tuple(_cell(state, (x, level, z), by_place) for z in range(z0, z1 + 1))
-        for x in range(x0, x1 + 1)
-    )
+    stores = read_stores(state, level, labels or {}, by_place)
+    if ground.relief is not None:
+        # The ground shows what is below the height, too.
+        people = (replace(each, above=max(0, each.above)) for each in people)
+        stores = tuple(replace(each, above=max(0, each.above)) for each in stores)
     return Scene(
         path=path_text(state.path),
         tick=state.tick,
         agents=tuple(sorted(state.agents)),
-        low=(x0, z0),
+        low=window[0],
         height=level,
-        cells=cells,
-        stores=read_stores(state, level, labels or {}, by_place),
-        devices=_devices(cells, (x0, level, z0), state, by_place),
+        cells=ground.cells,
+        stores=stores,
+        devices=_devices(ground.standing, state, by_place),
         items=tuple((item.name, item.position) for _, item in sorted(state.items.items())),
         places=tuple((on_one_line(name), at) for name, at in sorted((places or {}).items())),
-        people=tuple(
-            replace(_person(name, agent, state.tick, level, by_place), owned=owned.get(name))
-            for name, agent in sorted(state.agents.items())
-        ),
-        sights=tuple(
-            AgentSight(name, seen[cut[0], layer, cut[1]]) for name, seen in (sight or {}).items()
-        ),
+        people=tuple(people),
+        sights=tuple(AgentSight(name, seen) for name, seen in ground.sights.items()),
         wrong=len(wrong),
         against=against,
         note=note,
+        relief=ground.relief,
     )
 
 
-def _window(
-    state: State, places: Mapping[str, Position]
-) -> tuple[tuple[int, int], tuple[int, int]]:
+@dataclass(frozen=True)
+class _Ground:
+    """Blocks of a plan.
+
+    Attributes:
+        cells: Columns of one storey; empty in a wide world.
+        sights: Columns that agents see, by name of the agent.
+        standing: Blocks that may be devices, by position.
+        relief: Ground of a wide world.
+    """
+
+    cells: tuple[tuple[PlanColumn, ...], ...]
+    sights: Mapping[str, npt.NDArray[np.bool_]]
+    standing: Mapping[Position, str | None]
+    relief: Relief | None = None
+
+
+def _ground(
+    state: State,
+    window: Window,
+    level: int,
+    wrong: Mapping[Position | str, Wrong],
+    sights: Mapping[str, npt.NDArray[np.bool_]],
+) -> _Ground:
+    (x0, z0), (x1, z1) = window
+    if is_wide(state.box):
+        relief, seen = read_relief(state, window, level, sights)
+        false = [each for each in wrong if isinstance(each, tuple) and each[1] <= level]
+        blocks = [place for place in false if place not in state.containers]
+        spots = {(x - x0, z - z0) for x, _, z in blocks if x0 <= x <= x1 and z0 <= z <= z1}
+        # All devices of a wide world would cover its plan. These are worth it.
+        standing = {place: state.blocks[place] for place in (*state.signs, *blocks)}
+        return _Ground((), seen, standing, replace(relief, wrong=tuple(sorted(spots))))
+    cut = (
+        slice(x0 - state.box.low[0], x1 - state.box.low[0] + 1),
+        level - state.box.low[1],
+        slice(z0 - state.box.low[2], z1 - state.box.low[2] + 1),
+    )
+    cells = tuple(
+        tuple(_cell(state, (x, level, z), wrong) for z in range(z0, z1 + 1))
+        for x in range(x0, x1 + 1)
+    )
+    standing = {
+        (x0 + i, level, z0 + k): cell.standing
+        for i, row in enumerate(cells)
+        for k, cell in enumerate(row)
+    }
+    return _Ground(cells, {name: seen[cut] for name, seen in sights.items()}, standing)
+
+
+def _window(state: State, places: Mapping[str, Position]) -> Window:
     """Return the corners of the plan: the box, or the part of it around things and agents."""
     (x0, _, z0), (x1, _, z1) = state.box.low, state.box.high
     if max(x1 - x0, z1 - z0) < _WIDEST:
@@ -334,10 +395,17 @@ def _window(
         ),
     ] or [(x0, z0)]
     xs, zs = zip(*spots, strict=True)
-    return (
-        (max(x0, min(xs) - _EDGE), max(z0, min(zs) - _EDGE)),
-        (min(x1, max(xs) + _EDGE), min(z1, max(zs) + _EDGE)),
-    )
+    edge = _STEP if is_wide(state.box) else _EDGE
+    low, high = [min(xs) - edge, min(zs) - edge], [max(xs) + edge, max(zs) + edge]
+    if is_wide(state.box):
+        low = [
+            first + (at - first) // _STEP * _STEP for at, first in zip(low, (x0, z0), strict=True)
+        ]
+        high = [
+            first + -(-(at + 1 - first) // _STEP) * _STEP - 1
+            for at, first in zip(high, (x0, z0), strict=True)
+        ]
+    return ((max(x0, low[0]), max(z0, low[1])), (min(x1, high[0]), min(z1, high[1])))
 
 
 def _cell(state: State, at: Position, wrong: Mapping[Position | str, Wrong]) -> PlanColumn:
@@ -425,37 +493,37 @@ _ON = ("open", "powered", "lit")
 
 
 def _devices(
-    cells: Sequence[Sequence[PlanColumn]],
-    low: Position,
-    known: State,
-    wrong: Mapping[Position | str, Wrong],
+    standing: Mapping[Position, str | None], known: State, wrong: Mapping[Position | str, Wrong]
 ) -> tuple[Device, ...]:
     registry = Registry.load()
     found = []
-    for i, row in enumerate(cells):
-        for k, cell in enumerate(row):
-            if cell.standing is None or not any(kind in cell.standing for kind in DEVICES):
-                continue
-            state = registry.state_id(cell.standing)
-            properties = registry.properties(state)
-            name = registry.name(state)
-            # The first property of _ON decides: a door also has `powered`, but may be shut then.
-            states = [properties[key] == "true" for key in _ON if key in properties]
-            parts = tuple((b[0], b[2], b[3], b[5]) for b in registry.boxes(state))
-            place = (low[0] + i, low[1], low[2] + k)
-            says = sign_words(known.signs.get(place, ""))
-            false = wrong.get(place)
-            told = None if known.blocks.current(place) else known.blocks.basis(place)
-            found.append(
-                Device(
-                    place,
-                    name,
-                    bool(states and states[0]),
-                    parts,
-                    says,
-                    None if false is None else told_apart((false.held, false.instead)),
-                    _teller(told),
-                    0 if told is None else known.tick - told.observed_at,
-                )
+    for place, text in standing.items():
+        if text is None or not _is_device(text):
+            continue
+        state = registry.state_id(text)
+        properties = registry.properties(state)
+        name = registry.name(state)
+        # The first property of _ON decides: a door also has `powered`, but may be shut then.
+        states = [properties[key] == "true" for key in _ON if key in properties]
+        parts = tuple((b[0], b[2], b[3], b[5]) for b in registry.boxes(state))
+        says = sign_words(known.signs.get(place, ""))
+        false = wrong.get(place)
+        told = None if known.blocks.current(place) else known.blocks.basis(place)
+        found.append(
+            Device(
+                place,
+                name,
+                bool(states and states[0]),
+                parts,
+                says,
+                None if false is None else told_apart((false.held, false.instead)),
+                _teller(told),
+                0 if told is None else known.tick - told.observed_at,
             )
+        )
     return tuple(found)
+
+
+@cache
+def _is_device(text: str) -> bool:
+    return any(kind in text for kind in DEVICES)

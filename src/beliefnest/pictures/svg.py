@@ -1,9 +1,19 @@
 """SVG writer: text stays text, fitted to the width that was measured for it."""
 
+import base64
 from xml.etree import ElementTree
 
 from beliefnest.pictures.lettering import FAMILIES
-from beliefnest.pictures.marks import Circle, Drawing, Lines, Mark, Polygon, Rectangle, Text
+from beliefnest.pictures.marks import (
+    Circle,
+    Drawing,
+    Lines,
+    Mark,
+    Pixels,
+    Polygon,
+    Rectangle,
+    Text,
+)
 from beliefnest.world.texts import on_one_line
 
 __all__ = ["svg_text"]
@@ -61,6 +71,20 @@ def _add(root: ElementTree.Element, mark: Mark) -> None:
             ElementTree.SubElement(root, "path", look)
         case Text():
             _text(root, mark)
+        case Pixels():
+            _pixels(root, mark)
+
+
+def _pixels(root: ElementTree.Element, mark: Pixels) -> None:
+    # Most drawings have none, and Pillow takes long to import.
+    from beliefnest.pictures.raster import fields, png_bytes
+
+    place = {"x": mark.x, "y": mark.y, "width": mark.width, "height": mark.height}
+    image = ElementTree.SubElement(root, "image", {key: _n(at) for key, at in place.items()})
+    image.set("preserveAspectRatio", "none")
+    image.set("style", "image-rendering:pixelated")
+    picture = base64.b64encode(png_bytes(fields(mark), 9)).decode()
+    image.set("href", f"data:image/png;base64,{picture}")
 
 
 def _shape(

@@ -21,6 +21,7 @@ from beliefnest.nest.past.observing import observations_of
 from beliefnest.nest.past.place_names import object_names
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.views import visible_from
 from beliefnest.pictures.words import state_words
 from beliefnest.prompts import Template
 from beliefnest.prompts.observations import Observation
@@ -298,7 +299,8 @@ class ShownSimulator(ABC):
             PathError: There is no such agent.
         """
         self._child_path(agent)
-        return self._recording.state(self._path, self._tick).visible_from(agent)
+        recording = self._recording
+        return visible_from(recording.state(self._path, self._tick), recording.context.sight, agent)
 
     def figure(
         self,

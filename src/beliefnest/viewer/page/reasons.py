@@ -14,6 +14,7 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.parts import Sighting
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.face.reader import Reader
+from beliefnest.nest.past.views import visible_from
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.viewer.page.runs import numbers_text
@@ -189,7 +190,8 @@ class _Views:
         if mark[1] is None:
             return self._number("")
         if mark not in self._known:
-            runs = _runs(reading.visible_from(viewer).ravel())
+            sight = self._reader.history.context.sight
+            runs = _runs(visible_from(reading, sight, viewer).ravel())
             self._known[mark] = self._number(numbers_text(runs))
         number: int = self._known[mark]
         return number
