@@ -10,6 +10,7 @@ _LONGEST = (
     "tests/worlds/minecraft/test_node_suite.py::test_javascript[test/long/",
     "tests/worlds/servers/test_people.py",
     "tests/viewer/page/test_page.py",
+    "tests/studies/participants/test_session.py",
     "tests/studies/test_models.py",
     "tests/studies/test_study.py",
     "tests/worlds/minecraft/test_node_suite.py",

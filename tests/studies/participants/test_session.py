@@ -93,6 +93,7 @@ def test_a_session_from_the_disk_gives_rows_of_the_study(browser, page, download
     assert told.splitlines() == ["Consent", "You may stop <b>at any time</b>.", "one", "Continue"]
     browser.click(".bn-continue")
     browser.click(".bn-continue")
+    assert leaving_asks(browser)
     questions = play(browser, "<i>left</i> box", 6)
     assert len(set(questions)) == 5  # "Who is there?" is asked about both items
     browser.until_script("return document.getElementById('page').dataset.ended")
@@ -102,6 +103,7 @@ def test_a_session_from_the_disk_gives_rows_of_the_study(browser, page, download
         button.click()
     names = [downloads / f"answers-ann_1.{ending}" for ending in ("csv", "json")]
     browser.until(lambda: all(name.exists() for name in names))
+    assert not leaving_asks(browser)
     assert browser.complaints() == []
     loaded = [each for each in browser.requests() if not each.startswith(("data:", "blob:"))]
     assert loaded == [address]
@@ -120,6 +122,14 @@ def test_a_session_from_the_disk_gives_rows_of_the_study(browser, page, download
     for each in answers:
         if each["options"]:
             assert each["options"][each["position"] - 1] == each["response"]
+
+
+def leaving_asks(browser):
+    """Return True if the page would have the browser ask before it is left."""
+    return browser.script(
+        "const event = new Event('beforeunload', { cancelable: true });"
+        "dispatchEvent(event); return event.defaultPrevented"
+    )
 
 
 def test_the_screen_tells_no_jargon_and_axe_finds_no_fault(browser, page):

@@ -3,8 +3,8 @@
 // The rules are those of the JavaScript of worlds; run it with the eslint of `viewer/page/web`.
 const [, { rules }] = require('../../../worlds/minecraft/node/eslint.config.js')
 
-const BROWSER = ['Blob', 'DecompressionStream', 'Response', 'TextEncoder', 'URL', 'URLSearchParams', 'atob', 'clearTimeout', 'crypto',
-  'document', 'fetch', 'location', 'performance', 'scrollTo', 'setTimeout']
+const BROWSER = ['Blob', 'DecompressionStream', 'Response', 'TextEncoder', 'URL', 'URLSearchParams', 'addEventListener', 'atob', 'clearTimeout', 'crypto',
+  'document', 'fetch', 'location', 'performance', 'removeEventListener', 'scrollTo', 'setTimeout']
 
 module.exports = [
   {

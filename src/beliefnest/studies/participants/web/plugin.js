@@ -69,6 +69,7 @@
       this.film = film
       this.onEnd = onEnd
       this.shown = 0
+      this.wasSeen = atEnd
       this.timer = null
       this.addresses = film.pictures.map(svg => `data:image/svg+xml,${encodeURIComponent(svg)}`)
       this.picture = element('img', { className: 'bn-picture' })
@@ -110,7 +111,8 @@
     /** Set texts and states of the buttons. */
     refresh () {
       const last = this.film.frames.length - 1
-      this.play.textContent = this.timer !== null ? 'Pause' : this.at < last ? 'Play' : 'Play again'
+      const isAgain = this.at === last && (this.wasSeen || this.shown > 0)
+      this.play.textContent = this.timer !== null ? 'Pause' : isAgain ? 'Play again' : 'Play'
       this.back.disabled = this.at === 0
       this.next.disabled = this.at === last
     }
@@ -130,7 +132,6 @@
           this.show(this.at + 1)
           this.wait()
         } else {
-          this.refresh()
           this.end()
         }
       }, this.film.frames[this.at][1])
@@ -161,6 +162,7 @@
     /** Count a complete showing. */
     end () {
       this.shown += 1
+      this.refresh()
       this.onEnd()
     }
   }

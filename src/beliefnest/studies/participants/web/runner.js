@@ -62,6 +62,14 @@
   }
 
   /**
+   * Let the browser ask before it leaves the page and loses the answers.
+   * @param {Event} event The event `beforeunload`.
+   */
+  function warn (event) {
+    event.preventDefault()
+  }
+
+  /**
    * Make a button that saves a text as a file.
    * @param {string} label Its text.
    * @param {string} name Name of the file.
@@ -74,6 +82,7 @@
     button.addEventListener('click', () => {
       const link = element('a', { href: URL.createObjectURL(new Blob([content], { type })), download: name })
       link.click()
+      removeEventListener('beforeunload', warn)
       setTimeout(() => URL.revokeObjectURL(link.href), 1000)
     })
     return button
@@ -88,7 +97,10 @@
     try {
       const headers = { 'Content-Type': 'application/json' }
       const answer = await fetch(study.post, { method: 'POST', headers, body: JSON.stringify(rows) })
-      if (answer.ok) return 'Your answers have been sent.'
+      if (answer.ok) {
+        removeEventListener('beforeunload', warn)
+        return 'Your answers have been sent.'
+      }
     } catch {
       // The sentence below tells the participant what to do.
     }
@@ -126,6 +138,7 @@
   progress.max = trials.length
   document.documentElement.dataset.ready = 'yes'
   for (const [at, page] of study.pages.entries()) await instruct(page, at < study.pages.length - 1 ? 'Continue' : 'Begin')
+  addEventListener('beforeunload', warn)
   const begun = performance.now()
   const rows = []
   for (const [at, trial] of trials.entries()) {
