@@ -17,6 +17,8 @@ __all__ = ["BeliefFacts", "MindFacts", "distance", "held", "is_visible"]
 class MindFacts(WorldFacts):
     """Facts of an imagination's own reality at its latest tick, from which a planner acts.
 
+    Make new facts when time has passed.
+
     Args:
         mind: The imagination.
     """
@@ -24,6 +26,7 @@ class MindFacts(WorldFacts):
     def __init__(self, mind: Imagination) -> None:
         super().__init__(mind.world)
         self._mind = mind
+        self._reached: dict[tuple[str, Position], bool] = {}
 
     def block(self, place: Position) -> str | None:
         """Return the text of a block state; None: unknown."""
@@ -32,7 +35,10 @@ class MindFacts(WorldFacts):
 
     def may_reach(self, agent: str, place: Position) -> bool:
         """Return True if an agent may be able to reach a block."""
-        return self._mind.may_reach(agent, place)
+        asked = (agent, place)
+        if asked not in self._reached:
+            self._reached[asked] = self._mind.may_reach(agent, place)
+        return self._reached[asked]
 
     @property
     def containers(self) -> Iterable[Position]:

@@ -96,6 +96,7 @@ class Ground:
         opens: True if doors and gates that can be opened by hand count as open.
 
     Attributes:
+        has_doors: True if there is a door or gate.
         has_doorways: True if there is a door or gate that is open or counts as open.
     """
 
@@ -107,7 +108,7 @@ class Ground:
         states = np.flatnonzero(np.bincount(blocks.ravel() + 1)) - 1
         doorways = [s for s in states.tolist() if s >= 0 and is_doorway(registry.name(s))]
         ways = {s: passage(registry, s) for s in doorways if self._is_way(s)}
-        self.has_doorways = bool(ways)
+        self.has_doors, self.has_doorways = bool(doorways), bool(ways)
         self._has_shut_doors = any(
             moves_by_hand(registry.name(s)) for s in doorways if s not in ways
         )

@@ -182,21 +182,25 @@ def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_D
             )
         steps = deque(way)
         while steps:
-            if doors.opens:
+            ground = hand.ground()
+            if doors.opens and ground.has_doors:
                 yield from _bring(hand, steps[0], opens=True)
             yield 0
-            if not hand.ground().stands(steps[0]):
+            ground = hand.ground()
+            if not ground.stands(steps[0]):
                 bumped.add(steps[0])
                 break
             skipped = _skipped(hand, steps)
-            behind = hand.cell
+            feet = hand.feet
+            behind = block_at(feet)
             for _ in range(skipped):
                 behind = steps.popleft()
+                feet = feet_in(behind)
             moved = True
-            _step_to(hand, behind, steps.popleft())
+            _step_to(hand, feet, steps.popleft())
             if skipped:
                 yield skipped
-            if doors.closes:
+            if doors.closes and ground.has_doors:
                 yield from _bring(hand, behind, opens=False)
     return moved
 
@@ -216,12 +220,10 @@ def _skipped(hand: Hand, steps: Sequence[Position]) -> int:
     return max(0, free - 1)
 
 
-def _step_to(hand: Hand, behind: Position, cell: Position) -> None:
-    """Take a step between two cells, with the view ahead."""
-    x, _, z = hand.feet if behind == hand.cell else feet_in(behind)
-    feet = feet_in(cell)
-    yaw = math.atan2(-(feet[0] - x), -(feet[2] - z))
-    hand.world.place_agent(hand.name, feet, yaw=yaw, pitch=0.0)
+def _step_to(hand: Hand, feet: Point, cell: Position) -> None:
+    """Take a step from a place of the feet into a cell, with the view ahead."""
+    x, _, z = feet_in(cell)
+    hand.world.walk_into(hand.name, cell, yaw=math.atan2(-(x - feet[0]), -(z - feet[2])))
 
 
 def point_in(name: str, value: Any) -> Point:

@@ -37,6 +37,7 @@ from beliefnest.world.values import (
     Items,
     Point,
     Position,
+    feet_in,
 )
 from beliefnest.worlds.scripted.facts import (
     Pending,
@@ -217,6 +218,13 @@ class ScriptedWorld(PoweredState):
             if not (math.isfinite(turn) and math.isfinite(tilt)):
                 raise WorldError(f"{name} cannot look along yaw {yaw}, pitch {pitch}")
             self._facts.agents[name] = agent.moved(self._feet(position), turn, tilt)
+            pending.agents.add(name)
+
+    def walk_into(self, name: str, cell: Position, yaw: float) -> None:
+        """Move an agent to the middle of a cell; it looks straight ahead along `yaw`."""
+        with self._act() as pending:
+            agent = self._agent(name)
+            self._facts.agents[name] = agent.moved(feet_in(self._in_box(cell)), yaw, 0.0)
             pending.agents.add(name)
 
     def set_block(self, position: Position, block: str, actor: str | None = None) -> None:
