@@ -14,7 +14,7 @@ const MOVES = ['position', 'position_look']
 
 class MemoryEnd extends End {
   /**
-   * @param {object} link properties that both ends share: `version`, `supportFeature`, `report(error)`
+   * @param {object} link properties that both ends share: `version`, `supportFeature`, `mail`, `report(error)`
    * @param {string} username
    * @param {string} uuid
    */
@@ -41,7 +41,7 @@ class MemoryEnd extends End {
   write (name, params) {
     if (this.ended) return
     this.checkRoom(name)
-    this.link.post(this.peer, name, this.translate(name, params))
+    this.link.mail.post(this.peer, name, this.translate(name, params))
   }
 
   writeBundle (packets) {
@@ -65,6 +65,8 @@ class MemoryEnd extends End {
 class ClientEnd extends MemoryEnd {
   most = MOST_AT_ONCE
   isCut = false
+  // Returns true if the moves of other players are delivered; else only their appearance changes (bots/others.js).
+  watches = () => true
 
   /** Let nothing through any more except the bot's position, because it still falls. */
   cut () {
@@ -103,20 +105,34 @@ class ClientEnd extends MemoryEnd {
       const formattedMessage = JSON.stringify(this.link.readChat(params.content))
       this.emit('systemChat', { formattedMessage, positionId: params.isActionBar ? 2 : 1 })
     }
-    this.emit('packet', params, { name, state: 'play' })
-    this.emit(name, params, { name, state: 'play' })
+    this.emit(name, params)
   }
 }
 
 class ServerEnd extends MemoryEnd {
   checkRoom () {}
 
+  /**
+   * Send one packet to several players of one region, as `write` to each of them in turn, but translated only once.
+   * @param {ServerEnd[]} ends
+   * @param {string} name
+   * @param {object} params
+   * @param {import('./appearance').Appearance} [appearance] appearance that the packet changes; only bots that watch
+   *   it handle the packet themselves
+   */
+  static writeToAll (ends, name, params, appearance) {
+    const open = ends.filter(end => !end.ended)
+    if (open.length === 0) return
+    const [first] = open
+    first.link.mail.postToAll(open.map(end => end.peer), name, first.translate(name, params), appearance)
+  }
+
   deliver (name, params) {
     handOver(this, name, params, this.link.report)
   }
 }
 
-/** Queue of the packets of one region, which keeps them in order. */
+/** Queue of the packets of one region, which keeps them in order. Each has one or more receiving ends. */
 class Mail {
   /**
    * @param {(owner: string, action: function(): void) => void} run handles a packet in the name of the agent that
@@ -131,9 +147,12 @@ class Mail {
   }
 
   post (end, name, params) {
-    if (params === null) return
-    this.waiting.push({ end, name, params })
-    end.expected++
+    if (params !== null) this.postToAll([end], name, params)
+  }
+
+  postToAll (ends, name, params, appearance = null) {
+    this.waiting.push({ ends, name, params, appearance })
+    for (const end of ends) end.expected++
     if (this.scheduled) return
     this.scheduled = true
     // Do not deliver earlier: a sender may first write and then, some promises later, listen for the answer.
@@ -148,9 +167,12 @@ class Mail {
 
   handOver () {
     for (let index = 0; index < this.waiting.length; index++) {
-      const { end, name, params } = this.waiting[index]
-      end.expected--
-      if (!end.ended) this.run(end.link.agent, () => end.deliver(name, params))
+      const { ends, name, params, appearance } = this.waiting[index]
+      appearance?.move(name, params)
+      for (const end of ends) {
+        end.expected--
+        if (!end.ended && (appearance === null || end.watches())) this.run(end.link.agent, () => end.deliver(name, params))
+      }
     }
     this.waiting.length = 0
     this.scheduled = false
@@ -177,7 +199,7 @@ function connect ({ registry, mail, translator, username, agent, uuid, readChat 
     readChat,
     agent,
     report: error => mail.report(error, agent),
-    post: (end, name, params) => mail.post(end, name, params)
+    mail
   }
   const client = new ClientEnd(link, agent, uuid)
   const server = new ServerEnd(link, username, uuid)
@@ -188,4 +210,4 @@ function connect ({ registry, mail, translator, username, agent, uuid, readChat 
   return { client, server }
 }
 
-module.exports = { connect, Mail }
+module.exports = { connect, Mail, ServerEnd }

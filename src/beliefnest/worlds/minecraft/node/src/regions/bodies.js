@@ -5,6 +5,7 @@ const { BadRequest } = require('../channel/errors')
 const { orBadRequest } = require('./changes')
 const { agentState } = require('./facts')
 const { join, showWorld } = require('./joining')
+const { shareAppearances } = require('../bots/others')
 const { agentUuid, ground, INJECTION_MS, startBot, stopBot } = require('../bots/bot')
 
 class Bodies {
@@ -16,6 +17,7 @@ class Bodies {
     this.serv = serv
     this.clock = clock
     const ChatMessage = require('prismarine-chat')(serv.registry)
+    this.Entity = require('prismarine-entity')(serv.registry)
     this.readChat = content => ChatMessage.fromNotch(content).json
   }
 
@@ -50,6 +52,7 @@ class Bodies {
       readChat: this.readChat
     })
     const bot = startBot(client, this.clock)
+    shareAppearances(bot, client, this.Entity)
     bot.physicsEnabled = false
     return { agent, bot, player: join(this.serv, region, server, state), state }
   }

@@ -1,11 +1,14 @@
 'use strict'
 /** Delivery of packets: everything reaches exactly the players of one's own region. */
+const { ServerEnd } = require('../net/transport')
 
 module.exports.name = 'communication'
 
 module.exports.server = serv => {
-  serv._writeArray = (name, packet, players) => {
-    for (const player of players) player._client.write(name, packet)
+  serv._writeArray = (name, packet, players, appearance) => {
+    const ends = Array.from(players, player => player._client)
+    ServerEnd.writeToAll(ends.filter(end => end instanceof ServerEnd), name, packet, appearance)
+    for (const end of ends) if (!(end instanceof ServerEnd)) end.write(name, packet)
   }
   serv._writeAll = (name, packet) => serv._writeArray(name, packet, serv.players)
   serv.getNearby = ({ position, radius = Infinity }) => serv.players
@@ -24,6 +27,8 @@ module.exports.entity = (entity, serv) => {
   const hasList = other => other.type !== 'player' || other.listed
   entity.getNearby = () => Object.values(serv.entities).filter(other => other !== entity && hasList(other))
   entity._writeOthers = (name, packet) => serv._writeArray(name, packet, others())
+  /** Send a packet that changes the appearance of this entity, which is a player. */
+  entity.showMove = (name, packet) => serv._writeArray(name, packet, others(), entity.appearance)
   entity._writeOthersNearby = entity._writeOthers
   entity._writeNearby = (name, packet) => serv._writeAll(name, packet)
 }

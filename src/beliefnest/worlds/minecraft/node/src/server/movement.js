@@ -4,12 +4,14 @@
  * this module keeps both exactly as the player's client sent them.
  */
 const { Vec3 } = require('vec3')
+const { Appearance } = require('../net/appearance')
 const { angleStep, fromDegrees, samePose, toDegrees } = require('./angles')
 
 module.exports.name = 'updatePositions'
 
 module.exports.player = player => {
   player.pose = { yaw: 0, pitch: 0 }
+  player.appearance = new Appearance()
   // Block from which the current walk began.
   player.stoodAt = player.position.floored()
   // In Minecraft's degrees, which plugins use for throwing and placing.
@@ -59,7 +61,7 @@ function moveTo (entity, x, y, z) {
   const { position } = entity
   if (position.x === x && position.y === y && position.z === z) return
   entity.position = new Vec3(x, y, z)
-  entity._writeOthersNearby('entity_teleport', {
+  entity.showMove('entity_teleport', {
     entityId: entity.id, x, y, z, yaw: entity.yaw, pitch: entity.pitch, onGround: entity.onGround
   })
 }
@@ -75,8 +77,8 @@ function showTurn (player) {
   const { yaw, pitch } = toDegrees(player.pose)
   player.yaw = angleStep(yaw)
   player.pitch = angleStep(pitch)
-  player._writeOthersNearby('entity_look', {
+  player.showMove('entity_look', {
     entityId: player.id, yaw: player.yaw, pitch: player.pitch, onGround: player.onGround
   })
-  player._writeOthersNearby('entity_head_rotation', { entityId: player.id, headYaw: player.yaw })
+  player.showMove('entity_head_rotation', { entityId: player.id, headYaw: player.yaw })
 }

@@ -18,6 +18,7 @@ module.exports.player = (player) => {
       headPitch: entity.yaw,
       objectData: 0,
       velocity: { x: 0, y: 0, z: 0 },
+      appearance: entity.appearance,
     })
     entity.showMetadata?.(player)
     entity.showEquipment?.(player)
