@@ -1,6 +1,8 @@
 'use strict'
 /** Other players, as a bot of this process sees them. */
 
+const MOVED = 'entityMoved'
+
 /**
  * Let the entities of other players take their pose from the appearance that all bots of the region share. A move is
  * then no work for a bot, unless something listens to its event `entityMoved`. Call this before the bot's plugins
@@ -16,7 +18,8 @@ function shareAppearances (bot, client, Entity) {
     appearance.place(packet)
     bot.entities[entityId] ??= shownEntity(Entity, entityId, appearance)
   })
-  client.watches = () => bot.listenerCount('entityMoved') > 0
+  bot.on('newListener', event => { if (event === MOVED) client.watch(true) })
+  bot.on('removeListener', event => { if (event === MOVED) client.watch(bot.listenerCount(MOVED) > 0) })
 }
 
 /** Return an entity with the pose of an appearance; setting its angles has no effect. @returns {object} */

@@ -41,7 +41,8 @@ class MemoryEnd extends End {
   write (name, params) {
     if (this.ended) return
     this.checkRoom(name)
-    this.link.mail.post(this.peer, name, this.translate(name, params))
+    const translated = this.translate(name, params)
+    if (translated !== null) this.link.mail.post([this.peer], name, translated)
   }
 
   writeBundle (packets) {
@@ -65,8 +66,8 @@ class MemoryEnd extends End {
 class ClientEnd extends MemoryEnd {
   most = MOST_AT_ONCE
   isCut = false
-  // Returns true if the moves of other players are delivered; else only their appearance changes (bots/others.js).
-  watches = () => true
+  // Number in the order of connecting.
+  number = 0
 
   /** Let nothing through any more except the bot's position, because it still falls. */
   cut () {
@@ -88,6 +89,11 @@ class ClientEnd extends MemoryEnd {
     } finally {
       this.most = MOST_AT_ONCE
     }
+  }
+
+  /** Set whether packets of others' moves are delivered; their appearance changes in any case (bots/others.js). */
+  watch (wanted) {
+    this.link.mail.watch(this, wanted)
   }
 
   checkRoom (name) {
@@ -112,19 +118,12 @@ class ClientEnd extends MemoryEnd {
 class ServerEnd extends MemoryEnd {
   checkRoom () {}
 
-  /**
-   * Send one packet to several players of one region, as `write` to each of them in turn, but translated only once.
-   * @param {ServerEnd[]} ends
-   * @param {string} name
-   * @param {object} params
-   * @param {import('./appearance').Appearance} [appearance] appearance that the packet changes; only bots that watch
-   *   it handle the packet themselves
-   */
-  static writeToAll (ends, name, params, appearance) {
+  /** Send one packet to several players of one region, as `write` to each of them, but translated only once. */
+  static writeToAll (ends, name, params) {
     const open = ends.filter(end => !end.ended)
     if (open.length === 0) return
     const [first] = open
-    first.link.mail.postToAll(open.map(end => end.peer), name, first.translate(name, params), appearance)
+    first.link.mail.post(open.map(end => end.peer), name, first.translate(name, params))
   }
 
   deliver (name, params) {
@@ -132,7 +131,7 @@ class ServerEnd extends MemoryEnd {
   }
 }
 
-/** Queue of the packets of one region, which keeps them in order. Each has one or more receiving ends. */
+/** Queue of the packets of one region, which keeps them in order. */
 class Mail {
   /**
    * @param {(owner: string, action: function(): void) => void} run handles a packet in the name of the agent that
@@ -144,15 +143,34 @@ class Mail {
     this.report = report
     this.waiting = []
     this.scheduled = false
+    // Ends of bots to which packets of others' moves are delivered, in the order in which they joined.
+    this.watching = []
+    this.connected = 0
   }
 
-  post (end, name, params) {
-    if (params !== null) this.postToAll([end], name, params)
+  /** Add an end to those that watch, or remove it. */
+  watch (end, wanted) {
+    const others = this.watching.filter(other => other !== end && !other.ended)
+    this.watching = wanted ? [...others, end].sort((a, b) => a.number - b.number) : others
   }
 
-  postToAll (ends, name, params, appearance = null) {
-    this.waiting.push({ ends, name, params, appearance })
+  /** Queue a packet for some ends. */
+  post (ends, name, params) {
     for (const end of ends) end.expected++
+    this.queue({ ends, name, params, appearance: null, mover: null })
+  }
+
+  /**
+   * Queue a move of a player for all bots of the region.
+   * @param {import('./appearance').Appearance} appearance appearance that it changes
+   * @param {ClientEnd} [mover] end of the moving player's own bot
+   */
+  postMove (appearance, mover, name, params) {
+    this.queue({ ends: [], name, params, appearance, mover })
+  }
+
+  queue (packet) {
+    this.waiting.push(packet)
     if (this.scheduled) return
     this.scheduled = true
     // Do not deliver earlier: a sender may first write and then, some promises later, listen for the answer.
@@ -167,15 +185,21 @@ class Mail {
 
   handOver () {
     for (let index = 0; index < this.waiting.length; index++) {
-      const { ends, name, params, appearance } = this.waiting[index]
-      appearance?.move(name, params)
+      const { ends, name, params, appearance, mover } = this.waiting[index]
       for (const end of ends) {
         end.expected--
-        if (!end.ended && (appearance === null || end.watches())) this.run(end.link.agent, () => end.deliver(name, params))
+        this.deliver(end, name, params)
       }
+      if (appearance === null) continue
+      appearance.move(name, params)
+      for (const end of this.watching) if (end !== mover) this.deliver(end, name, params)
     }
     this.waiting.length = 0
     this.scheduled = false
+  }
+
+  deliver (end, name, params) {
+    if (!end.ended) this.run(end.link.agent, () => end.deliver(name, params))
   }
 }
 
@@ -202,6 +226,7 @@ function connect ({ registry, mail, translator, username, agent, uuid, readChat 
     mail
   }
   const client = new ClientEnd(link, agent, uuid)
+  client.number = mail.connected++
   const server = new ServerEnd(link, username, uuid)
   client.peer = server
   server.peer = client

@@ -4,11 +4,18 @@ const { ServerEnd } = require('../net/transport')
 
 module.exports.name = 'communication'
 
+/** Return true if the other end of a connection is in this process. */
+const isNear = end => end instanceof ServerEnd
+
+/** Send a packet to the players, except one, whose connection leads out of this process. */
+function writeFar (name, packet, players, except) {
+  for (const player of players) if (player !== except && !isNear(player._client)) player._client.write(name, packet)
+}
+
 module.exports.server = serv => {
-  serv._writeArray = (name, packet, players, appearance) => {
-    const ends = Array.from(players, player => player._client)
-    ServerEnd.writeToAll(ends.filter(end => end instanceof ServerEnd), name, packet, appearance)
-    for (const end of ends) if (!(end instanceof ServerEnd)) end.write(name, packet)
+  serv._writeArray = (name, packet, players) => {
+    ServerEnd.writeToAll(players.map(player => player._client).filter(isNear), name, packet)
+    writeFar(name, packet, players)
   }
   serv._writeAll = (name, packet) => serv._writeArray(name, packet, serv.players)
   serv.getNearby = ({ position, radius = Infinity }) => serv.players
@@ -27,8 +34,13 @@ module.exports.entity = (entity, serv) => {
   const hasList = other => other.type !== 'player' || other.listed
   entity.getNearby = () => Object.values(serv.entities).filter(other => other !== entity && hasList(other))
   entity._writeOthers = (name, packet) => serv._writeArray(name, packet, others())
-  /** Send a packet that changes the appearance of this entity, which is a player. */
-  entity.showMove = (name, packet) => serv._writeArray(name, packet, others(), entity.appearance)
+  /** Show a move of this entity to all other players. */
+  entity.showMove = (name, packet) => {
+    if (entity.appearance === undefined) return entity._writeOthers(name, packet)
+    const { mail, translator } = serv.region
+    mail.postMove(entity.appearance, entity._client.peer, name, translator.toClient(name, packet))
+    writeFar(name, packet, serv.players, entity)
+  }
   entity._writeOthersNearby = entity._writeOthers
   entity._writeNearby = (name, packet) => serv._writeAll(name, packet)
 }
