@@ -21,7 +21,14 @@ from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.scenarios.sources import builtin_names
 
 ROOT = Path(__file__).parents[2]
-PAPERS = ("README.md", "CONTRIBUTING.md", "docs/*.md", "docs/tasks/*.md", "docs/reference/*.md")
+PAPERS = (
+    "README.md",
+    "CONTRIBUTING.md",
+    "docs/*.md",
+    "docs/tasks/*.md",
+    "docs/days/*.md",
+    "docs/reference/*.md",
+)
 COMMAND = typer.main.get_command(app)
 RUN_BY = {
     ("README.md", "python"): "docs/test_docs.py",
@@ -43,6 +50,7 @@ RUN_BY = {
     ("people.md", "python"): "worlds/servers/test_people.py",
     ("pettingzoo.md", "python"): "adapters/pettingzoo/test_environment.py",
     ("programs.md", "python"): "docs/test_nest_pages.py",
+    ("psychologist.md", "python"): "docs/test_psychologist_page.py",
     ("python.md", "python"): "docs/test_nest_pages.py",
     ("scenarios.md", "python"): "docs/test_docs.py",
     ("scripted-world.md", "python"): "docs/test_nest_pages.py",

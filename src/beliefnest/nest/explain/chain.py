@@ -69,7 +69,8 @@ def element_of(
             )
         return Element("agent", agent)
     if container is not None:
-        return Element("container", _inside(recording, container))
+        place = _inside(recording, container)
+        return Element("container", place, recording.setting.labels.get(place))
     return Element("block", _inside(recording, block))
 
 

@@ -51,10 +51,12 @@ class Element:
     Attributes:
         kind: `container`, `agent` or `block`.
         where: Position of the element, or name of the agent.
+        label: Name of a container for people; None: it has none.
     """
 
     kind: Literal["container", "agent", "block"]
     where: Position | str
+    label: str | None = None
 
 
 class View(StrEnum):

@@ -20,7 +20,7 @@ from beliefnest.nest.explain.parts import (
 from beliefnest.world.event_words import did, kind_words
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import EventKind
-from beliefnest.world.words import items_words, point_words
+from beliefnest.world.words import items_words, point_words, with_the
 
 __all__ = ["as_known_to", "explanation_lines"]
 
@@ -289,8 +289,8 @@ def _contents(value: Contents) -> str:
 def _named(element: Element, block: str | None) -> str:
     if isinstance(element.where, str):
         return element.where
-    name = (block if element.kind == "container" else None) or element.kind
-    return f"the {name} at {_place(element)}"
+    name = element.label or (block if element.kind == "container" else None) or element.kind
+    return f"{with_the(name)} at {_place(element)}"
 
 
 def _place(element: Element) -> str:
