@@ -170,3 +170,21 @@ def test_each_person_is_paired_with_the_model_and_with_other_people():
     assert (pairs.both, pairs.only_one, pairs.difference) == (4, 2, pytest.approx(1 / 3))
     (spots,) = paired_rows(people, "spot", identity)
     assert (spots.pairs, spots.both, spots.only_one, spots.only_other) == (9, 4, 2, 2)
+
+
+def test_people_are_a_second_cluster_of_differences():
+    people = answered(10, 40, lambda p, v: p < 5)
+    models = [{**row("a", v, True), "variation": f"v{v}", "participant": None} for v in range(40)]
+    (pairs,) = paired_rows([*models, *people], "model", ["model", "spot", "participant"])
+    assert pairs.difference == 0.5
+    # All variations have the same difference; five of ten people are as right as the model.
+    assert pairs.interval == pytest.approx((0.2, 0.8), abs=0.01)
+    unanimous = answered(4, 9, lambda p, v: False)
+    models = [{**row("a", v, True), "variation": f"v{v}", "participant": None} for v in range(9)]
+    (pairs,) = paired_rows([*models, *unanimous], "model", ["model", "spot", "participant"])
+    (four,) = paired_rows(
+        [row(model, v, model == "a") for model in "ab" for v in range(4)],
+        "model",
+        ["model", "spot"],
+    )
+    assert pairs.interval == four.interval

@@ -4,7 +4,7 @@ Rows of one variation are not independent: they share the scene. The independent
 variation. Intervals therefore resample variations, and tests exchange levels of whole variations.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,9 @@ __all__ = ["DRAWS", "crossed_interval", "exchange_p", "mean_interval", "rate_int
 
 DRAWS = 2_000
 """Draws of a bootstrap."""
+
+_MOST_WEIGHTS = 4_000_000
+"""Greatest number of weights that are computed at once."""
 
 
 def mean_interval(
@@ -63,45 +66,69 @@ def rate_interval(clusters: Sequence[Sequence[bool]]) -> tuple[float, float, str
 
 
 def crossed_interval(
-    values: Sequence[bool], variations: Sequence[object], people: Sequence[object | None]
-) -> tuple[float, float, str]:
-    """Compute the 95 % interval of the share of True if people answered several variations.
+    values: Sequence[float],
+    variations: Sequence[object],
+    people: Sequence[Collection[object]],
+) -> tuple[tuple[float, float] | None, int]:
+    """Compute the 95 % interval of a mean if people answered several variations.
 
     The method is the pigeonhole bootstrap of Owen (2007): variations and people are drawn with
     replacement, independently of each other. A value counts as often as its variation was drawn
-    times its person.
+    times each of its people.
 
     Args:
         values: Values, at least one.
         variations: Variation of each value.
-        people: Person of each value; None: nobody, whose values count as often as the variation
-            was drawn.
+        people: People of each value; empty: it counts as often as its variation was drawn.
 
     Returns:
-        Lowest share, highest share, and the method, `wilson` or `two-way bootstrap`. The method is
-        Wilson's interval if no two values share a variation or a person, or if all draws have the
-        same share; then for as many values as there are variations, or people if these are fewer.
+        Lowest and highest mean, and the number of independent values. None in place of both if no
+        two values share a variation or a person, or if the means of all draws are equal: the
+        caller then knows a better method for this number of values.
     """
-    rows, columns = _numbers(variations), _numbers([each for each in people if each is not None])
-    mean, least = sum(values) / len(values), min(len(rows), len(columns) or len(rows))
-    if len(rows) == len(columns) == len(values):
-        return *wilson_interval(sum(values), len(values)), "wilson"
-    # The last column is that of nobody.
-    sums, counts = np.zeros((2, len(rows), len(columns) + 1))
-    for value, variation, person in zip(values, variations, people, strict=True):
-        place = rows[variation], columns.get(person, len(columns))
-        sums[place] += value
-        counts[place] += 1
-    chance = np.random.default_rng(0)
-    drawn = _drawn(chance, len(rows))
-    weights = np.hstack([_drawn(chance, len(columns)), np.ones((DRAWS, 1))])
-    totals = (drawn @ counts * weights).sum(axis=1)
-    # A draw may contain no value if few people answered few variations each.
-    shares = (drawn @ sums * weights).sum(axis=1)[totals > 0] / totals[totals > 0]
-    low, high = np.percentile(shares, [2.5, 97.5])
+    rows = _numbers(variations)
+    columns = _numbers([person for group in people for person in group])
+    if len(rows) == len(values) == sum(map(len, people)) == len(columns):
+        return None, len(values)
+    means = _crossed_means(values, [rows[each] for each in variations], people, columns)
+    low, high = np.percentile(means, [2.5, 97.5])
     if low == high:
-        return *wilson_interval(mean * least, least), "wilson"
-    return float(low), float(high), "two-way bootstrap"
+        return None, min(len(rows), len(columns) or len(rows))
+    return (float(low), float(high)), len(values)
+
+
+def _crossed_means(
+    values: Sequence[float],
+    rows: Sequence[int],
+    people: Sequence[Collection[object]],
+    columns: Mapping[object, int],
+) -> npt.NDArray[np.float64]:
+    """Return the mean of each draw of a pigeonhole bootstrap that contains a value.
+
+    Args:
+        values: The values.
+        rows: Number of the variation of each value.
+        people: People of each value.
+        columns: Numbers of the people.
+    """
+    most = max(map(len, people))
+    # The last column is that of nobody.
+    numbers = [[columns[each] for each in group] for group in people]
+    places = np.array([each + [len(columns)] * (most - len(each)) for each in numbers], dtype=int)
+    chance = np.random.default_rng(0)
+    drawn = _drawn(chance, max(rows) + 1)
+    weights = np.hstack([_drawn(chance, len(columns)), np.ones((DRAWS, 1))])
+    step = max(1, _MOST_WEIGHTS // len(values))
+    means = []
+    for start in range(0, DRAWS, step):
+        part = slice(start, start + step)
+        own = drawn[part][:, rows]
+        for place in places.T:
+            own = own * weights[part][:, place]
+        totals = own.sum(axis=1)
+        # A draw may contain no value if few people answered few variations each.
+        means.append((own @ np.asarray(values, dtype=float))[totals > 0] / totals[totals > 0])
+    return np.concatenate(means)
 
 
 def _numbers(names: Sequence[object]) -> dict[object, int]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.scenarios.scoring import wilson_interval
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import (
     crossed_interval,
@@ -105,11 +106,15 @@ def _counted(all_rows: Sequence[tuple[Row, _Origin]], means: Mapping[str, bool])
 def _interval(rows: Mapping[_Origin, Row]) -> tuple[float, float, str]:
     """Return the interval of the share of right rows, and its method."""
     judged = {origin: row for origin, row in rows.items() if row.get("ok") is not None}
-    people = [row.get(PARTICIPANT) for row in judged.values()]
+    people = [_people(row) for row in judged.values()]
     if not any(people):
         return rate_interval(_clusters(judged, "ok"))
     variations = [_variation(row, origin) for origin, row in judged.items()]
-    return crossed_interval([row["ok"] for row in judged.values()], variations, people)
+    values = [row["ok"] for row in judged.values()]
+    bounds, count = crossed_interval(values, variations, people)
+    if bounds is None:
+        return *wilson_interval(sum(values) / len(values) * count, count), "wilson"
+    return *bounds, "two-way bootstrap"
 
 
 def _clusters(rows: Mapping[_Origin, Row], column: str) -> list[list[Any]]:
@@ -123,6 +128,11 @@ def _clusters(rows: Mapping[_Origin, Row], column: str) -> list[list[Any]]:
 
 def _variation(row: Row, origin: _Origin) -> object:
     return row.get("variation") or origin
+
+
+def _people(*rows: Row) -> frozenset[object]:
+    """Return the people who gave some rows."""
+    return frozenset(row[PARTICIPANT] for row in rows if row.get(PARTICIPANT) is not None)
 
 
 def _means(rows: Mapping[_Origin, Row], means: Mapping[str, bool]) -> dict[str, Any]:
@@ -146,11 +156,13 @@ class Pairs:
         other: Another value of the column.
         clusters: Pairs of each independent variation. A pair is (True if right with `one`, True
             if right with `other`). Copies of a pair are left out.
+        people: People of each pair, in the same form; empty: no pair has any.
     """
 
     one: Any
     other: Any
     clusters: tuple[tuple[tuple[bool, bool], ...], ...]
+    people: tuple[tuple[frozenset[object], ...], ...] = ()
 
     @property
     def variations(self) -> int:
@@ -193,15 +205,30 @@ class Pairs:
         interval after adding one to both counts of discordant pairs, which is valid for few pairs
         too. With several pairs, it is the cluster bootstrap. If all variations have the same
         difference, every bootstrap mean is the same; the method then is Bonett and Price's for
-        as many pairs as there are variations.
+        as many pairs as there are variations. With people in pairs, it is the pigeonhole bootstrap
+        over variations and people.
         """
         differences = [[one - other for one, other in cluster] for cluster in self.clusters]
+        if any(person for cluster in self.people for person in cluster):
+            bounds, count = self._crossed(differences)
+            return self._after_adding(count) if bounds is None else bounds
         several = any(len(cluster) > 1 for cluster in differences)
         if several and len({sum(each) / len(each) for each in differences}) > 1:
             low, high = mean_interval(differences)
             assert low is not None and high is not None
             return low, high
-        count = self.variations
+        return self._after_adding(self.variations)
+
+    def _crossed(
+        self, differences: Sequence[Sequence[int]]
+    ) -> tuple[tuple[float, float] | None, int]:
+        """Return the interval over variations and people, see `crossed_interval`."""
+        numbers = [number for number, each in enumerate(differences) for _ in each]
+        values = [value for each in differences for value in each]
+        return crossed_interval(values, numbers, [each for own in self.people for each in own])
+
+    def _after_adding(self, count: int) -> tuple[float, float]:
+        """Return the interval of Bonett and Price for a number of independent pairs."""
         first = (self.only_one * count / self.pairs + 1) / (count + 2)
         second = (self.only_other * count / self.pairs + 1) / (count + 2)
         middle = first - second
@@ -256,8 +283,12 @@ def _pairs(
             if a != b:
                 found[a, b] = (first, second)
     clusters: dict[tuple[object, object], list[tuple[bool, bool]]] = {}
+    people: dict[tuple[object, object], list[frozenset[object]]] = {}
     for (a, b), (first, second) in found.items():
         # If the column is part of the variation, the two rows belong to two variations.
         cluster = _variation(first, a), _variation(second, b)
         clusters.setdefault(cluster, []).append((first["ok"], second["ok"]))
-    return Pairs(one, other, tuple(map(tuple, clusters.values())))
+        people.setdefault(cluster, []).append(_people(first, second))
+    return Pairs(
+        one, other, tuple(map(tuple, clusters.values())), tuple(map(tuple, people.values()))
+    )

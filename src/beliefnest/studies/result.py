@@ -47,7 +47,8 @@ class StudyResult(StudyRecord):
         """Return for each group its accuracy with a 95 % interval, and counts of all outcomes.
 
         Rows of one variation are not independent. The interval is therefore Wilson's if each
-        variation has one row in the group, otherwise the cluster bootstrap over variations. The
+        variation has one row in the group, otherwise the cluster bootstrap over variations; with
+        answers of people the pigeonhole bootstrap over variations and participants. The
         column `interval` names the method, and `variations` the number of variations. For
         episodes there are also means with 95 % intervals by the same bootstrap.
 
@@ -84,7 +85,8 @@ class StudyResult(StudyRecord):
             A row for each two values: the columns of `by`; `one`, `other`; `pairs`; the number of
             independent `variations`; the number of pairs that are right with `both`, with
             `only_one` or with `only_other`; the `difference` with `low` and `high` (95 %: Bonett
-            and Price with one pair in each variation, else the cluster bootstrap); `p` (exact
+            and Price with one pair in each variation, else the cluster bootstrap; with people the
+            pigeonhole bootstrap); `p` (exact
             permutation of levels within variations; with one pair in each, McNemar's exact test).
 
         Raises:
