@@ -62,12 +62,16 @@ def test_conditions_differ_in_the_beliefs_of_the_idea(
 
 def test_a_small_study_has_each_variation_under_every_condition(folder: Path) -> None:
     Path("study.yaml").write_text(STUDY.replace("variations: 40", "variations: 3"))
-    rows = bn.Study.load("study.yaml").run("out", jobs=1).rows
+    result = bn.Study.load("study.yaml").run("out", jobs=1)
+    rows = result.rows
     assert len(rows) == 3 * 3 * 2 * 3
     assert len({(row["variation"], row["condition"]) for row in rows}) == 9
     realist = {
         (row["condition"], row["order"]): row["ok"] for row in rows if row["model"] == "offline"
     }
+    methods = result.methods()
+    assert "3 drawn variations of each scenario (in `agents`" in methods
+    assert "Right answers were computed from the beliefs of the simulated agents." in methods
     assert [pair for pair, ok in sorted(realist.items()) if not ok] == [(2, 1), (2, 2), (3, 2)]
 
 

@@ -139,6 +139,7 @@ def test_programs_are_judged_by_a_believed_place(nest, path, ok, opens):
     [
         ({"believed": "/wmi", "item": "diamond"}, "right.believed: '/wmi' names an unknown agent"),
         ({"believed": "/wim", "item": "diamnod"}, "right.item: no item 'diamnod'"),
+        ({"believed": "/wim", "item": "key"}, "no item 'key' .*; give one of the game, such as"),
         ({"believed": "/wim"}, "right: name exactly one of item, agent"),
         ({"believed": "/wim", "item": "stick", "agent": "lia"}, "right: name exactly one"),
         ({"believed": "/wim", "container": [0, 0, 0]}, "right.container: no container stands"),

@@ -137,6 +137,18 @@ def test_the_paragraph_has_recorded_facts_in_markdown_and_latex(recorded, capsys
     assert not re.search(r"(?<!\\)[%_&#]", latex)
 
 
+def test_what_is_no_study_or_supplement_is_told(tmp_path, capsys):
+    small = small_in(tmp_path)
+    out = tmp_path / "run"
+    assert run_command_line(["run", small, "--world", "scripted", "--out", str(out)]) == 0
+    assert run_command_line(["stats", str(out)]) == 2
+    assert "it holds a run of `beliefnest run`; give a folder of" in capsys.readouterr().err
+    assert run_command_line(["reproduce", str(tmp_path / "nothing.zip")]) == 2
+    told = capsys.readouterr().err
+    assert "there is no file" in told
+    assert "Errno" not in told
+
+
 def test_a_run_is_bundled_and_played_again(tmp_path, capsys):
     small = small_in(tmp_path)
     (tmp_path / "answers.json").write_text(json.dumps(["no", LEFT]), encoding="utf-8")

@@ -99,6 +99,8 @@ def unpack(file: Path, folder: Path) -> Path:
             if sum(entry.file_size for entry in archive.infolist()) > _LARGEST:
                 raise InputError(f"{file} is larger than {_LARGEST:,} bytes when unpacked")
             archive.extractall(folder)
+    except FileNotFoundError:
+        raise InputError(f"there is no file {file}; give a supplement's ZIP file") from None
     except (zipfile.BadZipFile, OSError, RuntimeError, NotImplementedError) as error:
         raise InputError(
             f"{file} cannot be unpacked: {error}; give a supplement's ZIP file"

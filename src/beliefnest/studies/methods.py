@@ -96,6 +96,7 @@ class Facts:
         cost: Known cost of all rows in US dollars.
         unpriced: Number of rows whose cost is not known.
         excluded: What was excluded, by keys of `_EXCLUDED`, and how often.
+        computed: Number of judged rows whose right answers were computed from beliefs.
         intervals: Methods of the intervals of accuracies.
         people: People who answered.
     """
@@ -117,6 +118,7 @@ class Facts:
     cost: float
     unpriced: int
     excluded: Mapping[str, int] = field(default_factory=dict)
+    computed: int = 0
     intervals: Sequence[str] = ()
     people: Sequence[PeopleFacts] = ()
 
@@ -185,6 +187,7 @@ def study_facts(result: StudyRecord) -> Facts:
         cost=cost,
         unpriced=unpriced,
         excluded=_excluded(result),
+        computed=_computed(judged),
         intervals=_intervals(result.counted(result.groups)),
         people=list(_people(result)),
     )
@@ -247,7 +250,15 @@ def run_facts(result: RunResult) -> Facts:
         cost=cost,
         unpriced=unpriced,
         excluded={name: count for name, count in excluded.items() if count},
+        computed=_computed(judged),
     )
+
+
+def _computed(rows: Sequence[Row]) -> int:
+    """Return the number of rows with a question whose right answer a belief gave."""
+    texts = [row.get("expected") or "{}" for row in rows]
+    asked = [json.loads(text).get("answers", ()) for text in texts]
+    return sum(any("right_from" in each for each in questions) for questions in asked)
 
 
 def _intervals(groups: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -409,6 +420,10 @@ def _sentences(facts: Facts) -> Iterator[str]:
         f"{counted(facts.variations, 'independent variation')} "
         f"{'is' if facts.judged == 1 else 'are'} judged."
     )
+    if facts.computed:
+        some = f" of {counted(facts.computed, 'row')}"
+        of = "" if facts.computed == facts.judged else some
+        yield f"Right answers{of} were computed from the beliefs of the simulated agents."
     if facts.intervals:
         yield f"The 95 % intervals of accuracies are by {_listed(facts.intervals)}."
 

@@ -76,7 +76,14 @@ class StudyFolder:
         """Return the folder of an existing study; raise InputError if there is none."""
         folder = StudyFolder(Path(path))
         if not folder.cells.is_dir():
-            raise InputError(f"there is no study at {path}")
+            run = (
+                "; it holds a run of `beliefnest run`"
+                if (folder.path / "run.json").exists()
+                else ""
+            )
+            raise InputError(
+                f"there is no study at {path}{run}; give a folder of `beliefnest study`"
+            )
         return folder
 
     def lock(self) -> FileLock:

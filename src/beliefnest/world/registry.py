@@ -247,7 +247,8 @@ class Registry:
         bare = _bare(name)
         if bare not in self._items:
             raise UnknownNameError(
-                f"no item {name!r} in Minecraft {self.version}{_nearest(bare, self._items)}"
+                f"no item {name!r} in Minecraft {self.version}"
+                f"{_nearest(bare, self._items) or _EXAMPLES}"
             )
         return self._items[bare]
 
@@ -265,6 +266,9 @@ class Registry:
                 f"ids are 0 to {self.states - 1} (-1 in a grid is unknown and has no name)"
             )
         return self._block_order[bisect_right(self._first_states, state_id) - 1]
+
+
+_EXAMPLES = "; give one of the game, such as diamond, clock, book or oak_planks"
 
 
 def _bare(name: str) -> str:
