@@ -10,7 +10,8 @@ __all__ = ["instruction_pages", "read_instructions"]
 
 _SCENE = (
     "The scene is drawn from above. A circle is a person, and its tip points where the person "
-    "looks. Boxes show what is in them; the words below the picture say it as well."
+    "looks. Boxes show what is in them while it can be seen; a question mark means that it cannot. "
+    "The words below the picture say the same."
 )
 _PLAY = (
     "Press Play to start a film. You can stop it, go back, and play it again. The question appears "
