@@ -164,3 +164,18 @@ def test_a_script_that_fails_ends_the_run() -> None:
     script = [{"label": "oops", "agent": "ann", "program": "\nawait bot.jumpOverTheMoon();"}]
     with pytest.raises(bn.ProgramError, match=r"step 1 \(oops\).*ann.*line 2"):
         run(Parrot(""), script=script)
+
+
+def test_a_hole_that_names_no_parameter_is_told_with_the_error_of_the_program() -> None:
+    content = {
+        "name": "hole",
+        "box": [[0, 0, 0], [4, 3, 4]],
+        "parameters": {"item": {"default": "apple"}},
+        "agents": {"ann": {"position": [2.5, 1, 2.5], "inventory": {"apple": 1}}},
+        "script": [{"agent": "ann", "program": "await doNothing(bot, {${itm}: 1});"}],
+    }
+    with (
+        bn.Nest.open(bn.Scenario.from_mapping(content), "scripted") as nest,
+        pytest.raises(bn.ProgramError, match=r"SyntaxError.*'\$\{itm\}' names no parameter"),
+    ):
+        nest.play()

@@ -63,7 +63,16 @@ def _play_step(engine: Engine, number: int, step: Step) -> None:
             fault = BodyError if result.killed or _is_of_bot(result) else ProgramError
             raise fault(
                 f"{where}step {number + 1}{label}: the program of {agent} failed: {result.error}"
+                f"{_unfilled(step.programs[agent], result)}"
             )
+
+
+def _unfilled(program: str, result: ProgramResult) -> str:
+    """Return a hint if the program is no JavaScript because of a hole that nothing filled."""
+    if result.error is None or result.error.kind != "syntax" or "${" not in program:
+        return ""
+    name = program.partition("${")[2].partition("}")[0]
+    return f"; '${{{name}}}' names no parameter of the scenario"
 
 
 def _is_of_bot(result: ProgramResult) -> bool:
