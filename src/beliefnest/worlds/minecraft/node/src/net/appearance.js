@@ -6,7 +6,7 @@
 const { Vec3 } = require('vec3')
 const { fromNotchianPitchByte, fromNotchianYawByte } = require('mineflayer/lib/conversions')
 
-/** What each packet of a move changes, as Mineflayer does it for the entities of one bot. */
+/** Changes by each packet of a move, as Mineflayer makes them for the entities of one bot. */
 const MOVES = {
   entity_teleport (appearance, { x, y, z, yaw, pitch }) {
     appearance.position.set(x, y, z)
