@@ -90,6 +90,25 @@ def test_a_mind_is_told_only_what_it_observed(nest):
     assert "empty" not in wim
 
 
+@pytest.mark.parametrize(
+    ("end", "words"),
+    [
+        ("4, 1, 1", "to A"),  # it ends beside the barrel, which is the destination itself
+        ("5, 1, 2", "to the eastern chest"),
+        ("6, 1, 4", "to another place"),
+        ("15, 1, 2", "to the garden"),
+    ],
+)
+def test_a_walk_leads_to_a_thing_only_if_it_ends_next_to_it(tmp_path, end, words):
+    scene, _, _ = SCENE.partition("script:")
+    walk = f"await goToPosition(bot, new Vec3({end}), 1);"
+    file = tmp_path / "walk.yaml"
+    file.write_text(f"{scene}script:\n  - {{agent: lia, program: '{walk}'}}\n")
+    with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as opened:
+        opened.play()
+        assert f"Lia walked {words}." in story(opened, "/", question="?")
+
+
 def test_what_is_assumed_differs_from_what_was_seen(nest):
     assert "granted" not in story(nest, "/lia")
     assert "took it for granted that 2 cookies were in A" in story(nest, "/tom", question="?")

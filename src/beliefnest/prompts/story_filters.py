@@ -18,10 +18,10 @@ from beliefnest.prompts.observations import (
 )
 from beliefnest.prompts.simulator_view import BranchView
 from beliefnest.world.event_words import happened
-from beliefnest.world.near import names_near
+from beliefnest.world.near import BESIDE, names_near
 from beliefnest.world.registry import block_name
 from beliefnest.world.signs import sign_words
-from beliefnest.world.values import EventKind, Items, Point, Position
+from beliefnest.world.values import EventKind, Items, Point, Position, block_at, feet_in
 from beliefnest.world.words import listed, point_words, things_words, with_the
 
 __all__ = ["FILTERS", "captions"]
@@ -362,8 +362,7 @@ class _Teller:
             if detail.get(key):
                 told[key] = self._object(detail[key])
         if detail.get("destination") is not None:
-            near = self._near(detail["destination"], "to")
-            told["destination"] = near or "to another place"
+            told["destination"] = self._way_to(detail["destination"]) or "to another place"
         if detail.get("position") is not None:
             again = event.kind in _AT_CONTAINER and self._it == (event.actor, detail["position"])
             told["thing"] = (
@@ -382,18 +381,26 @@ class _Teller:
         told = self._coordinates and (mention or self._owner is not None or name is None)
         return f"{words} at {text.position(at)}" if told else words
 
-    def _near(self, point: Point, preposition: str | None = None) -> str:
-        """Return the named place or thing near a point, with a preposition; empty: there is none.
+    def _near(self, point: Point) -> str:
+        """Return the named place at a point or the thing near it; empty: there is none."""
+        at, near = names_near(point, self._places)[:1], names_near(point, self._names)[:1]
+        words = [f"at {with_the(name)}" for name in at] or [f"near {with_the(n)}" for n in near]
+        return self._located(words, "at", point)
 
-        Without a preposition it is `at` a place and `near` a thing.
+    def _way_to(self, point: Point) -> str:
+        """Return the named place or thing at the end of a walk; empty: there is none.
+
+        A walk leads to a thing only if it ends next to it.
         """
-        words = ""
-        for names, usual in ((self._places, "at"), (self._names, "near")):
-            for name in names_near(point, names)[: 0 if words else 1]:
-                words = f"{preposition or usual} {with_the(name)}"
+        end = feet_in(block_at(point))
+        names = names_near(end, self._places) or names_near(end, self._names, BESIDE)
+        return self._located([f"to {with_the(name)}" for name in names[:1]], "to", point)
+
+    def _located(self, words: Sequence[str], preposition: str, point: Point) -> str:
+        """Return the words for a point, with its coordinates if they are wanted."""
         if not self._coordinates:
-            return words
-        return f"{words or preposition or 'at'} {point_words(point)}"
+            return "".join(words)
+        return f"{''.join(words) or preposition} {point_words(point)}"
 
     def _subject(self, agent: str | None) -> str:
         if agent is None:
