@@ -15,7 +15,8 @@ __all__ = ["agent", "container", "device", "false_sign", "hearsay", "item", "let
 _WOOD, _WOOD_DARK, _WOOD_LIGHT = "#b07a42", "#704822", "#ce9c62"
 _STONE, _STONE_DARK = "#8d8a88", "#4c4a4a"
 _GOOD = "#007a58"
-_GEMS: Mapping[str, str] = {
+_GEMS = ("diamond", "emerald", "amethyst_shard")
+_COLOURS: Mapping[str, str] = {
     "diamond": "#52ced6",
     "emerald": "#3cb860",
     "gold": "#f0c442",
@@ -173,15 +174,26 @@ def container(at: XY, size: float, store: Store) -> list[Drawn]:
 
 
 def item(at: XY, size: float, name: str) -> list[Drawn]:
-    """Return an item: a cut stone in the item's colour."""
+    """Return an item in its colour: a gem as a cut stone, others as a tile with an initial.
+
+    Args:
+        at: Middle of the icon.
+        size: Width of the icon.
+        name: Name of the item; empty: any item.
+    """
     x, y = at
     r = size / 2
     colour = _item_colour(name)
+    edge = mix(colour, INK, 0.55)
+    if name not in _GEMS:
+        box, fill = (x - r * 0.85, y - r * 0.85, r * 1.7, r * 1.7), mix(colour, PAPER, 0.3)
+        tile = Rectangle(*box, fill, edge, size * 0.06, size * 0.2, role="part")
+        return [tile, letters(at, name[0].upper(), size * 0.85, INK)] if name else [tile]
     table = ((x - r * 0.55, y - r * 0.75), (x + r * 0.55, y - r * 0.75))
     low, left, right, tip = y - r * 0.2, x - r, x + r, (x, y + r * 0.95)
     outline = (*table, (right, low), tip, (left, low))
     return [
-        Polygon(outline, colour, mix(colour, INK, 0.55), size * 0.06),
+        Polygon(outline, colour, edge, size * 0.06),
         Polygon((*table, (x + r * 0.35, low), (x - r * 0.35, low)), mix(colour, PAPER, 0.6)),
         Polygon(((x - r * 0.35, low), (x + r * 0.35, low), tip), mix(colour, PAPER, 0.25)),
     ]
@@ -265,7 +277,7 @@ def _part(
 
 
 def _item_colour(name: str) -> str:
-    for part, colour in _GEMS.items():
+    for part, colour in _COLOURS.items():
         if part in name:
             return colour
     # Python's own hash is no use here: it differs from process to process.

@@ -144,7 +144,7 @@ def _trail(at: XY, wide: float, high: float) -> list[Drawn]:
 
 
 def _dropped(at: XY, wide: float, high: float) -> list[Drawn]:
-    return icons.item((at[0] + wide / 2, at[1] + high / 2), high, "diamond")
+    return icons.item((at[0] + wide / 2, at[1] + high / 2), high, "")
 
 
 def _expected(at: XY, wide: float, high: float) -> list[Drawn]:
