@@ -72,6 +72,53 @@ function rememberIn (Chunk, make) {
   })
 }
 
+/**
+ * Let columns that were loaded from the same data share their sections until one of them changes: all bots of a region
+ * are sent the same columns. Call this after `rememberBlocks`; a second call has no effect.
+ */
+function shareSections (registry) {
+  const Chunk = require('prismarine-chunk')(registry)
+  if ('borrowed' in Chunk.prototype) return
+  const { dump, load, setBlockStateId } = Chunk.prototype
+  const loaded = new WeakMap()
+  Object.assign(Chunk.prototype, {
+    dumped: null,
+    // Indices of the sections that other columns may use, too; they are copied before they change.
+    borrowed: null,
+    dump () {
+      this.dumped ??= dump.call(this)
+      return this.dumped
+    },
+    load (data, ...rest) {
+      const known = loaded.get(data)
+      if (known === undefined) load.call(this, data, ...rest)
+      else Object.assign(this, { sections: [...known.sections], biomes: [...known.biomes], remembered: [] })
+      loaded.set(data, known ?? { sections: [...this.sections], biomes: [...this.biomes] })
+      this.dumped = null
+      this.borrowed = new Set(this.sections.keys())
+    },
+    setBlockStateId (place, stateId) {
+      const index = (place.y - this.minY) >> 4
+      if (this.borrowed?.delete(index)) this.sections[index] = sectionLike(this.sections[index])
+      this.dumped = null
+      return setBlockStateId.call(this, place, stateId)
+    }
+  })
+}
+
+/** Return a copy of a section that can change without it. */
+function sectionLike (section) {
+  const copy = original => Object.assign(Object.create(Object.getPrototypeOf(original)), original)
+  const made = copy(section)
+  made.data = copy(section.data)
+  if (made.data.palette !== undefined) made.data.palette = made.palette = [...section.data.palette]
+  if (made.data.data !== undefined) {
+    made.data.data = copy(section.data.data)
+    made.data.data.data = section.data.data.data.slice()
+  }
+  return made
+}
+
 /** Cache the last columns, four adjacent ones, because most queries ask for them again. */
 function rememberColumns (World) {
   const { getLoadedColumn, setLoadedColumn, unloadColumn } = World.prototype
@@ -145,4 +192,4 @@ function copier (Block) {
   return original => ({ __proto__: Block.prototype, ...LAYOUT, ...original, computedStates: {} })
 }
 
-module.exports = { maker, rememberBlocks }
+module.exports = { maker, rememberBlocks, shareSections }
