@@ -1,6 +1,8 @@
 'use strict'
 const assert = require('node:assert/strict')
+const { EventEmitter } = require('node:events')
 const { describe, it } = require('node:test')
+const { Channel } = require('../src/channel/channel')
 const { Allotment } = require('../src/regions/allotment')
 const { Box, runsOf, statesOf } = require('../src/regions/box')
 const { angleStep, fromDegrees, samePose, toDegrees, wrap } = require('../src/server/angles')
@@ -41,6 +43,22 @@ describe('runs of blocks', () => {
     const bytes = (...rows) => new Uint8Array(Int32Array.from(rows).buffer)
     for (const wrong of [bytes(), bytes(1, 7), bytes(1, 9), bytes(1, 8, 0), bytes(1, 8, 2, -1, 3, 1)]) {
       assert.throws(() => statesOf(wrong, box), /has 8 blocks/)
+    }
+  })
+})
+
+describe('the channel', () => {
+  it('reads messages however they are cut', () => {
+    const [sent, stream] = [[], Object.assign(new EventEmitter(), { write: bytes => sent.push(bytes) })]
+    const told = []
+    const channel = new Channel(stream, message => told.push(message))
+    const messages = [{ a: 1 }, { text: 'x'.repeat(70000) }, {}, { list: [1, 2, 3] }]
+    for (const message of messages) channel.send(message)
+    const bytes = Buffer.concat(sent)
+    for (const size of [1, 3, 7, 4096, bytes.length]) {
+      told.length = 0
+      for (let from = 0; from < bytes.length; from += size) stream.emit('data', bytes.subarray(from, from + size))
+      assert.deepEqual(told, messages, `in pieces of ${size} bytes`)
     }
   })
 })

@@ -25,7 +25,9 @@ class Channel {
   constructor (stream, receive) {
     this.stream = stream
     this.receive = receive
-    this.pending = Buffer.alloc(0)
+    this.parts = []
+    this.received = 0
+    this.needed = HEADER
     this.unsent = []
     this.written = 0
     this.encoder = new WellFormedEncoder({ ignoreUndefined: true })
@@ -60,15 +62,20 @@ class Channel {
   }
 
   take (chunk) {
-    this.pending = this.pending.length === 0 ? chunk : Buffer.concat([this.pending, chunk])
+    this.parts.push(chunk)
+    this.received += chunk.length
+    // Join the parts only when they complete a message: a large one arrives in many.
+    if (this.received < this.needed) return
+    let pending = this.parts.length === 1 ? chunk : Buffer.concat(this.parts)
     for (;;) {
-      if (this.pending.length < HEADER) return
-      const end = HEADER + this.pending.readUInt32BE(0)
-      if (this.pending.length < end) return
-      const body = this.pending.subarray(HEADER, end)
-      this.pending = this.pending.subarray(end)
+      this.needed = pending.length < HEADER ? HEADER : HEADER + pending.readUInt32BE(0)
+      if (pending.length < this.needed) break
+      const body = pending.subarray(HEADER, this.needed)
+      pending = pending.subarray(this.needed)
       this.receive(decode(body))
     }
+    this.parts = [pending]
+    this.received = pending.length
   }
 }
 
