@@ -20,6 +20,7 @@ BENCHES: Mapping[str, str] = {
     "stories": "beliefnest_benchmarks.stories",
     "pictures": "beliefnest_benchmarks.pictures",
     "viewer": "beliefnest_benchmarks.viewer",
+    "looking": "beliefnest_benchmarks.looking",
     "studies": "beliefnest_benchmarks.studies",
     "episodes": "beliefnest_benchmarks.episodes",
     "minecraft": "beliefnest_benchmarks.minecraft",
