@@ -207,3 +207,8 @@ def test_a_wrong_key_of_a_study_names_the_nearest_one(tmp_path: Path) -> None:
         bn.ScenarioError, match=r"variation: unknown key; did you mean 'variations'\?"
     ):
         bn.Study.load(study)
+
+
+def test_a_scenario_in_place_of_a_study_is_told(tmp_path: Path) -> None:
+    with pytest.raises(bn.ScenarioError, match=r"is a scenario, no study; .*`scenarios: \[small"):
+        bn.Study.load(small_in(tmp_path))

@@ -32,6 +32,10 @@ def read_design(path: Path, claims_from: str | None = None) -> Design | EpisodeD
         ScenarioError: The file is wrong; the message names file, line and key.
     """
     document = read_yaml(path)
+    if {"agents", "map"} & document.root.value.keys():
+        raise ScenarioError(
+            f"{path} is a scenario, no study; write a study file with `scenarios: [{path.name}]`"
+        )
     try:
         keys = msgspec.convert(plain(document.root), StudyKeys)
     except msgspec.ValidationError as error:
