@@ -46,6 +46,8 @@ RUN_BY = {
     ("looking.md", "python"): "docs/test_looking_page.py",
     ("minds.md", "python"): "docs/test_minds_page.py",
     ("models.md", "python"): "llm/test_docs.py",
+    ("participants.md", "javascript"): "docs/test_participants_page.py",
+    ("participants.md", "python"): "docs/test_participants_page.py",
     ("people.md", "javascript"): "worlds/servers/test_people.py",
     ("people.md", "python"): "worlds/servers/test_people.py",
     ("pettingzoo.md", "python"): "adapters/pettingzoo/test_environment.py",

@@ -10,6 +10,7 @@ from queue import SimpleQueue
 from urllib.parse import urlencode
 
 import pytest
+from tests.studies.sessions import leave, play, say
 from tests.studies.transfer import TRANSFER, content_of, transfer_in
 
 import beliefnest as bn
@@ -55,35 +56,6 @@ def opened(browser, folder, **query):
     address = f"{(folder / 'page' / 'index.html').as_uri()}?{urlencode(query)}"
     browser.open(address)
     return address
-
-
-def say(browser, place):
-    """Watch the film to its end step by step, answer the question, and return it."""
-    asked = browser.until_script("return document.querySelector('.bn-question')?.textContent")
-    while browser.script("return document.querySelector('.bn-form').hidden"):
-        browser.click(".bn-next")
-    if browser.script("return document.querySelector('.bn-words') !== null"):
-        browser.one(".bn-words").send_keys(place)
-    else:
-        wanted = "anne" if asked == "Who is there?" else place
-        browser.script(
-            "[...document.querySelectorAll('.bn-option input')].find(e => e.value === arguments[0])"
-            ".click()",
-            wanted,
-        )
-    leave(browser, lambda: browser.click(".bn-submit"))
-    return asked
-
-
-def leave(browser, act):
-    """Act, and wait until the trial is gone."""
-    browser.script("document.querySelector('.bn-trial').dataset.before = 'yes'")
-    act()
-    browser.until_script("return document.querySelector('[data-before]') === null")
-
-
-def play(browser, place, count):
-    return [say(browser, place) for _ in range(count)]
 
 
 def test_a_session_from_the_disk_gives_rows_of_the_study(browser, page, downloads, tmp_path):
