@@ -9,6 +9,8 @@ const { Vec3 } = require('vec3')
 
 // Number of blocks of a chunk column at one height.
 const LAYER = 256
+// Bits of all sections of a column.
+const ALL = -1
 
 /** Make the chunk columns and worlds of a version cache the blocks that they return. A second call has no effect. */
 function rememberBlocks (registry) {
@@ -44,6 +46,19 @@ function rememberIn (Chunk, make) {
   Object.assign(Chunk.prototype, {
     remembered: null,
     hasEntities: false,
+    // Bits of the sections that other columns may use, too; such a section is copied before it changes.
+    lent: 0,
+    /**
+     * Return a column with the same blocks that can change without this one. The two share each section until one of
+     * them changes it, so that a copy costs little.
+     */
+    copy () {
+      this.lent = ALL
+      const { sections, biomes } = this
+      return Object.assign(Object.create(Chunk.prototype), this, {
+        sections: [...sections], biomes: [...biomes], blockEntities: {}, remembered: null, hasEntities: false
+      })
+    },
     getBlock (place) {
       this.remembered ??= []
       const layer = (this.remembered[place.y - this.minY] ??= new Array(LAYER).fill(null))
@@ -59,7 +74,14 @@ function rememberIn (Chunk, make) {
     setBlockStateId (place, stateId) {
       const layer = this.remembered?.[place.y - this.minY]
       if (layer) layer[(place.z << 4) | place.x] = null
+      if (this.lent !== 0) this.keep((place.y - this.minY) >> 4)
       return setBlockStateId.call(this, place, stateId)
+    },
+    /** Make a section this column's own. */
+    keep (index) {
+      if (this.sections[index] === undefined || (this.lent & (1 << index)) === 0) return
+      this.lent &= ~(1 << index)
+      this.sections[index] = sectionLike(this.sections[index])
     },
     setBlockEntity (place, tag) {
       this.hasEntities = true
@@ -68,40 +90,6 @@ function rememberIn (Chunk, make) {
     load (...data) {
       this.remembered = []
       return load.apply(this, data)
-    }
-  })
-}
-
-/**
- * Let columns that were loaded from the same data share their sections until one of them changes: all bots of a region
- * are sent the same columns. Call this after `rememberBlocks`; a second call has no effect.
- */
-function shareSections (registry) {
-  const Chunk = require('prismarine-chunk')(registry)
-  if ('borrowed' in Chunk.prototype) return
-  const { dump, load, setBlockStateId } = Chunk.prototype
-  const loaded = new WeakMap()
-  Object.assign(Chunk.prototype, {
-    dumped: null,
-    // Indices of the sections that other columns may use, too; they are copied before they change.
-    borrowed: null,
-    dump () {
-      this.dumped ??= dump.call(this)
-      return this.dumped
-    },
-    load (data, ...rest) {
-      const known = loaded.get(data)
-      if (known === undefined) load.call(this, data, ...rest)
-      else Object.assign(this, { sections: [...known.sections], biomes: [...known.biomes], remembered: [] })
-      loaded.set(data, known ?? { sections: [...this.sections], biomes: [...this.biomes] })
-      this.dumped = null
-      this.borrowed = new Set(this.sections.keys())
-    },
-    setBlockStateId (place, stateId) {
-      const index = (place.y - this.minY) >> 4
-      if (this.borrowed?.delete(index)) this.sections[index] = sectionLike(this.sections[index])
-      this.dumped = null
-      return setBlockStateId.call(this, place, stateId)
     }
   })
 }
@@ -192,4 +180,4 @@ function copier (Block) {
   return original => ({ __proto__: Block.prototype, ...LAYOUT, ...original, computedStates: {} })
 }
 
-module.exports = { maker, rememberBlocks, shareSections }
+module.exports = { maker, rememberBlocks }

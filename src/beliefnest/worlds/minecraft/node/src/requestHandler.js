@@ -1,7 +1,7 @@
 'use strict'
 /** Handler of the channel's requests (design/channel.md), one at a time. */
 const { Random } = require('./time/random')
-const { rememberBlocks, shareSections } = require('./blocks')
+const { rememberBlocks } = require('./blocks')
 const { createServer } = require('./server')
 const { readPlace } = require('./places/files')
 const { Regions } = require('./regions/regions')
@@ -84,7 +84,6 @@ class RequestHandler {
 
   /** Return the regions of the world that `hello` asks for. @returns {Promise<object>} */
   async open (registry, { seed }, alive) {
-    shareSections(registry)
     this.clock.root.random = new Random(String(seed))
     const serv = createServer(registry)
     return new Regions(serv, this.clock, frame => this.send({ frame }), alive)

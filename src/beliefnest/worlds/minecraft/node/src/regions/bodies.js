@@ -5,6 +5,7 @@ const { BadRequest } = require('../channel/errors')
 const { orBadRequest } = require('./changes')
 const { agentState } = require('./facts')
 const { join, showWorld } = require('./joining')
+const { takeColumns } = require('../bots/columns')
 const { shareAppearances } = require('../bots/others')
 const { agentUuid, ground, INJECTION_MS, startBot, stopBot } = require('../bots/bot')
 
@@ -53,6 +54,7 @@ class Bodies {
     })
     const bot = startBot(client, this.clock)
     shareAppearances(bot, client, this.Entity)
+    takeColumns(bot, client)
     bot.physicsEnabled = false
     return { agent, bot, player: join(this.serv, region, server, state), state }
   }

@@ -27,9 +27,8 @@ function columnsOf (box, origin) {
  */
 function buildColumns (serv, region, states) {
   const Chunk = require('prismarine-chunk')(serv.registry)
-  for (const [x, z] of region.columns) {
-    serv.overworld.sync.setColumn(x, z, new Chunk({ minY: serv.minY, worldHeight: serv.worldHeight }))
-  }
+  const air = new Chunk({ minY: serv.minY, worldHeight: serv.worldHeight })
+  for (const [x, z] of region.columns) serv.overworld.sync.setColumn(x, z, air.copy())
   buildWalls(serv, region)
   const holdsItems = new Map()
   eachColumn(region, (chunkX, chunkZ, part) => {

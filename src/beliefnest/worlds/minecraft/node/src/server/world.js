@@ -3,6 +3,7 @@
  * The server's only world: it contains only the columns that regions put into it, never unloads and never saves them.
  */
 const nbt = require('prismarine-nbt')
+const { ServerEnd } = require('../net/transport')
 
 const HEIGHTMAP_LONGS = 36
 
@@ -25,7 +26,10 @@ module.exports.player = (player, serv) => {
 
   player.sendColumn = (chunkX, chunkZ) => {
     player.loadedChunks[`${chunkX},${chunkZ}`] = 1
-    player._client.write('map_chunk', columnPacket(serv.overworld.sync.getColumn(chunkX, chunkZ), chunkX, chunkZ))
+    const column = serv.overworld.sync.getColumn(chunkX, chunkZ)
+    player._client.write('map_chunk', player._client instanceof ServerEnd
+      ? { x: chunkX, z: chunkZ, column: column.copy() }
+      : columnPacket(column, chunkX, chunkZ))
   }
 }
 
