@@ -11,13 +11,23 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["AS_FIRST", "FIRST_STATE", "UNKNOWN", "numbers_text", "runs_text", "text_numbers"]
+__all__ = [
+    "AS_FIRST",
+    "FIRST_STATE",
+    "UNKNOWN",
+    "grid_text",
+    "numbers_text",
+    "runs_text",
+    "text_numbers",
+]
 
 AS_FIRST, UNKNOWN, FIRST_STATE = 0, 1, 2
 """Marks of runs: the block that reality had there at first, an unknown block, block number 0."""
 
 _DIGITS = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
 _BITS = 5
+_SAME = -2
+"""Value in place of a block that is the same as at first."""
 _ALPHABET = np.frombuffer(_DIGITS, dtype=np.uint8)
 
 
@@ -68,19 +78,55 @@ def runs_text(
     """
     if not len(cells):
         return ""
-    known, which = np.unique(states, return_inverse=True)
-    marks = np.array([UNKNOWN if s < 0 else FIRST_STATE + number_of(s) for s in known.tolist()])
-    mark = marks[which]
-    if first is not None:
-        mark = np.where(states == first, AS_FIRST, mark)
     begins = np.ones(len(cells), dtype=np.bool_)
-    begins[1:] = (np.diff(cells) != 1) | (np.diff(mark) != 0)
+    if first is None:
+        begins[1:] = (np.diff(cells) != 1) | (states[1:] != states[:-1])
+        same = np.zeros(len(cells), dtype=np.bool_)
+    else:
+        same = states == first
+        apart = np.where(same, _SAME, states)
+        begins[1:] = (np.diff(cells) != 1) | (apart[1:] != apart[:-1])
     starts = np.flatnonzero(begins)
     lengths = np.diff(starts, append=len(cells))
-    gaps = np.diff(cells[starts], prepend=0)
+    return _text(cells[starts], lengths, states[starts], same[starts], number_of)
+
+
+def grid_text(
+    states: npt.NDArray[np.int16],
+    first: npt.NDArray[np.int16] | None,
+    number_of: Callable[[int], int],
+) -> str:
+    """Return the blocks of all cells as `runs_text` does, without those that reality had at first.
+
+    Args:
+        states: The block of each cell; -1 unknown.
+        first: As for `runs_text`; None: all blocks are written.
+        number_of: As for `runs_text`.
+    """
+    apart = states if first is None else np.where(states == first, _SAME, states)
+    starts = np.append(0, np.flatnonzero(apart[1:] != apart[:-1]) + 1)
+    lengths = np.diff(starts, append=len(states))
+    told = apart[starts] != _SAME
+    starts, lengths = starts[told], lengths[told]
+    same = np.zeros(len(starts), dtype=np.bool_)
+    return _text(starts, lengths, states[starts], same, number_of)
+
+
+def _text(
+    starts: npt.NDArray[np.int64],
+    lengths: npt.NDArray[np.int64],
+    states: npt.NDArray[np.int16],
+    same: npt.NDArray[np.bool_],
+    number_of: Callable[[int], int],
+) -> str:
+    """Return runs as a text: first cell, length and block of each, and if it has `AS_FIRST`."""
+    if not len(starts):
+        return ""
+    known, which = np.unique(states, return_inverse=True)
+    marks = np.array([UNKNOWN if s < 0 else FIRST_STATE + number_of(s) for s in known.tolist()])
+    gaps = np.diff(starts, prepend=0)
     gaps[1:] -= lengths[:-1]
-    own = mark[starts] != AS_FIRST
-    numbers = np.stack([gaps, 2 * lengths + own, mark[starts] - 1], axis=1)
+    numbers = np.stack([gaps, 2 * lengths + ~same, marks[which] - 1], axis=1)
     used = np.ones(numbers.shape, dtype=np.bool_)
-    used[:, 2] = own
+    used[:, 2] = ~same
     return numbers_text(numbers[used])

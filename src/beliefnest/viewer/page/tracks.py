@@ -23,7 +23,7 @@ from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.claims import claims_at, kind_of
 from beliefnest.viewer.page.grid_changes import Cells, GridChanges
 from beliefnest.viewer.page.pose_history import Pose, PoseBook
-from beliefnest.viewer.page.runs import runs_text
+from beliefnest.viewer.page.runs import grid_text, runs_text
 from beliefnest.viewer.page.wrong import WrongThings
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath
@@ -213,11 +213,8 @@ class TrackRecorder:
 
     def _beginning(self, number: int) -> str:
         """Return the blocks of a node at the beginning, as `Track.grid`."""
-        held = self._grids.grid(number)
-        if number == 0:
-            return runs_text(np.arange(len(held)), held, None, self._palette.number)
-        cells = np.flatnonzero(held != self._first)
-        return runs_text(cells, held[cells], self._first[cells], self._palette.number)
+        first = None if number == 0 else self._first
+        return grid_text(self._grids.grid(number), first, self._palette.number)
 
     def _note_blocks(self, tick: int, changed: Mapping[int, Cells]) -> None:
         for track, number in zip(self.tracks, self._numbers, strict=True):
