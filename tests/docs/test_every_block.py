@@ -60,6 +60,7 @@ RUN_BY = {
     ("skills.md", "js"): "skills/test_examples.py",
     ("studies.md", "python"): "docs/test_studies_page.py",
     ("supplement.md", "python"): "docs/test_supplement_page.py",
+    ("teaming.md", "python"): "docs/test_teaming_page.py",
     ("timelines.md", "python"): "docs/test_nest_pages.py",
     ("tutorial.md", "python"): "docs/test_tutorial.py",
     ("visiting.md", "python"): "nest/face/test_layout.py",
