@@ -25,10 +25,8 @@ FILES = {
     for block in re.findall(r"```(?:python|yaml)\n(.*?)```", PAGE, re.DOTALL)
     if block.startswith("# ")
 }
-SHOWN = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
-COMMANDS = [
-    shlex.split(line) for line in re.findall(r"^\$ beliefnest (.*)", PAGE, re.MULTILINE)
-]
+PLAYED, EXPLAINED, _, TRAINED = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
+COMMANDS = [shlex.split(line) for line in re.findall(r"^\$ beliefnest (.*)", PAGE, re.MULTILINE)]
 
 
 @pytest.fixture
@@ -62,10 +60,10 @@ def test_the_task_is_played_and_explained_as_the_page_shows(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run_command_line(command("--out", "run")) == 0
-    check_shown(SHOWN[0], told(capsys.readouterr().out))
+    check_shown(PLAYED, told(capsys.readouterr().out))
     assert run_command_line(command("ria=search:0", "gil=search:0")) == 1
     assert run_command_line(command("--explain")) == 1
-    check_shown(SHOWN[1], told(capsys.readouterr().out))
+    check_shown(EXPLAINED, told(capsys.readouterr().out))
     assert run_command_line(command("--png", "gil-ria.png")) == 0
     assert run_command_line(command("gil=team.py:Porter")) == 0
     assert "goal reached after 42 ticks" in capsys.readouterr().out
@@ -95,7 +93,7 @@ def trainer(folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
 def learned_weights() -> tuple[float, ...]:
     (line,) = re.findall(r"^WEIGHTS = (.*)", FILES["learned.py"], re.MULTILINE)
-    assert f"WEIGHTS = {line}" in SHOWN[2]
+    assert f"WEIGHTS = {line}" in TRAINED
     weights: tuple[float, ...] = ast.literal_eval(line)
     return weights
 
@@ -120,7 +118,7 @@ def test_the_training_prints_what_the_page_shows(
     there = trainer(folder, monkeypatch)
     with closing(parallel_env("vault.yaml", actions="programs")) as env:
         assert there["train"](env) == learned_weights()
-    check_shown(SHOWN[2].rpartition("WEIGHTS")[0], told(capsys.readouterr().out))
+    check_shown(TRAINED.rpartition("WEIGHTS")[0], told(capsys.readouterr().out))
 
 
 @pytest.mark.extra("matplotlib")
