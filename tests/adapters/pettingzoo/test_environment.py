@@ -189,6 +189,12 @@ def test_what_cannot_be_done_is_told_to_its_agent():
         env.action("getItemFromChest", item="diamond")
     with pytest.raises(bn.UnknownNameError, match="not among the containers"):
         env.action("openContainer", container=(0, 0, 0))
+    with pytest.raises(bn.UnknownNameError, match="there is no skill 'opnContainer' here; skills"):
+        env.action("opnContainer", container=LEFT)
+    with pytest.raises(bn.UnknownNameError, match="say needs a phrase, and there is none"):
+        env.action("say", phrase="hello")
+    with pytest.raises(bn.UnknownNameError, match=r"needs a button, and there is none$"):
+        env.action("pressButton", button=(0, 0, 0))
     with pytest.raises(bn.InputError, match="'bob' does not act"):
         env.step({"bob": env.action("doNothing")})
     env.close()

@@ -31,6 +31,9 @@ _KINDS = {
 }
 """List of the layout that each part of an action indexes."""
 
+_OPTIONS = {"phrase": "`phrases` of the environment", "item": "`items` of the environment"}
+"""Options of an environment that add values of a part."""
+
 
 class Calls:
     """Conversion of actions to calls and of names to actions.
@@ -54,7 +57,10 @@ class Calls:
         sizes["agent"] = len(layout.agents) if len(layout.agents) > 1 else 0
         known = callables()
         actions = [known["doNothing"], *(each for each in known.values() if each.parts)]
-        self._possible = [each for each in actions if all(sizes[part] for part in each.parts)]
+        self._lacking = {
+            each.name: [part for part in each.parts if not sizes[part]] for each in actions
+        }
+        self._possible = [each for each in actions if not self._lacking[each.name]]
         self.skills = tuple(each.name for each in self._possible)
         used = {part for each in self._possible for part in each.parts}
         self.parts = {part: size for part, size in sizes.items() if part in used}
@@ -72,6 +78,10 @@ class Calls:
             InputError: A part is missing, invalid or not used by the skill.
         """
         if skill not in self.skills:
+            lacking = self._lacking.get(skill)
+            if lacking:
+                given_by = f"; give {_OPTIONS[lacking[0]]}" if lacking[0] in _OPTIONS else ""
+                raise UnknownNameError(f"{skill} needs a {lacking[0]}, and there is none{given_by}")
             raise UnknownNameError(
                 f"there is no skill {skill!r} here; skills are {', '.join(self.skills)}"
             )
