@@ -52,6 +52,7 @@ def write_pictures(images: Path) -> None:
             nest.figure(FIGURE_1).save(images / "red-green-blue.png")
         write_study(images, Path(folder, "study"))
         write_minds(images, Path(folder))
+        write_day(images, Path(folder))
 
 
 def write_study(images: Path, folder: Path) -> None:
@@ -70,6 +71,21 @@ def write_minds(images: Path, folder: Path) -> None:
         exec("\n".join(examples), {"__name__": "examples"})
     for name in ("minds.png", "minds-plan.png"):
         (images / name).write_bytes((folder / name).read_bytes())
+
+
+def write_day(images: Path, folder: Path) -> None:
+    """Write the pictures of docs/days/psychologist.md with the files of that page."""
+    page = (ROOT / "docs" / "days" / "psychologist.md").read_text(encoding="utf-8")
+    scenario, study = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    with contextlib.chdir(folder):
+        Path("window.yaml").write_text(scenario, encoding="utf-8")
+        Path("study.yaml").write_text(study, encoding="utf-8")
+        belief = str(images / "day-lia-wim.png")
+        run_command_line(["run", "window.yaml", "--out", "window"])
+        run_command_line(["show", "window", "--path", "/lia/wim", "--png", belief])
+        played = bn.Study.load("study.yaml").run("window-study", jobs=1)
+        figure = played.plot(by=["order", "condition", "model"])
+        figure.savefig(images / "day-accuracy.png")
 
 
 if __name__ == "__main__":
