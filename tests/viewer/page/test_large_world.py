@@ -59,3 +59,37 @@ def test_a_wide_world_is_shown_as_a_whole_from_above_and_in_space(
     # Grass, water, planks and stone, each in the light of several slopes.
     assert browser.script(colours) > 8
     assert browser.complaints() == []
+
+
+CLICK = """
+const canvas = document.querySelector('.space canvas')
+canvas.setPointerCapture = canvas.releasePointerCapture = () => {}
+const room = canvas.getBoundingClientRect()
+const [across, down] = arguments
+const at = {clientX: room.left + room.width * across, clientY: room.top + room.height * down}
+for (const kind of ['pointerdown', 'pointerup']) {
+  canvas.dispatchEvent(new PointerEvent(kind, {pointerId: 1, button: 0, bubbles: true, ...at}))
+}
+"""
+
+
+def test_a_click_on_merged_faces_chooses_the_block_that_was_hit(browser, tmp_path):
+    hills = Hills(SHAPE, agents=1, houses=1)
+    page = page_of(hills, 1, tmp_path)
+    browser.open(f"{page.as_uri()}#view=space&at=/")
+    browser.until_script("return document.querySelector('.space canvas')?.width > 300")
+    heading = "return document.querySelector('.chosen-thing h3')?.textContent"
+    found = []
+    for across, down in ((0.4, 0.62), (0.5, 0.7), (0.62, 0.6)):
+        browser.script(CLICK, across, down)
+        found.append(browser.until(lambda: _new(browser.script(heading), found)))
+    for text in found:
+        x, y, z = (int(part) for part in text.removeprefix("block at ").split(", "))
+        assert hills.world.block_text((x, y, z)) != "air"
+        # The camera looks from above and from the south, so that one of these sides is open.
+        sides = ((x, y + 1, z), (x, y, z + 1), (x - 1, y, z), (x + 1, y, z))
+        assert "air" in map(hills.world.block_text, sides)
+
+
+def _new(text: str | None, earlier: list[str]) -> str | None:
+    return text if text not in earlier else None
