@@ -171,6 +171,22 @@ def test_the_baselines_of_a_file_have_a_table(
     assert "--rounds has no effect on --baselines" in capsys.readouterr().err
 
 
+def test_the_same_courses_in_further_rounds_are_told_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "shut.yaml"
+    rules = {"goal": {"reach": [{"agent": "ann", "items": {"diamond": 1}}]}, "rounds": 3}
+    empty = [{"at": at, "items": {}} for at in ([1, 1, 1], [11, 1, 5])]
+    known = [{"path": "/**", "containers": empty}]
+    file.write_text(json.dumps({**HALL, "initial_beliefs": known, "episode": rules}))
+    assert run_command_line(["play", str(file), "--explain"]) == 1
+    lines = capsys.readouterr().out.splitlines()
+    for agent in ("ann", "bob"):
+        assert sum(line.startswith(f"round 1, {agent} tried") for line in lines) == 1
+        for number in (2, 3):
+            assert f"round {number}, {agent} considered the same as in round 1" in lines
+
+
 def test_the_command_goes_on_with_no_other_episode(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -235,12 +235,21 @@ def _print(report: Mapping[str, Any]) -> None:
 
 
 def _considered_lines(rounds: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield the courses that policies considered, round by round, as far as they are reported."""
+    """Yield the courses that policies considered, round by round, as far as they are reported.
+
+    If an agent considered the same as in its round before, the line only names that round.
+    """
+    latest: dict[str, tuple[int, object]] = {}
     for part in rounds:
         for agent, told in part["agents"].items():
             considered = told.get("considered")
             if considered is None:
                 continue
+            first, before = latest.get(agent, (0, None))
+            if considered == before:
+                yield f"round {part['round']}, {agent} considered the same as in round {first}"
+                continue
+            latest[agent] = part["round"], considered
             yield f"round {part['round']}, {agent} tried {counted(considered['tried'], 'course')}"
             yield from (f"  {line}" for line in considered_lines(considered))
 
