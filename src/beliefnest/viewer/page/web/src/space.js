@@ -359,7 +359,7 @@ export class Space {
     const point = new Vector2((event.clientX - room.left) / room.width * 2 - 1, 1 - (event.clientY - room.top) / room.height * 2)
     const caster = new Raycaster()
     caster.setFromCamera(point, this.camera)
-    const [hit] = caster.intersectObjects([...this.figures.children.filter(each => each.userData.thing), ...this.blocks.children.filter(each => each.visible)])
+    const [hit] = caster.intersectObjects([...this.figures.children.filter(each => each.userData.thing), ...this.blocks.children.filter(each => each.userData.detail !== 'coarse')])
     if (hit === undefined) return
     this.choose({ thing: hit.object.userData.thing ?? this.blockAt(hit), note: null })
   }
