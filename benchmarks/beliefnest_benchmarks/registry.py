@@ -17,6 +17,7 @@ BENCHES: Mapping[str, str] = {
     "timelines": "beliefnest_benchmarks.timelines",
     "prompts": "beliefnest_benchmarks.prompts",
     "beliefs": "beliefnest_benchmarks.beliefs",
+    "growth": "beliefnest_benchmarks.growth",
     "stories": "beliefnest_benchmarks.stories",
     "pictures": "beliefnest_benchmarks.pictures",
     "viewer": "beliefnest_benchmarks.viewer",

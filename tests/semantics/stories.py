@@ -46,6 +46,7 @@ class Story:
     sign_claims: Mapping[Position, list[bn.Claim]] = field(default_factory=dict)
     unique: Mapping[str, str] = field(default_factory=dict)
     """Unique item to who has it at first; `hand NAME`: in the hand."""
+    box: tuple[Position, Position] = (LOW, HIGH)
 
     def world(self) -> bn.ScriptedWorld:
         """Return the world at the start; every agent owns an apple and two diamonds."""
@@ -56,7 +57,7 @@ class Story:
             if " " in holder:
                 hands[holder.split()[-1]] = {"main_hand": item}
         world = bn.ScriptedWorld(
-            (LOW, HIGH),
+            self.box,
             self.blocks | dict.fromkeys(self.signs, "oak_sign"),
             self.agents,
             inventories=own,

@@ -27,12 +27,14 @@ __all__ = [
     "Poses",
     "Space",
     "Span",
+    "States",
     "Weighing",
 ]
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
+States = npt.NDArray[np.int16]
 
 UNKNOWN = -1
 """Value of a block state, a pose id or a cell that is unknown or absent."""
@@ -52,6 +54,7 @@ class Space(NamedTuple):
 
     Attributes:
         sizes: Cells along x, y, z, with a margin of one on every side.
+        chunks: Numbers of chunks along x, y, z; None: nodes hold dense arrays of the box.
         starts: int32, rows of each shape (see `perception.rays`).
         boxes: float64 (n, 6), shapes' boxes.
         reaches: uint8 by code, bit set of the sides on which a shape reaches out of its cell.
@@ -63,6 +66,7 @@ class Space(NamedTuple):
     """
 
     sizes: tuple[int, int, int]
+    chunks: tuple[int, int, int] | None
     starts: Ints
     boxes: Floats
     reaches: npt.NDArray[np.uint8]
@@ -109,6 +113,10 @@ class Facts(NamedTuple):
 class Nodes(NamedTuple):
     """States of N nodes with A agents, C cells and T tracked cells.
 
+    In a large box the cells of nodes are in chunks (`perception.chunks`), which nodes share while
+    these are equal. `blocks` and `codes` then have one row, the pool, and `pending` has a bit for
+    each chunk in which the parent may know another block. A chunk includes cells of the margin.
+
     Attributes:
         parent: (N,), index of the shallower node; -1 for node 0.
         agent: (N,), the owner, whose belief the node is; -1 for node 0.
@@ -117,9 +125,13 @@ class Nodes(NamedTuple):
         equipment: (N, A), pose id of each agent's believed equipment; -1 unknown.
         seen_at: (N, A), last tick at which the pose was current, for poses that no longer are.
         current: (N, A), whether the pose is backed by a perception in this tick.
+        rows: (N, chunks), row of the pool for each chunk; (N, 1) without chunks.
+        shares: (rows of the pool,), number of chunks of all nodes that use the row.
+        spare: Number of rows that were freed; the first row that was never used; the freed rows.
         blocks: (N, C), numbers of believed blocks (`BeliefContext.number`); -1 unknown.
         codes: (N, cells with margin), geometry of the blocks, as codes of `perception.codes`.
         geometry: (N,), number of changes of the geometry so far.
+        versions: (N,), number of changes of blocks so far.
         pending: (N, words), bit set of cells where the parent knows another block.
         fresh: (N,), whether a bit of `pending` was set since the owner last looked for those cells.
         eye: (N,), id of the pose the owner last looked from; -1: it was not present.
@@ -127,6 +139,7 @@ class Nodes(NamedTuple):
         tried: (N, A), pose id of each agent for which `sees` holds.
         sees: (N, A), whether the owner sees the agent in the parent.
         tracked: (T,), cells whose basis is tracked: those that ever hold a container.
+        places: (T,), their places (`cells.place_of`).
         watched: (N, T), whether the owner sees the tracked cell in the parent.
         basis_at: (N, T), last tick at which the tracked cell was current, for cells that no longer
             are; -1 unknown.
@@ -142,9 +155,13 @@ class Nodes(NamedTuple):
     equipment: Ints
     seen_at: Ints
     current: Flags
-    blocks: npt.NDArray[np.int16]
+    rows: Ints
+    shares: Ints
+    spare: Ints
+    blocks: States
     codes: npt.NDArray[np.uint16]
     geometry: Ints
+    versions: Ints
     pending: npt.NDArray[np.uint64]
     fresh: Flags
     eye: Ints
@@ -152,6 +169,7 @@ class Nodes(NamedTuple):
     tried: Ints
     sees: Flags
     tracked: Ints
+    places: Ints
     watched: Flags
     basis_at: Ints
     basis_source: npt.NDArray[np.uint8]
@@ -186,6 +204,8 @@ class Span(NamedTuple):
     Attributes:
         start: Number of the first entry, counted from the beginning of the stretch.
         stop: Number after the last entry.
+        entry: Number of the entry to begin with; an earlier call has folded those before it.
+        node: Number of the node to begin with in that entry.
         happens: True for ticks. False: nothing happens, and nodes perceive the state that they
             find between two ticks.
     """
@@ -193,6 +213,8 @@ class Span(NamedTuple):
     start: int
     stop: int
     happens: bool
+    entry: int
+    node: int = 0
 
 
 class Changes(NamedTuple):
@@ -202,7 +224,8 @@ class Changes(NamedTuple):
         perceived: bool (events, N), whether the owner of a node perceived an event of the pass.
         rows: (M, 7), changes at cells that held or hold a container: entry, node, cell,
             old state, new state, and tick and source of the basis of the new state.
-        used: (1,), rows in use.
+        used: (2,), rows in use, and the number of the node for which the pool of chunks had no
+            room; 0 if there is none.
     """
 
     perceived: Flags

@@ -12,6 +12,7 @@ from beliefnest.belief.arrays import NOBODY, Space
 from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.grounds import SOURCES, Basis, Source
 from beliefnest.errors import InputError
+from beliefnest.perception.codes import chunks_of
 from beliefnest.perception.options import Perception
 from beliefnest.perception.sight import Sight
 from beliefnest.world.claims import Claim, claims_from_plain
@@ -24,6 +25,10 @@ __all__ = ["BeliefContext", "SavedWriting"]
 
 _NUMBERS = 2**15 - 1
 """Limit of block numbers, as arrays are int16: block states first, then signs with texts."""
+
+
+DENSE = 1 << 16
+"""Number of cells of a box up to which nodes hold dense arrays of it. Above, they share chunks."""
 
 
 Writing = tuple[Sign, tuple[Claim, ...]]
@@ -104,8 +109,10 @@ class BeliefContext:
         for (sign, _), number in self._signs.items():
             codes[number] = codes[sign.state]
         nx, ny, nz = self.box.shape
+        sizes = (nx + 2, ny + 2, nz + 2)
         return Space(
-            (nx + 2, ny + 2, nz + 2),
+            sizes,
+            chunks_of(sizes) if self.cells > DENSE else None,
             registry.shape_start,
             registry.shape_boxes,
             sight.reaches,

@@ -47,6 +47,11 @@ class FirstPerceptions:
         self._bytes = 0
         self._turn = Lock()
 
+    def keeps(self, nodes: Nodes, weighing: Weighing | None) -> bool:
+        """Return True if the scene is small enough to be kept."""
+        arrays: Sequence[Array] = (*nodes, *(weighing or ()))
+        return sum(each.nbytes for each in arrays) <= _LARGEST
+
     def perceive(
         self,
         space: Space,
@@ -59,15 +64,13 @@ class FirstPerceptions:
     ) -> None:
         """Let the nodes that `below` marks perceive, as `kernel.fold` of an entry without events.
 
-        Arrays of `nodes` and `weighing` and rows of `changes` are written in place.
+        The nodes hold dense arrays. Arrays of `nodes` and `weighing` and rows of `changes` are
+        written in place.
         """
         from beliefnest.belief import kernel  # loads compiled code, which listing does not need
 
         arrays: Sequence[Array] = (*nodes, *(weighing or ()))
-        span = Span(0, 1, False)
-        if sum(each.nbytes for each in arrays) > _LARGEST:
-            kernel.fold(space, poses, facts, nodes, weighing, changes, span, below)
-            return
+        span = Span(0, 1, False, 0)
         key = _digest(space, (*poses, facts.tick, *arrays, below))
         seen = self._seen.get(key)
         if seen is None:

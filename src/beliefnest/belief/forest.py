@@ -387,8 +387,25 @@ class Forest:
         return Changes(
             np.zeros((events, self.table.count), dtype=np.bool_),
             np.zeros((room, 7), dtype=np.int32),
-            np.zeros(1, dtype=np.int32),
+            np.zeros(2, dtype=np.int32),
         )
+
+    def _pass(
+        self, facts: Facts, changes: Changes, span: Span, which: npt.NDArray[np.bool_]
+    ) -> int:
+        """Run the kernel, with room for new chunks as often as it needs it; see `kernel.fold`."""
+        from beliefnest.belief import kernel
+
+        space, poses = self.context.space, self.poses.arrays()
+        while True:
+            self.table.reserve()
+            nodes, weighing = self.table.nodes(), self.table.weighing()
+            reached = kernel.fold(space, poses, facts, nodes, weighing, changes, span, which)
+            lacking = int(changes.used[1])
+            if lacking == 0:
+                return reached
+            changes.used[1] = 0
+            span = span._replace(entry=reached, node=lacking)
 
     def _fold(self, start: int, stop: int) -> int:
         """Fold entries from number `start` up to `stop` (excluded), or fewer.
@@ -400,21 +417,16 @@ class Forest:
         Returns:
             Number of the first entry that was not folded.
         """
-        from beliefnest.belief import kernel
-
         claims = self._weighs and self.columns.has_claims(start)
         if claims or self._reads or self.context.unique:
             return self._fold_by_level(start)
-        context, columns, facts = self.context, self.columns, self.columns.facts()
+        columns = self.columns
         first = columns.events_until(start)
         changes = self._changes(columns.events_until(stop) - first)
-        poses, nodes, weighing = self.poses.arrays(), self.table.nodes(), self.table.weighing()
         everywhere = np.ones(self.table.count, dtype=np.bool_)
-        span = Span(start - columns.first, stop - columns.first, True)
+        span = Span(start - columns.first, stop - columns.first, True, start - columns.first)
         self.holdings.end_acts(everywhere)
-        reached = columns.first + kernel.fold(
-            context.space, poses, facts, nodes, weighing, changes, span, everywhere
-        )
+        reached = columns.first + self._pass(columns.facts(), changes, span, everywhere)
         count = columns.events_until(reached) - first
         self.perceived_events.note(first, changes.perceived[:count])
         rows = _by_entry(changes, columns.first)
@@ -440,9 +452,7 @@ class Forest:
         holdings and claims in turn, before the next level begins. Nodes of one level do not read
         each other, so their order is free.
         """
-        from beliefnest.belief import kernel
-
-        columns, tick, space = self.columns, self.columns.tick(entry), self.context.space
+        columns, tick = self.columns, self.columns.tick(entry)
         first, at = columns.events_until(entry), entry - columns.first
         count = columns.events_until(entry + 1) - first
         perceived = np.zeros((count, self.table.count), dtype=np.bool_)
@@ -451,9 +461,7 @@ class Forest:
         self.holdings.see_root(tick)
         for level in self.table.levels():
             changes = self._changes(0)._replace(perceived=perceived)
-            poses, nodes, facts = self.poses.arrays(), self.table.nodes(), columns.facts()
-            weighing, span = self.table.weighing(), Span(at, at + 1, True)
-            kernel.fold(space, poses, facts, nodes, weighing, changes, span, level)
+            self._pass(columns.facts(), changes, Span(at, at + 1, True, at), level)
             self.holdings.end_acts(level)
             if level[0]:
                 self.holdings.apply_frame(columns.frames.get(entry))
@@ -470,8 +478,6 @@ class Forest:
 
     def _perceive(self, below: npt.NDArray[np.bool_]) -> None:
         """Let the nodes that `below` marks perceive the present state, with nothing happening."""
-        from beliefnest.belief import kernel
-
         context = self.context
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
         facts = Facts(
@@ -488,17 +494,16 @@ class Forest:
         by_level = bool(context.unique) or self._reads
         parts = (level & below for level in self.table.levels()) if by_level else (below,)
         for part in parts:
-            poses, nodes, changes = self.poses.arrays(), self.table.nodes(), self._changes(0)
-            weighing = self.table.weighing()
-            if context.signs or by_level:
-                # A cached result of another nest does not fit: numbers of signs and unique items
-                # differ between nests.
-                span = Span(0, 1, False)
-                kernel.fold(context.space, poses, facts, nodes, weighing, changes, span, part)
+            nodes, weighing, changes = self.table.nodes(), self.table.weighing(), self._changes(0)
+            first = context.first_perceptions
+            # A cached result of another nest does not fit where numbers of signs and unique items
+            # differ between nests, and where rows of chunks do.
+            is_own = context.signs or by_level or context.space.chunks is not None
+            if is_own or not first.keeps(nodes, weighing):
+                self._pass(facts, changes, Span(0, 1, False, 0), part)
             else:
-                context.first_perceptions.perceive(
-                    context.space, poses, facts, nodes, weighing, changes, part
-                )
+                poses = self.poses.arrays()
+                first.perceive(context.space, poses, facts, nodes, weighing, changes, part)
             rows = _by_entry(changes, 0).get(0, {})
             self.holdings.follow(self.tick, self.tick, rows, {}, part)
             if self._reads:
@@ -527,4 +532,9 @@ def _by_entry(changes: Changes, first: int) -> dict[int, dict[int, list[Sequence
     rows: dict[int, dict[int, list[Sequence[int]]]] = {}
     for row in changes.rows[: changes.used[0]].tolist():
         rows.setdefault(first + row[0], {}).setdefault(row[1], []).append(row)
+    for found in rows.values():
+        for node, each in found.items():
+            if node > 0:
+                # The order of chunks must not show: a node's rows are in the order of cells.
+                each.sort(key=lambda row: row[2])
     return rows

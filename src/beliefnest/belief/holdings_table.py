@@ -427,7 +427,7 @@ class HoldingsTable:
 
     def doubt_all(self, which: npt.NDArray[np.int64], cell: int) -> None:
         """Call `doubt` for several nodes."""
-        knowing = self._context.holds[self._table.nodes().blocks[which, cell]]
+        knowing = self._context.holds[self._table.blocks_at(which, cell)]
         for node in which[~knowing].tolist():
             self.doubt(node, cell)
 

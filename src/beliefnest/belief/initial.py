@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import UNKNOWN
+from beliefnest.belief.chunk_pool import CutGrids, cut_grids
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import EventHistory, Forest
@@ -20,14 +21,61 @@ from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Position, Sign
 
-__all__ = ["forked_forest", "initial_forest"]
+Rows = npt.NDArray[np.int32]
+
+__all__ = ["Beginning", "forked_forest", "initial_forest"]
+
+
+class Beginning:
+    """Real world at its first tick, and the blocks that everybody knows from the start.
+
+    Forests of a nest begin anew for every node that is asked for alone; in a large box they share
+    the chunks.
+
+    Args:
+        context: The part that all nodes share; the signs and containers of the world are noted.
+        snapshot: The real world.
+        static_blocks: Names and positions of blocks that everybody knows.
+    """
+
+    def __init__(
+        self,
+        context: BeliefContext,
+        snapshot: Snapshot,
+        static_blocks: frozenset[str | Position],
+    ) -> None:
+        self.snapshot, self._context, self._static = snapshot, context, static_blocks
+        self._cut: CutGrids | None = None
+        self._grids: tuple[BlockGrid, BlockGrid] | None = None
+        self._world = _numbers(context, snapshot)
+        context.track(np.flatnonzero(context.holds[snapshot.blocks.ravel()]).tolist())
+
+    def grids(self) -> tuple[BlockGrid, BlockGrid]:
+        """Return the numbers of all blocks of the world, and of those that everybody knows."""
+        if self._grids is not None:
+            return self._grids
+        context, blocks, world = self._context, self.snapshot.blocks, self._world
+        known = _states_of(context, {name for name in self._static if isinstance(name, str)})
+        prior = np.full_like(world, UNKNOWN)
+        np.copyto(prior, world, where=known[blocks])
+        for place in self._static:
+            if not isinstance(place, str):
+                prior[context.box.index(place)] = world[context.box.index(place)]
+        if context.space.chunks is None:
+            self._grids = (world, prior)
+        return world, prior
+
+    def cut(self) -> CutGrids:
+        """Return the chunks of both grids of `grids`."""
+        if self._cut is None:
+            self._cut = cut_grids(self._context.space, self.grids())
+        return self._cut
 
 
 def initial_forest(
     context: BeliefContext,
     events: EventHistory,
-    snapshot: Snapshot,
-    static_blocks: frozenset[str | Position],
+    beginning: Beginning,
     initial: Sequence[InitialBelief],
     paths: Sequence[BeliefPath],
     extra: Sequence[int] = (),
@@ -37,19 +85,11 @@ def initial_forest(
     Args:
         context: The part that all nodes share.
         events: Events of the real world's timeline.
-        snapshot: The real world at its first tick.
-        static_blocks: Names and positions of blocks that everybody knows from the start.
+        beginning: The real world at its first tick, and what everybody knows of it.
         initial: Further priors, at any depth.
         paths: The nodes that are wanted; those between them and the real world are added.
         extra: Further cells whose basis is to be tracked.
     """
-    world = _numbers(context, snapshot)
-    known = _states_of(context, {name for name in static_blocks if isinstance(name, str)})
-    prior = np.where(known[snapshot.blocks], world, UNKNOWN).astype(np.int32)
-    for place in static_blocks:
-        if not isinstance(place, str):
-            prior[context.box.index(place)] = world[context.box.index(place)]
-    context.track(np.flatnonzero(context.holds[snapshot.blocks.ravel()]).tolist())
     for belief in initial:
         written = (at for at, block in belief.blocks.items() if isinstance(block, Sign))
         context.note_signs(cell_of(context.box, place) for place in written)
@@ -60,11 +100,15 @@ def initial_forest(
             if context.container_name(context.number(block))
         )
     table = NodeTable(context, PoseTable(), extra)
+    snapshot = beginning.snapshot
     holdings = HoldingsTable(table, RootFacts(seen_at=snapshot.tick))
-    holdings.add(_add_world(table, snapshot, world))
+    rows = () if table.pool is None else table.pool.add_grids(beginning.cut())
+    holdings.add(_add_world(table, beginning, rows))
     wanted = (path[:depth] for path in paths for depth in range(1, len(path) + 1))
     for node in dict.fromkeys(wanted):
-        holdings.add(_add_prior(table, node, prior, merged_belief(initial, node), snapshot.tick))
+        holdings.add(_add_prior(table, node, beginning, rows, merged_belief(initial, node)))
+    for each in rows:
+        table.leave(each)
     table.link()
     forest = Forest(events, table, holdings, snapshot.tick)
     forest.perceive_at_first()
@@ -94,11 +138,17 @@ def _numbers(context: BeliefContext, snapshot: Snapshot) -> BlockGrid:
     return numbers
 
 
-def _add_world(table: NodeTable, snapshot: Snapshot, blocks: BlockGrid) -> Holdings:
-    """Add the node of the real world, and return its holdings."""
-    context = table.context
+def _add_world(table: NodeTable, beginning: Beginning, rows: Sequence[Rows]) -> Holdings:
+    """Add the node of the real world, and return its holdings.
+
+    `rows` are those of the chunks of `Beginning.cut`, if nodes are in chunks.
+    """
+    context, snapshot = table.context, beginning.snapshot
     node = table.add((), UNKNOWN)
-    table.set_blocks(node, blocks)
+    if table.pool is None:
+        table.set_blocks(node, beginning.grids()[0])
+    else:
+        table.set_rows(node, rows[0])
     basis = Basis(snapshot.tick, Source.SEEN)
     table.set_known_bases(node, basis)
     for name, agent in snapshot.agents.items():
@@ -115,16 +165,28 @@ def _add_world(table: NodeTable, snapshot: Snapshot, blocks: BlockGrid) -> Holdi
 
 
 def _add_prior(
-    table: NodeTable, path: BeliefPath, prior: npt.NDArray[np.int32], mine: InitialBelief, tick: int
+    table: NodeTable,
+    path: BeliefPath,
+    beginning: Beginning,
+    rows: Sequence[Rows],
+    mine: InitialBelief,
 ) -> Holdings:
-    """Add a node with its priors, and return its holdings."""
-    context = table.context
+    """Add a node with its priors, and return its holdings; `rows` are as for `_add_world`."""
+    context, tick = table.context, beginning.snapshot.tick
     basis = Basis(tick, Source.PRIOR)
     node = table.add(path, table.index[path[:-1]])
-    blocks = prior.copy() if mine.blocks else prior
-    for place, block in mine.blocks.items():
-        blocks[context.box.index(place)] = context.number(block)
-    table.set_blocks(node, blocks)
+    if table.pool is None:
+        prior = beginning.grids()[1]
+        blocks = prior.copy() if mine.blocks else prior
+        for place, block in mine.blocks.items():
+            blocks[context.box.index(place)] = context.number(block)
+        table.set_blocks(node, blocks)
+    else:
+        table.set_rows(node, rows[1])
+        if mine.blocks:
+            table.link()
+        known = {cell_of(context.box, at): block for at, block in mine.blocks.items()}
+        table.change(node, {cell: context.number(block) for cell, block in known.items()})
     for name, position in mine.agents.items():
         pose = table.poses.add_pose(position, 0.0, 0.0)
         table.set_pose(node, context.numbers[name], pose, tick, current=False)

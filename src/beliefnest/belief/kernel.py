@@ -37,10 +37,24 @@ from beliefnest.belief.arrays import (
     Span,
     Weighing,
 )
-from beliefnest.belief.seeing import eye_of, grid_cell, sees_agent, sees_cell, whole
+from beliefnest.belief.cells import (
+    block_at,
+    chunk_at,
+    grid_cell,
+    line_of,
+    place_of,
+    put_block,
+    scene_of,
+    share,
+    whole,
+)
+from beliefnest.belief.seeing import eye_of, sees_agent, sees_cell
+from beliefnest.perception.chunks import chunk_in, place_at
+from beliefnest.perception.codes import SIDE, VOLUME, Chunks
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
-from beliefnest.perception.eyes import Eye, set_code
+from beliefnest.perception.eyes import Eye
 from beliefnest.perception.options import HEAR_ALL, HEAR_SEEN, SenseLimits
+from beliefnest.perception.rays import Cell, Scene
 from beliefnest.world.event_kinds import Sense
 
 __all__ = ["fold", "put", "put_all"]
@@ -48,36 +62,45 @@ __all__ = ["fold", "put", "put_all"]
 _WORD = 64
 
 
-@inner
-def _mark(nodes: Nodes, node: int, cell: int) -> None:
-    """Set the pending bit of a cell in a node below node 0 if the parent knows another block.
+@inlined
+def _held(space: Space, nodes: Nodes, node: int, place: int) -> int:
+    """Return the number of a node's block at a place."""
+    return block_at(space.chunks, nodes.blocks, nodes.rows[node], node, place)
 
-    Clear the bit otherwise.
+
+@inlined
+def _scene(space: Space, nodes: Nodes, node: int) -> Scene:
+    """Return the shapes of a node."""
+    return scene_of(space, nodes.codes[line_of(space.chunks, node)], nodes.rows[node])
+
+
+@inner
+def _mark(space: Space, nodes: Nodes, node: int, place: int) -> None:
+    """Set the pending bit of a place in a node below node 0 if the parent knows another block.
+
+    Clear the bit otherwise, unless it stands for a chunk.
     """
-    held = nodes.blocks[nodes.parent[node], cell]
-    word, bit = cell // _WORD, np.uint64(1) << np.uint64(cell % _WORD)
-    if held != UNKNOWN and held != nodes.blocks[node, cell]:
+    held = _held(space, nodes, whole(nodes.parent[node]), place)
+    number = chunk_at(space.chunks, place)
+    word, bit = number // _WORD, np.uint64(1) << np.uint64(number % _WORD)
+    if held != UNKNOWN and held != _held(space, nodes, node, place):
         nodes.pending[node, word] |= bit
         nodes.fresh[node] = True
-    else:
+    elif space.chunks is None:
         nodes.pending[node, word] &= ~bit
 
 
 @compiled
 def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
     """Set the block of a cell in a node, its geometry, and the pending bits that depend on it."""
-    old = nodes.blocks[node, cell]
-    if old == state:
+    place = place_of(space.chunks, space, cell)
+    if _held(space, nodes, node, place) == state:
         return
-    nodes.blocks[node, cell] = state
-    if space.codes[old] != space.codes[state]:
-        place = grid_cell(space, cell)
-        set_code(nodes.codes[node], space.sizes, space.reaches, place, space.codes[state])
-        nodes.geometry[node] += 1
+    put_block(space.chunks, space, nodes, node, cell, state)
     if node > 0:
-        _mark(nodes, node, cell)
+        _mark(space, nodes, node, place)
     for n in range(nodes.child_at[node], nodes.child_at[node + 1]):
-        _mark(nodes, whole(nodes.child[n]), cell)
+        _mark(space, nodes, whole(nodes.child[n]), place)
 
 
 @inlined
@@ -119,7 +142,7 @@ def _put_noted(
 
     The row carries the basis of the new block: that of the parent, from which the owner took it.
     """
-    old = nodes.blocks[node, cell]
+    old = _held(space, nodes, node, place_of(space.chunks, space, cell))
     if old == state:
         return
     if space.holds[old] or space.holds[state]:
@@ -168,7 +191,7 @@ def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, ent
         cell, state = whole(facts.block_cell[row]), whole(facts.block_state[row])
         _put_noted(space, nodes, changes, entry, whole(facts.tick[entry]), whole(0), cell, state)
     for spot in range(len(nodes.tracked)):
-        known = nodes.blocks[0, nodes.tracked[spot]] != UNKNOWN
+        known = _held(space, nodes, whole(0), whole(nodes.places[spot])) != UNKNOWN
         nodes.basis_current[0, spot] = known
         if known:
             nodes.basis_at[0, spot] = facts.tick[entry]
@@ -185,10 +208,11 @@ def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: boo
     parent = whole(nodes.parent[node])
     for spot in range(len(nodes.tracked)):
         if moved:
-            cell = whole(nodes.tracked[spot])
-            nodes.watched[node, spot] = sees_cell(space, nodes.codes[parent], eye, cell)
+            cell = grid_cell(space, whole(nodes.tracked[spot]))
+            nodes.watched[node, spot] = sees_cell(space, _scene(space, nodes, parent), eye, cell)
         nodes.basis_current[node, spot] = False
-        if nodes.watched[node, spot] and nodes.blocks[parent, nodes.tracked[spot]] != UNKNOWN:
+        held = _held(space, nodes, parent, whole(nodes.places[spot]))
+        if nodes.watched[node, spot] and held != UNKNOWN:
             nodes.basis_at[node, spot] = nodes.basis_at[parent, spot]
             nodes.basis_source[node, spot] = _handed_source(nodes, parent, spot)
             nodes.basis_current[node, spot] = nodes.basis_current[parent, spot]
@@ -205,12 +229,13 @@ def _observe_agents(
     place without the agent (section 4).
     """
     parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
+    scene = _scene(space, nodes, parent)
     for who in range(nodes.pose.shape[1]):
         pose = whole(nodes.pose[parent, who])
         seen = who == me
         if not seen and pose != UNKNOWN:
             if moved or nodes.tried[node, who] != pose:
-                nodes.sees[node, who] = sees_agent(space, poses, nodes.codes[parent], eye, pose)
+                nodes.sees[node, who] = sees_agent(space, poses, scene, eye, pose)
                 nodes.tried[node, who] = pose
             seen = nodes.sees[node, who]
         if seen:
@@ -225,23 +250,23 @@ def _observe_agents(
         if (
             space.senses.negative
             and believed != UNKNOWN
-            and sees_agent(space, poses, nodes.codes[parent], eye, believed)
+            and sees_agent(space, poses, scene, eye, believed)
         ):
             nodes.pose[node, who] = UNKNOWN
 
 
 @inlined
 def _in_range(place: float, far: float, size: int) -> tuple[int, int]:
-    """Return the first cell of an axis that may be within a distance, and the one after the last.
+    """Return the first cell of an axis with its middle within a distance, and one after the last.
 
-    The place is in coordinates of the grid, which has a margin of one cell.
+    There may be one cell more on each side.
     """
-    low, high = place - 2.0 - far, place + far
+    low, high = place - 1.0 - far, place + 1.0 + far
     return int(min(max(low, 0.0), float(size))), int(min(max(high, 0.0), float(size)))
 
 
-@merged
-def _observe_blocks(
+@inner
+def _observe_cells(
     space: Space,
     nodes: Nodes,
     changes: Changes,
@@ -250,22 +275,31 @@ def _observe_blocks(
     node: int,
     eye: Eye,
 ) -> None:
-    """Take over the pending blocks that the owner of a node sees.
+    """Take over the pending blocks that the owner of a node sees, where grids are dense.
 
     The loop visits the columns of the box that may be within the visible distance, and there the
     words of 64 bits with a set bit. Words lie in the order of columns, so a word that two columns
     share is visited once. `put` clears the bit of each block taken over.
     """
     parent = whole(nodes.parent[node])
+    scene = _scene(space, nodes, parent)
     ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
     (px, py, pz), _, _, far = eye
-    x0, x1 = _in_range(px, far, space.sizes[0] - 2)
-    y0, y1 = _in_range(py, far, ny)
+    # Most nodes have few pending cells, or none.
+    first, last = 0, nodes.pending.shape[1] - 1
+    while first <= last and nodes.pending[node, first] == 0:
+        first += 1
+    while first < last and nodes.pending[node, last] == 0:
+        last -= 1
+    x0, x1 = _in_range(px - 1.0, far, space.sizes[0] - 2)
+    x0, x1 = max(x0, first * _WORD // (ny * nz)), min(x1, (last * _WORD + _WORD) // (ny * nz) + 1)
+    y0, y1 = _in_range(py - 1.0, far, ny)
     word = 0
     for x in range(x0, x1):
         for y in range(y0, y1):
             dx, dy = x + 1.5 - px, y + 1.5 - py
-            z0, z1 = _in_range(pz, math.sqrt(max(far * far - dx * dx - dy * dy, 0.0)), nz)
+            near = math.sqrt(max(far * far - dx * dx - dy * dy, 0.0))
+            z0, z1 = _in_range(pz - 1.0, near, nz)
             row = (x * ny + y) * nz
             word = max(word, (row + z0) // _WORD)
             while word * _WORD < row + z1:
@@ -273,10 +307,91 @@ def _observe_blocks(
                 for place in range(_WORD if bits != 0 else 0):
                     if (bits >> np.uint64(place)) & np.uint64(1):
                         cell = word * _WORD + place
-                        if sees_cell(space, nodes.codes[parent], eye, cell):
+                        if sees_cell(space, scene, eye, grid_cell(space, cell)):
                             state = whole(nodes.blocks[parent, cell])
                             _put_noted(space, nodes, changes, entry, tick, node, cell, state)
                 word += 1
+
+
+@inner
+def _observe_chunk(
+    space: Space,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    tick: int,
+    node: int,
+    eye: Eye,
+    corner: Cell,
+) -> bool:
+    """Take over the blocks of a chunk that the owner of a node sees; return True if any is left.
+
+    `corner` is the first cell of the chunk. Cells of the margin are unknown in all nodes.
+    """
+    parent = whole(nodes.parent[node])
+    chunk = chunk_in(place_at(space.chunks, space.sizes, corner))
+    theirs, ny, nz = nodes.rows[parent, chunk], space.sizes[1] - 2, space.sizes[2] - 2
+    if nodes.rows[node, chunk] == theirs:
+        return False
+    scene, left = _scene(space, nodes, parent), False
+    for within in range(VOLUME):
+        state = whole(nodes.blocks[0, theirs * VOLUME + within])
+        own = whole(nodes.blocks[0, nodes.rows[node, chunk] * VOLUME + within])
+        if state not in (UNKNOWN, own):
+            i, j, k = corner[0] + within // (SIDE * SIDE), within // SIDE % SIDE, within % SIDE
+            j, k = corner[1] + j, corner[2] + k
+            if sees_cell(space, scene, eye, (i, j, k)):
+                cell = ((i - 1) * ny + j - 1) * nz + k - 1
+                _put_noted(space, nodes, changes, entry, tick, node, cell, state)
+            else:
+                left = True
+    if not left:
+        share(nodes, node, parent, chunk)
+    return left
+
+
+@inner
+def _observe_chunks(
+    space: Space,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    tick: int,
+    node: int,
+    eye: Eye,
+) -> None:
+    """Take over the pending blocks that the owner of a node sees, where grids are in chunks."""
+    (px, py, pz), _, _, far = eye
+    x0, x1 = _in_range(px, far, space.sizes[0])
+    y0, y1 = _in_range(py, far, space.sizes[1])
+    z0, z1 = _in_range(pz, far, space.sizes[2])
+    for i in range(x0 // SIDE * SIDE, x1, SIDE):
+        for j in range(y0 // SIDE * SIDE, y1, SIDE):
+            for k in range(z0 // SIDE * SIDE, z1, SIDE):
+                chunk = chunk_in(place_at(space.chunks, space.sizes, (i, j, k)))
+                word, bit = chunk // _WORD, np.uint64(1) << np.uint64(chunk % _WORD)
+                if nodes.pending[node, word] & bit and not _observe_chunk(
+                    space, nodes, changes, entry, tick, node, eye, (i, j, k)
+                ):
+                    nodes.pending[node, word] &= ~bit
+
+
+@inlined
+def _observe_blocks(
+    chunks: Chunks | None,
+    space: Space,
+    nodes: Nodes,
+    changes: Changes,
+    entry: int,
+    tick: int,
+    node: int,
+    eye: Eye,
+) -> None:
+    """Take over the pending blocks that the owner of a node sees."""
+    if chunks is None:
+        _observe_cells(space, nodes, changes, entry, tick, node, eye)
+    else:
+        _observe_chunks(space, nodes, changes, entry, tick, node, eye)
     nodes.fresh[node] = False
 
 
@@ -344,7 +459,8 @@ def _perceive_events(
             )
         elif sense == Sense.PLACE:
             cell, eye = whole(facts.event_cell[event]), eye_of(space, poses, whole(nodes.eye[node]))
-            got = sees_cell(space, nodes.codes[parent], eye, cell)
+            place = grid_cell(space, cell)
+            got = sees_cell(space, _scene(space, nodes, parent), eye, place)
         else:
             got = actor >= 0 and nodes.pose[parent, actor] != UNKNOWN and nodes.sees[node, actor]
         changes.perceived[event - first_event, node] = got
@@ -429,7 +545,7 @@ def _observe_meetings(
         if (
             met != UNKNOWN
             and (moved or weighing.meets[node, who])
-            and sees_agent(space, poses, nodes.codes[parent], eye, met)
+            and sees_agent(space, poses, _scene(space, nodes, parent), eye, met)
         ):
             weighing.met[node, who] = UNKNOWN
         weighing.meets[node, who] = False
@@ -497,13 +613,22 @@ def _update_node(
     nodes.seen_geometry[node] = nodes.geometry[parent]
     _observe_agents(space, poses, nodes, node, eye, moved)
     if moved or nodes.fresh[node]:
-        _observe_blocks(space, nodes, changes, entry, tick, node, eye)
+        _observe_blocks(space.chunks, space, nodes, changes, entry, tick, node, eye)
     _perceive_events(space, poses, facts, nodes, changes, span, entry, node)
     _propagate_bases(space, nodes, node, eye, moved)
     if weighing is not None:
         _observe_meetings(space, poses, nodes, weighing, node, moved)
         _count_to(nodes, weighing, node, tick)
         _note_watched_places(facts, nodes, weighing, changes, span, entry, node)
+
+
+@inlined
+def _lacks_room(chunks: Chunks | None, nodes: Nodes) -> bool:
+    """Return True if a node that changes all of its chunks might not find room in the pool."""
+    if chunks is None:
+        return False
+    free = nodes.spare[0] + len(nodes.shares) - nodes.spare[1]
+    return bool(free < nodes.rows.shape[1])
 
 
 @compiled
@@ -533,20 +658,27 @@ def fold(
 
     Returns:
         Number of the first entry that was not folded. The kernel stops early if the rows that the
-        next entry adds might not fit into `changes.rows`.
+        next entry adds might not fit into `changes.rows`, or the chunks that the next node changes
+        into the pool; then it leaves the number of that node in `changes.used`.
     """
     first_event = whole(facts.event_at[span.start])
     room = changes.rows.shape[0]
-    for entry in range(span.start, span.stop):
+    first_node = span.node
+    for entry in range(span.entry, span.stop):
         # An entry adds at most one row for each node and tracked cell, a quarter of the room (see
         # `Forest._changes`). So no entry that begins with half of the room free can overflow it.
-        if changes.used[0] > 0 and changes.used[0] > room // 2:
+        if first_node == 0 and changes.used[0] > 0 and changes.used[0] > room // 2:
             return entry
-        if which[0]:
-            _apply_entry(space, facts, nodes, changes, entry)
-            for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
-                changes.perceived[event - first_event, 0] = True
-        for node in range(1, len(nodes.parent)):
+        for node in range(first_node, len(nodes.parent)):
             if which[node]:
-                _update_node(space, poses, facts, nodes, weighing, changes, span, entry, node)
+                if _lacks_room(space.chunks, nodes):
+                    changes.used[1] = node
+                    return entry
+                if node == 0:
+                    _apply_entry(space, facts, nodes, changes, entry)
+                    for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
+                        changes.perceived[event - first_event, 0] = True
+                else:
+                    _update_node(space, poses, facts, nodes, weighing, changes, span, entry, node)
+        first_node = 0
     return span.stop

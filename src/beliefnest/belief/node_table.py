@@ -1,6 +1,6 @@
 """Arrays of the nodes of one forest for the kernel, which grow as nodes are added."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import UNKNOWN, Nodes, Weighing
+from beliefnest.belief.chunk_pool import NOTHING, ChunkPool, cut_grids
 from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.grounds import Basis
 from beliefnest.belief.poses import PoseDetails, PoseTable
-from beliefnest.perception.codes import code_grid
+from beliefnest.perception.codes import SIDE, VOLUME, code_grid
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point
@@ -31,11 +32,16 @@ _BY_SPOT = ("watched", "basis_at", "basis_source", "basis_current", "watch_misse
 class SavedNode:
     """Rows of one node as native bytes, by their names in `arrays.Nodes`.
 
-    `weighing` has the rows that exist only if hearers weigh claims.
+    `weighing` has the rows that exist only if hearers weigh claims. In a box with chunks, `blocks`
+    and `codes` have the chunks that are not those of the parent, and `rows` has the number of each
+    chunk among them; -1: it is the parent's. Otherwise `blocks` has all cells, and the other two
+    are empty.
     """
 
     path: BeliefPath
     blocks: bytes
+    codes: bytes
+    rows: bytes
     pose: bytes
     equipment: bytes
     seen_at: bytes
@@ -48,7 +54,7 @@ class SavedNode:
 
 
 _SAVED = (
-    *("blocks", "pose", "equipment", "seen_at", "current"),
+    *("pose", "equipment", "seen_at", "current"),
     *("basis_at", "basis_source", "basis_current"),
 )
 
@@ -61,6 +67,7 @@ class NodeTable:
         count: Number of nodes.
         context: The part that all nodes of the nest share.
         poses: The pose table to which the nodes' pose ids refer.
+        pool: Chunks of the nodes; None if these hold dense arrays.
         edited_cells: Pairs of node and cell of blocks that were changed by hand since the node
             last perceived them.
     """
@@ -84,10 +91,8 @@ class NodeTable:
             "equipment": np.empty((2, agents), np.int32),
             "seen_at": np.empty((2, agents), np.int32),
             "current": np.empty((2, agents), np.bool_),
-            "blocks": np.empty((2, cells), np.int16),
-            "codes": np.empty((2, int(np.prod(context.space.sizes))), np.uint16),
             "geometry": np.empty(2, np.int32),
-            "pending": np.empty((2, -(-cells // 64)), np.uint64),
+            "versions": np.empty(2, np.int32),
             "fresh": np.empty(2, np.bool_),
             "eye": np.empty(2, np.int32),
             "seen_geometry": np.empty(2, np.int32),
@@ -98,6 +103,19 @@ class NodeTable:
             "basis_source": np.empty((2, spots), np.uint8),
             "basis_current": np.empty((2, spots), np.bool_),
         }
+        self.pool = None if context.space.chunks is None else ChunkPool(context.box.shape)
+        if self.pool is None:
+            self._rows |= {
+                "rows": np.empty((2, 1), np.int32),
+                "blocks": np.empty((2, cells), np.int16),
+                "codes": np.empty((2, int(np.prod(context.space.sizes))), np.uint16),
+                "pending": np.empty((2, -(-cells // 64)), np.uint64),
+            }
+        else:
+            self._rows |= {
+                "rows": np.empty((2, self.pool.count), np.int32),
+                "pending": np.empty((2, -(-self.pool.count // 64)), np.uint64),
+            }
         if context.weighs:
             self._rows |= {
                 "counted": np.empty(2, np.int32),
@@ -111,17 +129,35 @@ class NodeTable:
         self._child = np.zeros(0, dtype=np.int32)
         self._nodes: Nodes | None = None
         self._weighing: Weighing | None = None
+        # Results of the last call for the next one, until `link`: geometry of the blocks that were
+        # set last, and rows of the chunks of another table that were copied.
         self._coded: tuple[npt.NDArray[Any], Row] | None = None
+        self._copied: tuple[NodeTable, Row] | None = None
 
     def nodes(self) -> Nodes:
         """Return the arrays for the kernel."""
         if self._nodes is None:
             rows = {name: row[: self.count] for name, row in self._rows.items()}
             rows |= {"child_at": self._child_at, "child": self._child, "tracked": self._tracked}
+            rows["places"] = self._places(self._tracked).astype(np.int32)
+            rows |= self._stored()
             self._nodes = Nodes(*(rows[name] for name in Nodes._fields))
             if self.context.weighs:
                 self._weighing = Weighing(*(rows[name] for name in Weighing._fields))
         return self._nodes
+
+    def _stored(self) -> dict[str, Row]:
+        """Return the arrays of chunks that the kernel takes; of no chunks if nodes have none."""
+        if self.pool is None:
+            return {"shares": np.zeros(0, np.int32), "spare": np.zeros(0, np.int32)}
+        pool = self.pool
+        lines = {"blocks": pool.blocks.reshape(1, -1), "codes": pool.codes.reshape(1, -1)}
+        return {**lines, "shares": pool.shares, "spare": pool.spare}
+
+    def reserve(self) -> None:
+        """Make room for the chunks that the kernel may need for the next node."""
+        if self.pool is not None and self.pool.reserve(2 * self.pool.count):
+            self._nodes = None
 
     def weighing(self) -> Weighing | None:
         """Return the arrays for weighing claims; None if hearers weigh none."""
@@ -170,7 +206,9 @@ class NodeTable:
         spots = {cell: spot for spot, cell in enumerate(other.tracked.tolist())}
         theirs = [spots.get(cell, -1) for cell in self._tracked.tolist()]
         for name, row in self._rows.items():
-            if name in _BY_SPOT:
+            if name == "rows":
+                row[node] = self._copied_rows(other, other._rows[name][source])
+            elif name in _BY_SPOT:
                 known = other._rows[name][source]
                 none = np.full((1, *known.shape[1:]), _filler(known), dtype=known.dtype)
                 row[node] = np.concatenate([known, none])[theirs]
@@ -188,7 +226,7 @@ class NodeTable:
         if is_root:
             self._rows["parent"][node] = self._rows["agent"][node] = UNKNOWN
             self._rows["current"][node] = self._rows["pose"][node] >= 0
-            self._rows["basis_current"][node] = self._rows["blocks"][node][self._tracked] >= 0
+            self._rows["basis_current"][node] = self.blocks_at(node, self._tracked) >= 0
         else:
             self._rows["parent"][node] = self.index[path[:-1]]
         return node
@@ -218,8 +256,24 @@ class NodeTable:
         rows["fresh"][1:] |= rows["pending"][1:].any(axis=1)
         rows["parent"][0] = rows["agent"][0] = UNKNOWN
         rows["current"][0] = rows["pose"][0] >= 0
-        rows["basis_current"][0] = rows["blocks"][0][self._tracked] >= 0
+        if self.pool is not None:
+            made.pool = self.pool.copy()
+        rows["basis_current"][0] = made.blocks_at(0, self._tracked) >= 0
         return made
+
+    def _copied_rows(self, other: "NodeTable", rows: Row) -> Row:
+        """Return rows of this table's pool with the same chunks as rows of another table's."""
+        if self.pool is None or other.pool is None:
+            return rows
+        if self._copied is None or self._copied[0] is not other:
+            self._copied = (other, np.full(len(other.pool.shares), UNKNOWN, dtype=np.int32))
+        known = self._copied[1]
+        new = np.unique(rows[known[rows] < 0])
+        known[new] = self.pool.add(other.pool.blocks[new], other.pool.codes[new])
+        self.pool.leave(np.full(len(rows), NOTHING, np.int32))
+        self.pool.use(known[rows])
+        self._nodes = None
+        return known[rows]
 
     def path(self, node: int) -> BeliefPath:
         """Return the path of a node."""
@@ -233,27 +287,48 @@ class NodeTable:
         self._child_at = np.searchsorted(parent[self._child], np.arange(self.count + 1)).astype(
             np.int32
         )
-        self._nodes = None
+        self._nodes = self._coded = self._copied = None
         for node in range(self._linked, self.count):
             self._set_pending(node)
         self._linked = max(self.count, 1)
 
     def _set_pending(self, node: int) -> None:
         """Compute all pending bits of a node from its blocks and those of its parent."""
-        own, held = self._rows["blocks"][node], self._rows["blocks"][self.parent(node)]
+        grids = self._rows["rows" if self.pool is not None else "blocks"]
+        own, held = grids[node], grids[self.parent(node)]
         pending = np.zeros(self._rows["pending"].shape[1] * 64, dtype=np.bool_)
-        pending[: len(own)] = (held != UNKNOWN) & (held != own)
+        pending[: len(own)] = held != own
+        if self.pool is None:
+            pending[: len(own)] &= held != UNKNOWN
         self._rows["pending"][node] = np.packbits(pending, bitorder="little").view("<u8")
         self._rows["fresh"][node] |= pending.any()
 
     def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
         """Set all blocks of a node, and its geometry. Do not change the array afterwards."""
-        self._rows["blocks"][node] = blocks.ravel()
+        space = self.context.space
+        if self.pool is not None:
+            (rows,) = self.pool.add_grids(cut_grids(space, (blocks,)))
+            self.set_rows(node, rows)
+            self.leave(rows)
+            return
+        # Most nodes start with the same array, so the last geometry is kept for the next call.
         if self._coded is None or self._coded[0] is not blocks:
-            space = self.context.space
-            # Most nodes start with the same array, so the last geometry is kept for the next call.
             self._coded = (blocks, code_grid(blocks, space.codes, space.reaches).ravel())
+        self._rows["blocks"][node] = blocks.ravel()
         self._rows["codes"][node] = self._coded[1]
+
+    def set_rows(self, node: int, rows: Row) -> None:
+        """Set the rows of all chunks of a node, and so its blocks and its geometry."""
+        if self.pool is not None:
+            self.pool.use(rows)
+            self.pool.leave(self._rows["rows"][node])
+            self._rows["rows"][node] = rows
+            self._nodes = None
+
+    def leave(self, rows: Row) -> None:
+        """End the use of rows by the caller of `ChunkPool.add_grids`."""
+        if self.pool is not None:
+            self.pool.leave(rows)
 
     def set_pose(self, node: int, agent: int, pose: int, seen_at: int, *, current: bool) -> None:
         """Set the believed pose of an agent."""
@@ -296,7 +371,7 @@ class NodeTable:
 
     def set_known_bases(self, node: int, basis: Basis) -> None:
         """Set one basis for all tracked cells whose block a node knows."""
-        known = self._rows["blocks"][node][self._tracked] >= 0
+        known = self.blocks_at(node, self._tracked) >= 0
         self._rows["basis_at"][node][known] = basis.observed_at
         self._rows["basis_source"][node][known] = self.context.basis_code(basis)
         self._rows["basis_current"][node][known] = node == 0
@@ -308,18 +383,24 @@ class NodeTable:
         ticks = np.where(current, tick, self._rows["basis_at"][node]).tolist()
         codes = self._rows["basis_source"][node].tolist()
         basis = self.context.basis
-        known = self._rows["blocks"][node] >= 0
+        known = (self.blocks_at(node, np.array(cells, dtype=np.int64)) >= 0).tolist()
         return {
-            cell: basis(ticks[spots[cell]], codes[spots[cell]]) if known[cell] else None
-            for cell in cells
+            cell: basis(ticks[spots[cell]], codes[spots[cell]]) if is_known else None
+            for cell, is_known in zip(cells, known, strict=True)
         }
+
+    def change(self, node: int, blocks: Mapping[int, int]) -> None:
+        """Set blocks of a node by cell, after `link`; their bases stay."""
+        from beliefnest.belief import kernel
+
+        for cell, state in blocks.items():
+            self.reserve()
+            kernel.put(self.context.space, self.nodes(), node, cell, state)
 
     def put(self, node: int, cell: int, state: int, basis: Basis) -> None:
         """Set a block of a node by hand, with its basis."""
-        from beliefnest.belief import kernel
-
         self.edited_cells.add((node, cell))
-        kernel.put(self.context.space, self.nodes(), node, cell, state)
+        self.change(node, {cell: state})
         self.set_basis(node, cell, basis if state >= 0 else None)
 
     def tell(
@@ -329,7 +410,12 @@ class NodeTable:
         from beliefnest.belief import kernel
 
         wanted = np.array(states, dtype=np.int64)
-        kernel.put_all(self.context.space, self.nodes(), which, cell, wanted)
+        if self.pool is None:
+            kernel.put_all(self.context.space, self.nodes(), which, cell, wanted)
+        for number in range(len(which)) if self.pool is not None else ():
+            self.reserve()
+            one = slice(number, number + 1)
+            kernel.put_all(self.context.space, self.nodes(), which[one], cell, wanted[one])
         for node in which.tolist():
             self.set_basis(node, cell, basis)
 
@@ -363,7 +449,33 @@ class NodeTable:
         edited = sorted(cell for other, cell in self.edited_cells if other == node)
         names = (*Weighing._fields, "watched") if self.context.weighs else ()
         weighing = {name: self._rows[name][node].tobytes() for name in names}
-        return SavedNode(self.path(node), **row, edited_cells=edited, weighing=weighing)
+        cells = self._saved_cells(node)
+        return SavedNode(self.path(node), **cells, **row, edited_cells=edited, weighing=weighing)
+
+    def _saved_cells(self, node: int) -> dict[str, bytes]:
+        """Return `blocks`, `codes` and `rows` of `SavedNode`."""
+        if self.pool is None:
+            return {"blocks": self._rows["blocks"][node].tobytes(), "codes": b"", "rows": b""}
+        rows, parent = self._rows["rows"][node], self.parent(node)
+        numbers = np.full(len(rows), UNKNOWN, dtype=np.int32)
+        own = rows >= 0 if parent < 0 else rows != self._rows["rows"][parent]
+        saved, numbers[own] = np.unique(rows[own], return_inverse=True)
+        blocks, codes = self.pool.blocks[saved], self.pool.codes[saved]
+        return {"blocks": blocks.tobytes(), "codes": codes.tobytes(), "rows": numbers.tobytes()}
+
+    def _restore_cells(self, node: int, saved: SavedNode, signs: Sequence[SavedWriting]) -> None:
+        """Set the cells of a node to those of `_saved_cells`; its parent is restored already."""
+        numbers = self.context.renumbered(np.frombuffer(saved.blocks, dtype=np.int16), signs)
+        if self.pool is None:
+            self.set_blocks(node, numbers.reshape(self.context.box.shape))
+            return
+        codes = np.frombuffer(saved.codes, dtype=np.uint16).reshape(-1, VOLUME)
+        added = self.pool.add(numbers.reshape(-1, VOLUME), codes)
+        rows = np.frombuffer(saved.rows, dtype=np.int32)
+        # Number -1 indexes the last place, which is not used.
+        found = np.append(added, UNKNOWN)[rows]
+        parents = self._rows["rows"][max(self.parent(node), 0)]
+        self.set_rows(node, np.where(rows < 0, parents, found).astype(np.int32))
 
     def restore(
         self, saved: SavedNode, tracked: npt.NDArray[np.int32], signs: Sequence[SavedWriting]
@@ -379,14 +491,12 @@ class NodeTable:
         self.edited_cells |= {(node, cell) for cell in saved.edited_cells}
         spots = {cell: spot for spot, cell in enumerate(self._tracked.tolist())}
         places = [spots[cell] for cell in tracked.tolist()]
+        self._restore_cells(node, saved, signs)
         bodies = {name: getattr(saved, name) for name in _SAVED} | saved.weighing
         for name, body in bodies.items():
             row = self._rows[name]
             values = np.frombuffer(body, dtype=row.dtype)
-            if name == "blocks":
-                values = self.context.renumbered(values, signs)
-                self.set_blocks(node, values.reshape(self.context.box.shape))
-            elif name in _BY_SPOT:
+            if name in _BY_SPOT:
                 row[node] = _filler(row)
                 row[node, places] = values.reshape(len(places), *row.shape[2:])
             else:
@@ -412,12 +522,52 @@ class NodeTable:
 
     def block(self, node: int, cell: int) -> int:
         """Return the number of a node's block; -1: unknown."""
-        return int(self._rows["blocks"][node, cell])
+        if self.pool is None:
+            return int(self._rows["blocks"][node, cell])
+        return int(self.blocks_at(node, np.array([cell]))[0])
+
+    def blocks_at(
+        self, nodes: int | npt.NDArray[np.int64], cells: int | npt.NDArray[np.integer[Any]]
+    ) -> npt.NDArray[np.int16]:
+        """Return the numbers of blocks of one or several nodes at one or several cells."""
+        places = self._places(np.asarray(cells))
+        found: npt.NDArray[np.int16]
+        if self.pool is None:
+            found = self._rows["blocks"][nodes, places]
+            return found
+        found = self.pool.blocks[self._rows["rows"][nodes, places // VOLUME], places % VOLUME]
+        return found
+
+    def _places(self, cells: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.integer[Any]]:
+        """Return the places of cells in `blocks`; see `perception.chunks`."""
+        if self.pool is None:
+            return cells
+        (_, ny, nz), (_, high, deep) = self.context.box.shape, self.pool.chunks
+        cells = cells.astype(np.int64)
+        x, y, z = cells // (ny * nz) + 1, cells // nz % ny + 1, cells % nz + 1
+        chunk = (x // SIDE * high + y // SIDE) * deep + z // SIDE
+        within = (x % SIDE * SIDE + y % SIDE) * SIDE + z % SIDE
+        places: npt.NDArray[np.integer[Any]] = chunk * VOLUME + within
+        return places
 
     def blocks(self, node: int) -> BlockGrid:
         """Return a copy of the numbers of a node's blocks, of the box's shape."""
+        if self.pool is not None:
+            return self.pool.grid(self._rows["rows"][node]).astype(np.int32)
         blocks: BlockGrid = self._rows["blocks"][node].astype(np.int32)
         return blocks.reshape(self.context.box.shape)
+
+    def flat_blocks(self, node: int) -> npt.NDArray[np.int16]:
+        """Return the numbers of a node's blocks by cell; do not change the array."""
+        if self.pool is None:
+            flat: npt.NDArray[np.int16] = self._rows["blocks"][node]
+            return flat
+        return self.pool.grid(self._rows["rows"][node]).ravel()
+
+    def versions(self) -> npt.NDArray[np.int32]:
+        """Return a number by node that grows with every change of its blocks."""
+        versions: npt.NDArray[np.int32] = self._rows["versions"][: self.count]
+        return versions
 
     def pose(self, node: int, agent: int) -> int:
         """Return the id of an agent's believed pose; -1: unknown."""
@@ -461,9 +611,14 @@ class NodeTable:
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
         wanted = np.array([*cells], dtype=np.int64)
-        codes = self._rows["codes"][parent]
-        seen = seeing.sees_cells(self.context.space, self.poses.arrays(), codes, eye, wanted)
+        space, poses, shapes = self.context.space, self.poses.arrays(), self._shapes(parent)
+        seen = seeing.sees_cells(space, poses, *shapes, eye, wanted)
         return set(wanted[seen].tolist())
+
+    def _shapes(self, node: int) -> tuple[Row, Row]:
+        """Return the codes and the rows through which the children of a node look."""
+        rows = self._rows["rows"][node]
+        return (self._rows["codes"][node] if self.pool is None else self.pool.codes.ravel()), rows
 
     def sees_point(self, node: int, point: Point) -> bool:
         """Return True if the present owner of a node sees a point (scenario coordinates)."""
@@ -471,8 +626,8 @@ class NodeTable:
 
         parent = self.parent(node)
         eye = self.pose(parent, self.owner(node))
-        codes = self._rows["codes"][parent]
-        return seeing.sees_point(self.context.space, self.poses.arrays(), codes, eye, point)
+        space, poses, shapes = self.context.space, self.poses.arrays(), self._shapes(parent)
+        return seeing.sees_point(space, poses, *shapes, eye, point)
 
     def block_is_current(self, node: int, cell: int) -> bool:
         """Return True if a node's block is current (semantics, section 5.4)."""
@@ -514,7 +669,11 @@ class NodeTable:
                 self._rows[name][:size] = row
         for row in self._rows.values():
             row[node] = _filler(row)
+        self._rows["versions"][node] = 0
         self._rows["geometry"][node] = 0
+        self._rows["rows"][node] = NOTHING
+        if self.pool is not None:
+            self.pool.shares[NOTHING] += self.pool.count
         if self.context.weighs:
             self._rows["missed"][node] = 0
         self.count += 1

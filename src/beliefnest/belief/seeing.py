@@ -1,11 +1,11 @@
 """Lines of sight inside the state of a node, compiled."""
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import UNKNOWN, Nodes, Poses, Space
+from beliefnest.belief.cells import grid_cell, line_of, scene_of, whole
+from beliefnest.perception.chunks import Rows
 from beliefnest.perception.compiling import allocating, compiled, inlined, inner
 from beliefnest.perception.eyes import Eye, eye_at, eye_sees_agent, eye_sees_block, eye_sees_point
 from beliefnest.perception.rays import Cell, Codes, Scene
@@ -13,29 +13,12 @@ from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = [
     "eye_of",
-    "grid_cell",
     "sees_agent",
     "sees_cell",
     "sees_cells",
     "sees_place",
     "sees_point",
-    "whole",
 ]
-
-_Number = int | np.signedinteger[Any]
-
-
-@inlined
-def whole(number: _Number) -> int:
-    """Return the number as int64, so that kernels are compiled for one kind of integer only."""
-    return np.int64(number)  # type: ignore[return-value]  # Python's int, once compiled
-
-
-@inlined
-def grid_cell(space: Space, cell: int) -> Cell:
-    """Return the grid coordinates (with margin) of a flat cell."""
-    ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
-    return cell // (ny * nz) + 1, cell // nz % ny + 1, cell % nz + 1
 
 
 @inlined
@@ -51,23 +34,33 @@ def eye_of(space: Space, poses: Poses, pose: int) -> Eye:
     return eye_at(place, yaw, pitch, space.senses.cos_half, space.senses.far)
 
 
-@inlined
-def _scene(space: Space, codes: Codes) -> Scene:
-    return Scene(codes, space.sizes, space.starts, space.boxes)
-
-
 @inner
-def sees_agent(space: Space, poses: Poses, codes: Codes, eye: Eye, pose: int) -> bool:
-    """Return True if an eye sees an agent at a pose, through the blocks of a row of codes."""
+def sees_agent(space: Space, poses: Poses, scene: Scene, eye: Eye, pose: int) -> bool:
+    """Return True if an eye sees an agent at a pose, through the shapes of a node."""
     x, y, z = poses.feet[pose]
     feet = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    return eye_sees_agent(_scene(space, codes), eye, feet)
+    return eye_sees_agent(scene, eye, feet)
 
 
 @inner
-def sees_cell(space: Space, codes: Codes, eye: Eye, cell: int) -> bool:
-    """Return True if an eye sees a cell, through the blocks of a row of codes."""
-    return eye_sees_block(_scene(space, codes), eye, grid_cell(space, cell), space.beam)
+def sees_cell(space: Space, scene: Scene, eye: Eye, cell: Cell) -> bool:
+    """Return True if an eye sees a cell of the grid, through the shapes of a node."""
+    return eye_sees_block(scene, eye, cell, space.beam)
+
+
+# Kernels that allocate count references to arrays. No other kernel may return an array to them.
+@inner
+def _sees_agent_past(
+    space: Space, poses: Poses, codes: Codes, rows: Rows, eye: Eye, pose: int
+) -> bool:
+    """Return `sees_agent` through the shapes with these codes and rows (`cells.scene_of`)."""
+    return sees_agent(space, poses, scene_of(space, codes, rows), eye, pose)
+
+
+@inner
+def _sees_cell_past(space: Space, codes: Codes, rows: Rows, eye: Eye, cell: int) -> bool:
+    """Return `sees_cell` for a flat cell, through the shapes with these codes and rows."""
+    return sees_cell(space, scene_of(space, codes, rows), eye, grid_cell(space, cell))
 
 
 @allocating
@@ -88,7 +81,8 @@ def sees_place(
         parent, eye = whole(nodes.parent[node]), whole(nodes.eye[node])
         if eye != UNKNOWN:
             look = eye_of(space, poses, eye)
-            seen[number] = sees_agent(space, poses, nodes.codes[parent], look, whole(pose))
+            codes, rows = nodes.codes[line_of(space.chunks, parent)], nodes.rows[parent]
+            seen[number] = _sees_agent_past(space, poses, codes, rows, look, whole(pose))
     return seen
 
 
@@ -97,14 +91,18 @@ def sees_cells(
     space: Space,
     poses: Poses,
     codes: Codes,
+    rows: Rows,
     pose: int,
     cells: npt.NDArray[np.int64],
 ) -> npt.NDArray[np.bool_]:
-    """Return, by cell of `cells`, if an eye at a pose sees it, through a row of codes."""
+    """Return, by cell of `cells`, if an eye at a pose sees it.
+
+    `codes` and `rows` are those of the node that it looks through (`cells.scene_of`).
+    """
     eye = eye_of(space, poses, pose)
     seen = np.zeros(len(cells), dtype=np.bool_)
     for number in range(len(cells)):
-        seen[number] = sees_cell(space, codes, eye, cells[number])
+        seen[number] = _sees_cell_past(space, codes, rows, eye, cells[number])
     return seen
 
 
@@ -113,6 +111,7 @@ def sees_point(
     space: Space,
     poses: Poses,
     codes: Codes,
+    rows: Rows,
     pose: int,
     point: tuple[float, float, float],
 ) -> bool:
@@ -120,4 +119,4 @@ def sees_point(
     eye = eye_of(space, poses, pose)
     x, y, z = point
     place = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    return eye_sees_point(_scene(space, codes), eye, place)
+    return eye_sees_point(scene_of(space, codes, rows), eye, place)

@@ -174,7 +174,7 @@ class Testimony:
         nodes = self._table.nodes()
         for cell in self._context.sign_cells:
             spot = self._table.spot(cell)
-            shown = nodes.blocks[np.maximum(nodes.parent[which], 0), cell]
+            shown = self._table.blocks_at(np.maximum(nodes.parent[which], 0), cell)
             sees = (shown >= self._context.registry.states) & (
                 (which == 0) | nodes.watched[which, spot]
             )

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.perception.chunks import index_at, part, stride
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, LIMIT_SLACK, OWN
 from beliefnest.perception.compiling import inlined, inlined_allocating, inner, merged
 from beliefnest.perception.rays import (
@@ -17,8 +18,8 @@ from beliefnest.perception.rays import (
     Cell,
     Scene,
     Vector,
-    at,
     cell_at,
+    code_at,
     hidden_by,
     is_inside,
     main_axis,
@@ -148,7 +149,7 @@ def _block_cell(scene: Scene, eye: Vector, cell: Cell, beam: Beam) -> bool:
     """Close the rays that enter the block of a cell; return True if any ray is still open."""
     i, j, k = cell
     starts, boxes = scene.starts, scene.boxes
-    code = scene.codes[at(scene.sizes, cell)] & OWN
+    code = code_at(scene, cell) & OWN
     low, high = (float(i), float(j), float(k)), (i + 1.0, j + 1.0, k + 1.0)
     first, last = 0, 1
     if code != FULL:
@@ -180,12 +181,14 @@ def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
     The loop goes layer by layer along the longest axis of the beam. In each layer it visits the
     rectangle of cells between the beam's outermost slopes.
     """
-    codes, sizes = scene.codes, scene.sizes
+    codes, rows, sizes, chunks = scene.codes, scene.rows, scene.sizes, scene.chunks
     axis = main_axis((target[0] + 0.5 - eye[0], target[1] + 0.5 - eye[1], target[2] + 0.5 - eye[2]))
     ea, eb, ec = turned(eye, axis)
     ta, tb, tc = turned(target, axis)
     size_a, size_b, size_c = turned(sizes, axis)
-    stride_a, stride_b, stride_c = turned((sizes[1] * sizes[2], sizes[2], 1), axis)
+    axis_b, axis_c = (axis + 1) % 3, (axis + 2) % 3
+    stride_a = stride(chunks, sizes, axis)
+    stride_b, stride_c = stride(chunks, sizes, axis_b), stride(chunks, sizes, axis_c)
     step = 1 if ta + 0.5 > ea else -1
     far = abs(ta + 0.5 - ea) + 0.5
     near = max(far - 1.0, 1e-6)
@@ -199,9 +202,12 @@ def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
         d = (layer + 0.5 - ea) * step
         b0, b1 = _bounds(eb, tb, b_slope0, b_slope1, max(d - 0.5, 0.0), d + 0.5)
         c0, c1 = _bounds(ec, tc, c_slope0, c_slope1, max(d - 0.5, 0.0), d + 0.5)
+        part_a = part(chunks, layer, stride_a, axis)
         for b in range(max(b0, 0), min(b1, size_b - 1) + 1):
+            part_ab = part_a + part(chunks, b, stride_b, axis_b)
             for c in range(max(c0, 0), min(c1, size_c - 1) + 1):
-                code = codes[layer * stride_a + b * stride_b + c * stride_c]
+                place = part_ab + part(chunks, c, stride_c, axis_c)
+                code = codes[index_at(chunks, rows, place)]
                 if code == EMPTY:
                     continue
                 cell = turned_back(layer, b, c, axis)
@@ -210,7 +216,7 @@ def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
                     if (
                         block != target
                         and is_inside(sizes, block)
-                        and codes[at(sizes, block)] & OWN > (EMPTY if side < 0 else FULL)
+                        and code_at(scene, block) & OWN > (EMPTY if side < 0 else FULL)
                         and not _block_cell(scene, eye, block, beam)
                     ):
                         return False

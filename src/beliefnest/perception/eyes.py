@@ -14,6 +14,7 @@ from beliefnest.perception.rays import (
     Scene,
     Vector,
     at,
+    code_at,
     hidden_by,
     is_inside,
     neighbour,
@@ -55,7 +56,7 @@ def _is_enclosed(scene: Scene, eye: Vector, cell: Cell) -> bool:
             continue
         by = (i if n & 1 else 0, j if n & 2 else 0, k if n & 4 else 0)
         other = (cell[0] + by[0], cell[1] + by[1], cell[2] + by[2])
-        if not is_inside(scene.sizes, other) or scene.codes[at(scene.sizes, other)] & OWN != FULL:
+        if not is_inside(scene.sizes, other) or code_at(scene, other) & OWN != FULL:
             return False
     return True
 

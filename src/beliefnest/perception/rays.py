@@ -15,7 +15,8 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
+from beliefnest.perception.chunks import Rows, index_at, part, place_at, stride
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN, Chunks
 from beliefnest.perception.compiling import compiled, inlined, inner
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "Vector",
     "at",
     "cell_at",
+    "code_at",
     "hidden_by",
     "is_inside",
     "main_axis",
@@ -53,16 +55,20 @@ class Scene(NamedTuple):
     """Code grid and the shapes of its codes, as kernels take them.
 
     Attributes:
-        codes: uint16, the flattened code grid.
+        codes: uint16, the flattened code grid, or the pool that holds its chunks.
         sizes: Number of cells along x, y, z.
         starts: int32 (shapes + 1,), first row of each shape in `boxes`.
         boxes: float64 (n, 6), low and high corners of the boxes of shapes, relative to the cell.
+        rows: Rows of the grid's chunks in the pool.
+        chunks: Numbers of chunks along x, y, z; None: the grid is dense.
     """
 
     codes: Codes
     sizes: Cell
     starts: Starts
     boxes: Boxes
+    rows: Rows
+    chunks: Chunks | None = None
 
 
 NOWHERE = (-1, -1, -1)
@@ -95,6 +101,14 @@ def cell_at(sizes: Cell, index: int) -> Cell:
     row = index // sizes[2]
     i = row // sizes[1]
     return i, row - i * sizes[1], index - row * sizes[2]
+
+
+@inlined
+def code_at(scene: Scene, cell: Cell) -> int:
+    """Return the code of a cell of the grid."""
+    place = place_at(scene.chunks, scene.sizes, cell)
+    code: int = scene.codes[index_at(scene.chunks, scene.rows, place)]
+    return code
 
 
 @inlined
@@ -166,10 +180,10 @@ def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float
 
     Candidates are the block of the cell itself and blocks of neighbours that reach into it.
     """
-    codes, sizes = scene.codes, scene.sizes
+    sizes = scene.sizes
     entry = MISSED
     hit = NOWHERE
-    code = codes[at(sizes, cell)]
+    code = code_at(scene, cell)
     if code & OWN != EMPTY and cell != target:
         entry = _block_entry(scene, code & OWN, cell, ray)
         if entry != MISSED:
@@ -180,9 +194,9 @@ def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float
             if (
                 other != target
                 and is_inside(sizes, other)
-                and codes[at(sizes, other)] & OWN >= FIRST_SHAPE
+                and code_at(scene, other) & OWN >= FIRST_SHAPE
             ):
-                t = _block_entry(scene, codes[at(sizes, other)] & OWN, other, ray)
+                t = _block_entry(scene, code_at(scene, other) & OWN, other, ray)
                 if t < entry:
                     entry = t
                     hit = other
@@ -245,7 +259,7 @@ def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
     at most two cells along each other axis. All shapes in these cells are clipped against the
     ray and the least t wins, so rounding at edges and corners cannot change the result.
     """
-    codes, sizes = scene.codes, scene.sizes
+    codes, rows, sizes, chunks = scene.codes, scene.rows, scene.sizes, scene.chunks
     t0, t1 = _part_inside(sizes, ray)
     if not t0 < t1:
         return NOWHERE
@@ -253,7 +267,9 @@ def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
     axis = main_axis(d)
     ea, eb, ec = turned(eye, axis)
     da, db, dc = turned(d, axis)
-    stride_a, stride_b, stride_c = turned((sizes[1] * sizes[2], sizes[2], 1), axis)
+    axis_b, axis_c = (axis + 1) % 3, (axis + 2) % 3
+    stride_a = stride(chunks, sizes, axis)
+    stride_b, stride_c = stride(chunks, sizes, axis_b), stride(chunks, sizes, axis_c)
     slope_b, slope_c = db / da, dc / da
     spare_b, spare_c = math.copysign(_SPARE, db), math.copysign(_SPARE, dc)
     start, end = ea + t0 * da, ea + t1 * da
@@ -266,13 +282,15 @@ def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
         b_far, c_far = eb + (x - ea) * slope_b, ec + (x - ea) * slope_c
         b0, b1 = int(b - spare_b), int(b_far + spare_b)
         c0, c1 = int(c - spare_c), int(c_far + spare_c)
-        row0 = layer * stride_a + b0 * stride_b
-        row1 = layer * stride_a + b1 * stride_b
+        part_a = part(chunks, layer, stride_a, axis)
+        row0 = part_a + part(chunks, b0, stride_b, axis_b)
+        row1 = part_a + part(chunks, b1, stride_b, axis_b)
+        part0, part1 = part(chunks, c0, stride_c, axis_c), part(chunks, c1, stride_c, axis_c)
         if (
-            codes[row0 + c0 * stride_c]
-            | codes[row0 + c1 * stride_c]
-            | codes[row1 + c0 * stride_c]
-            | codes[row1 + c1 * stride_c]
+            codes[index_at(chunks, rows, row0 + part0)]
+            | codes[index_at(chunks, rows, row0 + part1)]
+            | codes[index_at(chunks, rows, row1 + part0)]
+            | codes[index_at(chunks, rows, row1 + part1)]
             or abs(b1 - b0) > 1
             or abs(c1 - c0) > 1
         ):
@@ -280,7 +298,7 @@ def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
             for nb in range(min(b0, b1), max(b0, b1) + 1):
                 for nc in range(min(c0, c1), max(c0, c1) + 1):
                     cell = turned_back(layer, nb, nc, axis)
-                    if codes[at(sizes, cell)] != EMPTY:
+                    if code_at(scene, cell) != EMPTY:
                         t, block = _cell_entry(scene, cell, target, ray)
                         if t < entry:
                             entry, hit = t, block

@@ -263,7 +263,7 @@ def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
     Blocks cast their shadows in order of distance, near ones first, so that hidden blocks need
     not cast any.
     """
-    codes, sizes, starts, boxes = scene
+    codes, sizes, starts, boxes = scene.codes, scene.sizes, scene.starts, scene.boxes
     size = sizes[0] * sizes[1] * sizes[2]
     marks = np.zeros(size, dtype=np.int8)
     shadows = Shadows(

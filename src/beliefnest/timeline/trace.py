@@ -26,6 +26,7 @@ from beliefnest.world.limits import (
     AGENT_SLOTS,
     LATEST_TICK,
     MOST_AGENTS,
+    MOST_HELD,
     WORN_SLOTS,
     agent_name_fault,
     box_fault,
@@ -214,7 +215,11 @@ class _Reader:
         self._registry = registry
         self._box = Box(*line.box)
         self.names = tuple(line.agents)
-        _check(box_fault(self._box), _tick_fault(line.tick), *map(agent_name_fault, self.names))
+        _check(
+            box_fault(self._box, MOST_HELD),
+            _tick_fault(line.tick),
+            *map(agent_name_fault, self.names),
+        )
         if len(self.names) > MOST_AGENTS:
             raise InputError(
                 f"there are {len(self.names)} agents; at most {MOST_AGENTS} are allowed"

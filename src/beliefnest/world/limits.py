@@ -19,6 +19,7 @@ __all__ = [
     "FARTHEST",
     "LATEST_TICK",
     "MOST_AGENTS",
+    "MOST_HELD",
     "WORN_SLOTS",
     "agent_name_fault",
     "box_fault",
@@ -43,6 +44,11 @@ WORN_SLOTS = 5
 """Slots of worn items and the off hand."""
 
 _MOST_BLOCKS = 8_000_000
+"""Most blocks of a box of a scenario file or of Minecraft."""
+
+MOST_HELD = 2**25
+"""Most blocks of a box of a scripted world, and of traces and snapshots."""
+
 _LONGEST_SIDE = 4096
 _AGENT_NAME = re.compile(r"[A-Za-z0-9_]{1,16}", re.ASCII)
 _FURNACES = frozenset({"furnace", "blast_furnace", "smoker"})
@@ -59,8 +65,8 @@ def agent_name_fault(name: object) -> str | None:
     return None
 
 
-def box_fault(box: Box) -> str | None:
-    """Return the fault of a box, or None."""
+def box_fault(box: Box, most: int = _MOST_BLOCKS) -> str | None:
+    """Return the fault of a box, or None. It may hold `most` blocks."""
     for corner in (box.low, box.high):
         if fault := point_fault(corner):
             return fault
@@ -68,9 +74,10 @@ def box_fault(box: Box) -> str | None:
     if min(sides) < 1:
         return f"the box {box.low} to {box.high} is empty; give its lower corner first"
     volume = math.prod(sides)
-    if volume > _MOST_BLOCKS:
+    if volume > most:
         return (
-            f"the box holds {volume} blocks; at most {_MOST_BLOCKS} are possible: make it smaller"
+            f"the box holds {volume} blocks, {_megabytes(volume)} MB for each copy of it; at most "
+            f"{most} are possible, {_megabytes(most)} MB: make it smaller"
         )
     if max(sides) > _LONGEST_SIDE:
         return (
@@ -78,6 +85,10 @@ def box_fault(box: Box) -> str | None:
             "make it smaller"
         )
     return None
+
+
+def _megabytes(blocks: int) -> int:
+    return -(-4 * blocks // 10**6)
 
 
 def point_fault(point: Sequence[float]) -> str | None:
@@ -115,7 +126,7 @@ def items_fault(
 
 def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
     """Return the first fault of a snapshot, or None."""
-    faults = [box_fault(snapshot.box)]
+    faults = [box_fault(snapshot.box, MOST_HELD)]
     if not 0 <= snapshot.tick <= LATEST_TICK:
         faults.append(
             f"tick {_short(snapshot.tick)} is out of range; ticks go from 0 to {LATEST_TICK}"

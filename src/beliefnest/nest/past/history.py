@@ -17,7 +17,7 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis, PerceivedEvent
-from beliefnest.belief.initial import forked_forest, initial_forest
+from beliefnest.belief.initial import Beginning, forked_forest, initial_forest
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.claimed_blocks import ClaimedBlocks
 from beliefnest.nest.past.event_log import EventLog
@@ -422,16 +422,13 @@ class History:
         self, key: TimelineKey, paths: Sequence[BeliefPath], extra: Sequence[int] = ()
     ) -> Forest:
         """Return a forest of some nodes and their ancestors, where the real world begins."""
+        beginning, initial = self._beginning, self._setting.initial_beliefs
+        return initial_forest(self.context, self._log(key), beginning, initial, paths, extra)
+
+    @functools.cached_property
+    def _beginning(self) -> Beginning:
         setting = self._setting
-        return initial_forest(
-            self.context,
-            self._log(key),
-            setting.snapshot,
-            setting.static_blocks,
-            setting.initial_beliefs,
-            paths,
-            extra,
-        )
+        return Beginning(self.context, setting.snapshot, setting.static_blocks)
 
     def _log(self, key: TimelineKey) -> EventLog:
         if key not in self._logs:

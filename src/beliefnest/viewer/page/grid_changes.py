@@ -27,7 +27,8 @@ class GridChanges:
     def __init__(self, table: NodeTable, numbers: Iterable[int]) -> None:
         self._table = table
         self._at = {number: at for at, number in enumerate(dict.fromkeys(numbers))}
-        self._held: States = table.nodes().blocks[[*self._at]]
+        self._held: States = np.stack([table.flat_blocks(number) for number in self._at])
+        self._versions = table.versions().copy()
 
     def grid(self, number: int) -> States:
         """Return all blocks of a node at the last call, flat. Do not change them."""
@@ -41,10 +42,14 @@ class GridChanges:
 
     def found(self) -> Mapping[int, Cells]:
         """Return the cells that changed since the last call, by number of the node."""
-        blocks, found = self._table.nodes().blocks, {}
+        versions, found = self._table.versions(), {}
         for number, at in self._at.items():
-            cells = np.flatnonzero(blocks[number] != self._held[at])
+            if versions[number] == self._versions[number]:
+                continue
+            blocks = self._table.flat_blocks(number)
+            cells = np.flatnonzero(blocks != self._held[at])
             if len(cells):
-                self._held[at, cells] = blocks[number, cells]
+                self._held[at, cells] = blocks[cells]
                 found[number] = cells
+        self._versions = versions.copy()
         return found

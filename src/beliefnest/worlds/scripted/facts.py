@@ -8,7 +8,7 @@ import msgspec
 
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import BlockGrid, PlainClaims
-from beliefnest.world.limits import agent_name_fault, box_fault
+from beliefnest.world.limits import MOST_HELD, agent_name_fault, box_fault
 from beliefnest.world.texts import fault_of
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
@@ -51,7 +51,7 @@ class WorldFacts:
     """Pressure plates."""
 
     def copied(self) -> "WorldFacts":
-        """Return a copy; the grid of blocks is shared, because ticks replace it before a change."""
+        """Return a copy; it shares the grid of blocks (see `ScriptedState`)."""
         return WorldFacts(
             self.blocks,
             dict(self.containers),
@@ -85,13 +85,13 @@ class Pending:
 
     Attributes:
         saved: Facts before the tick.
-        changed: True if the grid of blocks was copied in this tick.
+        replaced: Blocks that this tick has replaced, in order: index and state before.
         is_late: True at the end of the tick, when all agents have acted.
     """
 
     def __init__(self, facts: WorldFacts) -> None:
         self.saved = facts.copied()
-        self.changed = False
+        self.replaced: list[tuple[tuple[int, int, int], int]] = []
         self.is_late = False
         self.blocks: dict[Position, Block] = {}
         self.containers: set[Position] = set()
@@ -107,7 +107,7 @@ def checked_box(box: tuple[Position, Position]) -> Box:
             f"{box} is no box; give its lower and its upper corner, three numbers each"
         )
     made = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
-    if fault := box_fault(made):
+    if fault := box_fault(made, MOST_HELD):
         raise WorldError(fault)
     return made
 

@@ -104,9 +104,10 @@ class ScriptedState(Barred):
 
     def _change(self, pending: Pending, place: Position, state: int, actor: str | None) -> None:
         """Replace a block in the current tick."""
-        if self._handed_out or not pending.changed:
+        if self._handed_out:
             self._facts.blocks = self._facts.blocks.copy()
-            pending.changed, self._handed_out = True, False
+            self._handed_out = False
+        pending.replaced.append((self._box.index(place), self._state_at(place)))
         held = self._facts.containers.get(place)
         self._put(place, self._registry.text(state))
         if self._facts.containers.get(place) is not held:
@@ -117,6 +118,17 @@ class ScriptedState(Barred):
             # A sign that was turned keeps its claims.
             detail["claims"] = self._facts.sign_claims[place]
         pending.events.append(Event(EventKind.BLOCK_UPDATE, actor, detail))
+
+    def _undo(self, pending: Pending) -> None:
+        """Restore the facts before the current tick."""
+        blocks = self._facts.blocks
+        if pending.replaced:
+            # Somebody may have been given the grid during the tick.
+            blocks, self._handed_out = blocks.copy(), False
+        for index, state in reversed(pending.replaced):
+            blocks[index] = state
+        self._facts = pending.saved
+        self._facts.blocks = blocks
 
     def _state_at(self, place: Position) -> int:
         """Return the block state at a position; air outside the box."""

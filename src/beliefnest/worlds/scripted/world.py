@@ -125,6 +125,7 @@ class ScriptedWorld(PoweredState):
         other = copy(self)
         other._listeners, other._pending = [], None
         other._facts = self._facts.copied()
+        self._handed_out = other._handed_out = True
         return other
 
     @property
@@ -151,7 +152,7 @@ class ScriptedWorld(PoweredState):
         return Snapshot(
             self._tick,
             self._box,
-            facts.blocks.copy(),
+            self.blocks,
             {place: dict(items) for place, items in facts.containers.items()},
             dict(facts.agents),
             dict(facts.items),
@@ -441,7 +442,8 @@ class ScriptedWorld(PoweredState):
             self._finish(pending)
         except BaseException:
             # A listener's error undoes the tick as well.
-            self._facts, self._tick = pending.saved, before
+            self._undo(pending)
+            self._tick = before
             raise
         finally:
             self._pending = None
