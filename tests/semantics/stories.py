@@ -19,6 +19,12 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
 LOW, HIGH = (0, 0, 0), (7, 3, 7)
+BOXES = {
+    "small": (LOW, HIGH),
+    # With borders of chunks between the cells 3 and 4 along x and z, and 0 and 1 along y.
+    "straddling": ((-4, -6, -4), (8, 3, 8)),
+    "large": ((-12, -6, -12), (19, 9, 19)),
+}
 NAMES = ("ann", "bob", "cat")
 REGISTRY = Registry.load()
 CONTAINERS = ((2, 0, 3), (5, 0, 4))
@@ -46,7 +52,8 @@ class Story:
     sign_claims: Mapping[Position, list[bn.Claim]] = field(default_factory=dict)
     unique: Mapping[str, str] = field(default_factory=dict)
     """Unique item to who has it at first; `hand NAME`: in the hand."""
-    box: tuple[Position, Position] = (LOW, HIGH)
+    box: str = "small"
+    """Key of `BOXES`."""
 
     def world(self) -> bn.ScriptedWorld:
         """Return the world at the start; every agent owns an apple and two diamonds."""
@@ -57,7 +64,7 @@ class Story:
             if " " in holder:
                 hands[holder.split()[-1]] = {"main_hand": item}
         world = bn.ScriptedWorld(
-            self.box,
+            BOXES[self.box],
             self.blocks | dict.fromkeys(self.signs, "oak_sign"),
             self.agents,
             inventories=own,

@@ -12,10 +12,6 @@ from beliefnest.belief import context
 from beliefnest.belief.view import State
 
 PATHS = ["/", *(f"/{a}" for a in NAMES), *(f"/{a}/{b}" for a in NAMES for b in NAMES if a != b)]
-STRADDLING = ((-4, -6, -4), (8, 3, 8))
-"""Box with borders of chunks between the cells 3 and 4 along x and z, and 0 and 1 along y."""
-MANY = ((-12, -6, -12), (19, 9, 19))
-
 few = settings(
     max_examples=at_night(200, 3), suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
@@ -32,7 +28,7 @@ def chunks(monkeypatch: pytest.MonkeyPatch) -> None:
 @few
 @given(story=Stories(forks=True, max_acts=10).story)
 def test_every_node_across_borders_of_chunks(story: Story, each_tick: bool):
-    compare(replace(story, box=STRADDLING), each_tick=each_tick, depth=2)
+    compare(replace(story, box="straddling"), each_tick=each_tick, depth=2)
 
 
 @pytest.mark.usefixtures("chunks")
@@ -67,5 +63,5 @@ def held(state: State) -> object:
 @few
 @given(story=Stories(("stone", "oak_slab", "oak_fence"), forks=True, claims=True, max_acts=6).story)
 def test_many_chunks_and_none_give_the_same_beliefs(monkeypatch: pytest.MonkeyPatch, story: Story):
-    big = replace(story, box=MANY)
+    big = replace(story, box="large")
     assert beliefs(big, monkeypatch, 0) == beliefs(big, monkeypatch, 10**9)
