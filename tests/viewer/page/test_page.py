@@ -110,7 +110,8 @@ def test_sally_is_believed_to_be_wrong_about_the_left_chest(browser, pages):
             "return told.includes('sally') ? told : null"
         )
     )
-    assert "observer believes that sally believes that the chest at (-2, -51, -4) holds" in why
+    said = "observer believes that sally believes that the left chest at (-2, -51, -4) holds"
+    assert said in why
     assert "So sally missed this: anne looked in, then anne took 1 diamond out." in why
     browser.until(lambda: f"thing={left}" in browser.driver.current_url)
     link = browser.driver.current_url
