@@ -3,7 +3,6 @@
 import json
 import math
 import random
-import resource
 import statistics
 import subprocess
 import sys
@@ -21,6 +20,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Box, Point
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest_benchmarks.figures import Metric
+from beliefnest_benchmarks.memory import peak_megabytes
 
 __all__ = ["measure", "walked"]
 
@@ -101,8 +101,7 @@ def walked(text: str) -> str:
         for path in paths:
             walkers.nest[path].state  # noqa: B018 - what is measured
         spent.append((time.process_time() - started) * 1e3)
-    unit = 1e6 if sys.platform == "darwin" else 1e3
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+    memory = peak_megabytes()
     tick = statistics.median(spent[_WARM:])
     return json.dumps({"tick": tick, "first": first, "memory": memory})
 
