@@ -74,7 +74,7 @@ class FirstPerceptions:
         key = _digest(space, (*poses, facts.tick, *arrays, below))
         seen = self._seen.get(key)
         if seen is None:
-            kernel.fold(space, poses, facts, nodes, weighing, changes, span, below)
+            kernel.fold(space, poses, facts, nodes, weighing, changes, span, below, None)
             rows = changes.rows[: changes.used[0]].copy()
             self._keep(key, _Seen([each.copy() for each in arrays], rows))
             return

@@ -400,7 +400,9 @@ class Forest:
         while True:
             self.table.reserve()
             nodes, weighing = self.table.nodes(), self.table.weighing()
-            reached = kernel.fold(space, poses, facts, nodes, weighing, changes, span, which)
+            reached = kernel.fold(
+                space, poses, facts, nodes, weighing, changes, span, which, space.chunks
+            )
             lacking = int(changes.used[1])
             if lacking == 0:
                 return reached

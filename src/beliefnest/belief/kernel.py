@@ -265,7 +265,7 @@ def _in_range(place: float, far: float, size: int) -> tuple[int, int]:
     return int(min(max(low, 0.0), float(size))), int(min(max(high, 0.0), float(size)))
 
 
-@inner
+@merged
 def _observe_cells(
     space: Space,
     nodes: Nodes,
@@ -374,25 +374,6 @@ def _observe_chunks(
                     space, nodes, changes, entry, tick, node, eye, (i, j, k)
                 ):
                     nodes.pending[node, word] &= ~bit
-
-
-@inlined
-def _observe_blocks(
-    chunks: Chunks | None,
-    space: Space,
-    nodes: Nodes,
-    changes: Changes,
-    entry: int,
-    tick: int,
-    node: int,
-    eye: Eye,
-) -> None:
-    """Take over the pending blocks that the owner of a node sees."""
-    if chunks is None:
-        _observe_cells(space, nodes, changes, entry, tick, node, eye)
-    else:
-        _observe_chunks(space, nodes, changes, entry, tick, node, eye)
-    nodes.fresh[node] = False
 
 
 @inlined
@@ -587,6 +568,7 @@ def _update_node(
     span: Span,
     entry: int,
     node: int,
+    chunks: Chunks | None,
 ) -> None:
     """Fold an entry into one node whose parent was updated before.
 
@@ -613,7 +595,11 @@ def _update_node(
     nodes.seen_geometry[node] = nodes.geometry[parent]
     _observe_agents(space, poses, nodes, node, eye, moved)
     if moved or nodes.fresh[node]:
-        _observe_blocks(space.chunks, space, nodes, changes, entry, tick, node, eye)
+        if chunks is None:
+            _observe_cells(space, nodes, changes, entry, tick, node, eye)
+        else:
+            _observe_chunks(space, nodes, changes, entry, tick, node, eye)
+        nodes.fresh[node] = False
     _perceive_events(space, poses, facts, nodes, changes, span, entry, node)
     _propagate_bases(space, nodes, node, eye, moved)
     if weighing is not None:
@@ -641,6 +627,7 @@ def fold(
     changes: Changes,
     span: Span,
     which: npt.NDArray[np.bool_],
+    chunks: Chunks | None,
 ) -> int:
     """Fold the entries of a pass into the nodes that `which` marks; see the module's docstring.
 
@@ -655,6 +642,7 @@ def fold(
         span: Entries to fold.
         which: bool (N,), nodes to update. The parent of a marked node is marked too or is up to
             date.
+        chunks: Those of `space`. The branches for the other kind of grids are then not compiled.
 
     Returns:
         Number of the first entry that was not folded. The kernel stops early if the rows that the
@@ -679,6 +667,8 @@ def fold(
                     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
                         changes.perceived[event - first_event, 0] = True
                 else:
-                    _update_node(space, poses, facts, nodes, weighing, changes, span, entry, node)
+                    _update_node(
+                        space, poses, facts, nodes, weighing, changes, span, entry, node, chunks
+                    )
         first_node = 0
     return span.stop
