@@ -41,8 +41,12 @@ def source() -> Forest:
         world.set_block((3, 1, 8), "stone")
         world.withdraw("carl", CHEST, {"apple": 1})
         forest = nest["/ann"].imagination(2)._forest
-        assert forest is not None
-        return forest
+    assert forest is not None
+    # Poses that nobody believes in any more have numbers as well.
+    for tick, z in enumerate((3.5, 4.5, 5.5), forest.tick + 1):
+        forest.columns.add(Frame(tick, {"ann": AgentState((2.5, 1.0, z), yaw=float(tick))}))
+    forest.advance(forest.columns.end)
+    return forest
 
 
 def held(forest: Forest) -> list[object]:
