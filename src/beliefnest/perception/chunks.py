@@ -65,9 +65,9 @@ def chunk_in(place: int) -> int:
 
 
 @inlined
-def index_at(chunks: Chunks | None, rows: Rows, place: int) -> int:
+def index_at(chunks: Chunks | None, rows: Rows | None, place: int) -> int:
     """Return the index of a place in the array that holds the grid."""
-    if chunks is None:
+    if chunks is None or rows is None:
         return place
     # Python's int, once compiled
     return rows[place >> _INSIDE] << _INSIDE | place & (VOLUME - 1)  # type: ignore[no-any-return]

@@ -59,7 +59,8 @@ class Scene(NamedTuple):
         sizes: Number of cells along x, y, z.
         starts: int32 (shapes + 1,), first row of each shape in `boxes`.
         boxes: float64 (n, 6), low and high corners of the boxes of shapes, relative to the cell.
-        rows: Rows of the grid's chunks in the pool.
+        rows: Rows of the grid's chunks in the pool; None: the grid is dense. An array that is not
+            used would double the time of kernels that allocate.
         chunks: Numbers of chunks along x, y, z; None: the grid is dense.
     """
 
@@ -67,7 +68,7 @@ class Scene(NamedTuple):
     sizes: Cell
     starts: Starts
     boxes: Boxes
-    rows: Rows
+    rows: Rows | None = None
     chunks: Chunks | None = None
 
 

@@ -247,11 +247,7 @@ class Geometry:
         nx, ny, nz = self.codes.shape
         registry = self.sight.registry
         return Scene(
-            self.codes.reshape(-1),
-            (nx, ny, nz),
-            registry.shape_start,
-            registry.shape_boxes,
-            np.zeros(0, dtype=np.int32),
+            self.codes.reshape(-1), (nx, ny, nz), registry.shape_start, registry.shape_boxes
         )
 
     @functools.cached_property
