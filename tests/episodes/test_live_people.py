@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from tests.people import Person
+from tests.profiles import few_by_day
 
 import beliefnest as bn
 from beliefnest.episodes.policies import Scripted
@@ -54,7 +55,7 @@ def hall() -> bn.Task:
     return bn.Task.from_mapping(content)
 
 
-@pytest.mark.parametrize("policy", ["person", "person:wait"])
+@pytest.mark.parametrize("policy", few_by_day(["person", "person:wait"]))
 def test_what_a_person_does_in_a_round_is_their_agent_s_action(policy: str) -> None:
     ann = Scripted([ANSWERS, *[bn.GO_ON] * 59])
     with (

@@ -55,6 +55,7 @@ def told(monkeypatch: pytest.MonkeyPatch, dense: int, *, each_tick: bool) -> lis
             return [values(state) for state in nest.states(PATHS).values()]
 
 
+@pytest.mark.long
 def test_chunks_and_the_time_of_asking_change_no_belief_of_many_agents(
     monkeypatch: pytest.MonkeyPatch,
 ):

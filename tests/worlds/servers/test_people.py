@@ -287,6 +287,7 @@ class Told(io.StringIO):
         return written
 
 
+@pytest.mark.long
 def test_the_example_of_the_page_runs(tmp_path, monkeypatch, capsys):
     """The page's own example: what it prints, and what it writes down."""
     page = (Path(__file__).parents[3] / "docs" / "people.md").read_text(encoding="utf-8")

@@ -66,7 +66,10 @@ def opened(world: World, snapshot: Snapshot | None = None) -> None:
             {"patience": 3},
             r"not use /fill, /setblock.*: op BeliefNest",
         ),
-        (("lack item", "lack"), SOON, r"BeliefNest may not use /item"),
+        pytest.param(
+            *(("lack item", "lack"), SOON, r"BeliefNest may not use /item"),
+            marks=pytest.mark.long,
+        ),
         (("verify BeliefNest", "trust BeliefNest"), {}, r"asks Microsoft.*online-mode=false"),
         (("room 0", "room 9"), {}, r"is full.*raise max-players"),
         (None, {"version": "1.16.5"}, r"\?version=1\.16\.5 asks.* 1\.20\.4, .*1\.21\.8.*pip"),
