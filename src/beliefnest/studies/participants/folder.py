@@ -1,6 +1,5 @@
 """Folder of a page for participants: static files that need no server and no network."""
 
-import html
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
@@ -13,7 +12,7 @@ from beliefnest.studies.cells import digest, variation_id
 from beliefnest.studies.participants.film import Film
 from beliefnest.studies.participants.items import Item
 from beliefnest.studies.participants.playing import View
-from beliefnest.viewer.page.html import inlined, packed, source_hash
+from beliefnest.viewer.page.html import inlined, packed, self_contained
 from beliefnest.world.texts import on_one_line
 
 __all__ = ["check_folder", "check_post", "experiment", "page_files", "write_folder"]
@@ -118,20 +117,25 @@ def page_files(
         ending: Blocks of text below the thanks at the end.
         post: Address to which `index.html` sends the answers; None: participants save them.
     """
-    plain_title = on_one_line(title)
-    texts = {"title": plain_title, "pages": list(pages), "ending": list(ending), "post": post}
+    texts = {
+        "title": on_one_line(title),
+        "pages": list(pages),
+        "ending": list(ending),
+        "post": post,
+    }
     data = packed({**content, **texts})
     plugin, session, style = (_web(name) for name in ("plugin.js", "session.js", "style.css"))
     program = inlined("\n".join([plugin, session, _web("runner.js")]))
     example = _web("example.js")
     return {
-        "index.html": _INDEX.format(
-            policy=html.escape(_policy(program, style, post)),
-            title=html.escape(plain_title),
-            style=style,
-            # Base64 has no `<`, so that nothing in the data can end the element.
-            data=json.dumps(data),
-            program=program,
+        "index.html": self_contained(
+            title,
+            style,
+            program,
+            data,
+            connect=_address(post),
+            pictures="data:",
+            body_class="bn-body",
         ),
         "jspsych.html": _web("jspsych.html"),
         "plugin-beliefnest-question.js": plugin,
@@ -156,31 +160,7 @@ def _web(name: str) -> str:
     return (_WEB / name).read_text(encoding="utf-8")
 
 
-def _policy(program: str, style: str, post: str | None) -> str:
-    """Return the content security policy: own code and pictures, and the one address."""
+def _address(post: str | None) -> str:
+    """Return the only address that the page may talk to, as in a content security policy."""
     parts = urlsplit(post or "")
-    connect = f"{parts.scheme}://{parts.netloc}" if post else "'none'"
-    return (
-        f"default-src 'none'; script-src {source_hash(program)}; style-src {source_hash(style)}; "
-        f"img-src data:; connect-src {connect}; base-uri 'none'; form-action 'none'"
-    )
-
-
-_INDEX = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="referrer" content="no-referrer">
-<link rel="icon" href="data:,">
-<title>{title}</title>
-<style>{style}</style>
-</head>
-<body class="bn-body">
-<div id="page"></div>
-<script type="application/json" id="data">{data}</script>
-<script>{program}</script>
-</body>
-</html>
-"""
+    return f"{parts.scheme}://{parts.netloc}" if post else "'none'"

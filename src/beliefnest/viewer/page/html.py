@@ -12,7 +12,7 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.world.texts import on_one_line, visible_json
 
-__all__ = ["inlined", "packed", "page_html", "source_hash"]
+__all__ = ["inlined", "packed", "page_html", "self_contained"]
 
 _BUILT = Path(__file__).parents[2] / "_page"
 
@@ -27,7 +27,7 @@ _SHELL = """<!doctype html>
 <title>{title}</title>
 <style>{style}</style>
 </head>
-<body>
+<body{body}>
 <div id="page"></div>
 <script type="application/json" id="data">{data}</script>
 <script>{program}</script>
@@ -49,12 +49,49 @@ def page_html(title: str, content: Mapping[str, Any], *, served: bool, name: str
         InputError: The page was not built with the package.
     """
     style, program = _part("page.css"), _part(f"{name}.js")
+    return self_contained(
+        title,
+        style,
+        program,
+        {"served": served, "packed": packed(content)},
+        connect="'self'" if served else "'none'",
+        pictures="data: blob:",
+    )
+
+
+def self_contained(
+    title: str,
+    style: str,
+    program: str,
+    data: object,
+    *,
+    connect: str,
+    pictures: str,
+    body_class: str | None = None,
+) -> str:
+    """Return a page with style, program and data inlined, which may run nothing else.
+
+    Args:
+        title: Title of the browser's tab.
+        style: Style sheet, as `inlined` returns texts.
+        program: JavaScript, as `inlined` returns texts.
+        data: JSON data for the program, in which texts of others are `packed`.
+        connect: Addresses that the page may talk to, as in a content security policy.
+        pictures: Sources of its pictures, in the same form.
+        body_class: Class of the body; None: no class.
+    """
+    policy = (
+        f"default-src 'none'; script-src {_source_hash(program)}; "
+        f"style-src {_source_hash(style)}; "
+        f"img-src {pictures}; connect-src {connect}; base-uri 'none'; form-action 'none'"
+    )
     return _SHELL.format(
-        policy=html.escape(_policy(style, program, served=served)),
+        policy=html.escape(policy),
         title=html.escape(on_one_line(title)),
         style=style,
+        body="" if body_class is None else f' class="{body_class}"',
         # Base64 has no `<`, so that nothing in the data can end the element.
-        data=json.dumps({"served": served, "packed": packed(content)}),
+        data=json.dumps(data),
         program=program,
     )
 
@@ -65,17 +102,7 @@ def packed(content: Mapping[str, Any]) -> str:
     return base64.b64encode(zlib.compress(text.encode(), 9)).decode()
 
 
-def _policy(style: str, program: str, *, served: bool) -> str:
-    """Return the page's content security policy: run its own code, talk to its own server."""
-    connect = "'self'" if served else "'none'"
-    return (
-        f"default-src 'none'; script-src {source_hash(program)}; "
-        f"style-src {source_hash(style)}; "
-        f"img-src data: blob:; connect-src {connect}; base-uri 'none'; form-action 'none'"
-    )
-
-
-def source_hash(text: str) -> str:
+def _source_hash(text: str) -> str:
     """Return the source of a content security policy that allows an inlined text."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
