@@ -41,7 +41,7 @@ def test_from_the_scenario_to_a_table_of_people_and_models(
     assert {each["model"]: each["judged"] for each in both} == {"people": 2, "offline": 4}
 
 
-# What the block takes for granted: jsPsych, and trials of another plugin before and after.
+# Stand-ins for the names that the block uses: jsPsych, and trials of another plugin around.
 AROUND = """<!doctype html><meta charset="utf-8"><body>
 <script src="jspsych.js"></script>
 <script src="plugin-beliefnest-question.js"></script>

@@ -71,7 +71,7 @@ def reproduce_study(
         BodyError: A worker process ended unexpectedly.
     """
     recorded = StudyRecord.read(folder)
-    # What people answered cannot be played again; their rows are compared with their cells.
+    # Answers of people cannot be played again; their rows are compared with their cells.
     plan = recorded.folder.plan()
     found = {cell["name"]: recorded.folder.cell(cell["name"]) for cell in plan["cells"]}
     ended = [
