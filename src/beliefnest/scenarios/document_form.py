@@ -1,6 +1,5 @@
 """Check of a document's form: known keys, and values of the right kind."""
 
-import difflib
 import re
 
 import msgspec
@@ -10,6 +9,7 @@ from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain
 from beliefnest.scenarios.format import ScenarioFile, WrittenFile
 from beliefnest.scenarios.json_schema import allowed_keys, allowed_values
 from beliefnest.world.texts import is_well_formed
+from beliefnest.world.words import nearest_or_all
 
 __all__ = ["check_form", "check_written"]
 
@@ -118,8 +118,7 @@ def _hint(name: str, path: KeyPath) -> str:
     inner = [key for key in allowed if name in allowed_keys((*path, key))]
     if inner:
         return f"; it stands under {inner[0]!r}"
-    close = difflib.get_close_matches(name, allowed, n=1)
-    return f"; did you mean {close[0]!r}?" if close else f"; keys are {', '.join(allowed)}"
+    return nearest_or_all(name, allowed, "keys are")
 
 
 def _locate(root: YamlNode, steps: list[dict[str, str | None]], error: str, form: _Form) -> KeyPath:

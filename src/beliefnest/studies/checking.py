@@ -1,6 +1,5 @@
 """Checks of a study's keys; each error names the key."""
 
-import difflib
 import json
 import math
 import os
@@ -10,6 +9,7 @@ from typing import Any, TypeGuard
 from beliefnest.errors import InputError
 from beliefnest.llm.budget import RunLimits
 from beliefnest.scenarios.loading import condition_number
+from beliefnest.world.words import nearest_or_all
 
 __all__ = [
     "StudyKeyError",
@@ -22,7 +22,6 @@ __all__ = [
     "is_amount",
     "is_count",
     "is_whole",
-    "nearest_or_all",
     "several",
 ]
 
@@ -50,12 +49,6 @@ def several(key: str, names: object) -> tuple[str, ...]:
     if isinstance(found, Sequence) and all(isinstance(each, str | os.PathLike) for each in found):
         return tuple(map(os.fspath, found))
     raise StudyKeyError(key, f"{key} is {names!r}; give a name, or a list of names")
-
-
-def nearest_or_all(name: str, known: Sequence[str]) -> str:
-    """Return the end of a message about an unknown name: a similar name, or else all names."""
-    close = difflib.get_close_matches(name, known, n=1)
-    return f"; did you mean {close[0]!r}?" if close else f"; there are {', '.join(known)}"
 
 
 def checked_columns(names: object, known: Sequence[str]) -> list[str]:

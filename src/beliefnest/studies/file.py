@@ -12,10 +12,11 @@ from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.sources import builtin_names
 from beliefnest.scenarios.yaml_reading import read_yaml
-from beliefnest.studies.checking import StudyKeyError, nearest_or_all, several
+from beliefnest.studies.checking import StudyKeyError, several
 from beliefnest.studies.design import Design, template_named
 from beliefnest.studies.episode_design import EpisodeDesign, Policies, listed
 from beliefnest.studies.study_keys import StudyKeys, design_of
+from beliefnest.world.words import nearest_or_all
 from beliefnest.worlds.names import check_world
 
 __all__ = ["read_design"]

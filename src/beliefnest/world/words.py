@@ -1,5 +1,6 @@
 """Places, items, blocks and counts in words, for everything that people read."""
 
+import difflib
 from collections.abc import Iterable, Sequence
 
 from beliefnest.world.signs import is_sign
@@ -10,6 +11,7 @@ __all__ = [
     "counted",
     "items_words",
     "listed",
+    "nearest_or_all",
     "point_words",
     "things_words",
     "told_apart",
@@ -113,3 +115,15 @@ def counted(number: int, noun: str) -> str:
     """Return a number with its noun: `1 round`, `2 rounds`, `2 histories`."""
     many = f"{noun[:-1]}ies" if noun.endswith("ry") else f"{noun}s"
     return f"{number} {noun if number == 1 else many}"
+
+
+def nearest_or_all(name: str, known: Sequence[str], listing: str = "there are") -> str:
+    """Return the end of a message about an unknown name: a similar name, or else all names.
+
+    Args:
+        name: The unknown name.
+        known: All names that exist, at least one.
+        listing: Words before the list of all names.
+    """
+    close = difflib.get_close_matches(name, known, n=1)
+    return f"; did you mean {close[0]!r}?" if close else f"; {listing} {', '.join(known)}"

@@ -1,11 +1,12 @@
 """Messages about errors in the form of a story, in the words of the format."""
 
-import difflib
 import re
 from collections.abc import Sequence
 from typing import Any, get_args
 
 import msgspec
+
+from beliefnest.world.words import nearest_or_all
 
 __all__ = ["form_fault"]
 
@@ -45,7 +46,4 @@ def _keys(story: type[Any], path: str) -> Sequence[str]:
 
 
 def _nearest(name: str, known: Sequence[str]) -> str:
-    if not known:
-        return ""
-    close = difflib.get_close_matches(name, known, n=1)
-    return f"; did you mean {close[0]!r}?" if close else f"; there are {', '.join(known)}"
+    return nearest_or_all(name, known) if known else ""
