@@ -2,12 +2,11 @@
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.place_names import object_names
-from beliefnest.pictures.marks import Drawing
 from beliefnest.pictures.still import draw_still
 from beliefnest.pictures.svg import svg_text
 from beliefnest.prompts.story_filters import captions
@@ -71,7 +70,9 @@ def read_film(nest: Nest, path: str, start: int) -> Film:
     ticks = sorted({*_thinned(changes), *told, nest.tick})
     pictures = _pictures(nest, path, ticks)
     times = _durations(ticks, told)
-    words = list(itertools.accumulate((told.get(tick, "") for tick in ticks), _latest))
+    words: Iterator[str] = itertools.accumulate(
+        (told.get(tick, "") for tick in ticks), lambda before, now: now or before
+    )
     distinct = list(dict.fromkeys(pictures))
     frames = [
         Frame(distinct.index(picture), ms, caption)
@@ -82,10 +83,6 @@ def read_film(nest: Nest, path: str, start: int) -> Film:
 
 def _thinned(ticks: Sequence[int]) -> Sequence[int]:
     return ticks[:: max(1, math.ceil(len(ticks) / _MOST))]
-
-
-def _latest(before: str, now: str) -> str:
-    return now or before
 
 
 def _durations(ticks: Sequence[int], told: Mapping[int, str]) -> list[int]:
@@ -108,11 +105,7 @@ def _pictures(nest: Nest, path: str, ticks: Sequence[int]) -> list[str]:
         (scene,) = nest.scenes(path, tick, path, sight=sight, height=last.height)
         drawings.append(draw_still(scene, names))
     height = max(each.height for each in drawings)
-    return [svg_text(_of_height(each, height)) for each in drawings]
-
-
-def _of_height(drawing: Drawing, height: float) -> Drawing:
-    return replace(drawing, height=height)
+    return [svg_text(replace(each, height=height)) for each in drawings]
 
 
 def _joined(frames: Sequence[Frame]) -> list[Frame]:

@@ -70,22 +70,24 @@ def shown_items(
     Raises:
         BeliefNestError: A script failed; the message names the cell.
     """
+    for item, nest, start in _each_played(items, on_item):
+        yield item, [_view(nest, path, start, shown) for path in item.paths]
+
+
+def judged_items(items: Sequence[Item], on_item: OnItem) -> Iterator[tuple[Item, Judged]]:
+    """Play items and yield the right answers of each; arguments and errors as `shown_items`."""
+    for item, nest, _ in _each_played(items, on_item):
+        yield item, _judged(nest, item)
+
+
+def _each_played(items: Sequence[Item], on_item: OnItem) -> Iterator[tuple[Item, Nest, int]]:
+    """Play items; yield each with its nest, which is open until the next item, and first tick."""
     with Worlds(0) as worlds:
         renderer = Renderer()
         for number, item in enumerate(items):
             on_item(_title(item), number, len(items))
             with _played(item, worlds, renderer) as (nest, start):
-                yield item, [_view(nest, path, start, shown) for path in item.paths]
-
-
-def judged_items(items: Sequence[Item], on_item: OnItem) -> Iterator[tuple[Item, Judged]]:
-    """Play items and yield the right answers of each; arguments and errors as `shown_items`."""
-    with Worlds(0) as worlds:
-        renderer = Renderer()
-        for number, item in enumerate(items):
-            on_item(_title(item), number, len(items))
-            with _played(item, worlds, renderer) as (nest, _):
-                yield item, _judged(nest, item)
+                yield item, nest, start
 
 
 def _title(item: Item) -> str:
