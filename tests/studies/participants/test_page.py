@@ -32,6 +32,29 @@ def test_items_are_the_cells_without_models_in_the_lists_of_the_design(written):
     )
 
 
+@pytest.mark.parametrize(
+    ("field", "told", "not_told"),
+    [("", "all around them", "only what lies"), (", field_of_view: 170", "only what lies", "all")],
+)
+def test_default_instructions_say_how_people_see_and_whose_view_it_is(
+    tmp_path, field, told, not_told
+):
+    study = transfer_in(tmp_path, STUDY)
+    scenario = tmp_path / "transfer.yaml"
+    text = scenario.read_text(encoding="utf-8")
+    assert "max_visible_distance: 20" in text
+    scenario.write_text(
+        text.replace("max_visible_distance: 20", f"max_visible_distance: 20{field}"),
+        encoding="utf-8",
+    )
+    bn.Study.load(study).participants(tmp_path / "page", "story")
+    words = [block["text"] for block in content_of(tmp_path / "page")["pages"][0]]
+    sight = next(each for each in words if each.startswith("People see"))
+    assert told in sight
+    assert not_told not in sight
+    assert any(each.startswith("Sometimes you are told") for each in words)
+
+
 def test_more_models_templates_and_repeats_give_the_same_items(written, tmp_path):
     _, _, content = written
     more = STUDY.replace("[offline]", "[offline, 'vllm:m']") + "repeats: 3\n"

@@ -1,10 +1,12 @@
 """Instructions of participants: pages of headings, paragraphs and lists, from plain text."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
+from beliefnest.studies.participants.items import Item
 
 __all__ = ["instruction_pages", "read_instructions"]
 
@@ -17,10 +19,19 @@ _PLAY = (
     "Press Play to start a film. You can stop it, go back, and play it again. The question appears "
     "when the film has ended."
 )
-_VIEW = (
+_NARRATOR = "You are told everything that happened."
+_PERSON = "You are one of the people: you learn only what this person saw and heard."
+_EITHER = (
     "Sometimes you are told everything that happened. Sometimes you are one of the people: then "
     "you learn only what this person saw and heard."
 )
+_ALL_AROUND = (
+    "People see all around them, whichever way they look. Only walls and other things can hide "
+    "something from them."
+)
+_WHOLE = 360.0
+"""Field of view in degrees in which nothing is behind a person."""
+_AHEAD = "People see only what lies in the direction in which they look."
 _HOW = (
     "Below each one is a question. Answer it by what you have learned there; scenes have nothing "
     "to do with each other. There is no time limit."
@@ -34,9 +45,30 @@ _BEGINNINGS = {
 """First paragraphs by what participants are shown."""
 
 
-def instruction_pages(shown: str) -> list[list[dict[str, Any]]]:
-    """Return the default instructions for what participants are shown."""
-    return _pages(f"# Instructions\n\n{_BEGINNINGS[shown]}\n\n{_VIEW}\n\n{_HOW}\n")
+def instruction_pages(shown: str, items: Sequence[Item]) -> list[list[dict[str, Any]]]:
+    """Return the default instructions for what participants are shown.
+
+    Args:
+        shown: `film`, `story` or `both`.
+        items: All items: the instructions say from whose view they are told, and how people see.
+    """
+    parts = ["# Instructions", _BEGINNINGS[shown], _sight(items), _view(items), _HOW]
+    return _pages("\n\n".join(part for part in parts if part))
+
+
+def _sight(items: Sequence[Item]) -> str:
+    """Return a sentence about the field of view; empty if scenarios differ in it."""
+    fields = {item.cell.scenario.setting.perception.field_of_view for item in items}
+    if fields == {_WHOLE}:
+        return _ALL_AROUND
+    return "" if _WHOLE in fields else _AHEAD
+
+
+def _view(items: Sequence[Item]) -> str:
+    narrated = {path == "/" for item in items for path in item.paths}
+    if len(narrated) > 1:
+        return _EITHER
+    return _NARRATOR if narrated == {True} else _PERSON
 
 
 def read_instructions(file: Path) -> list[list[dict[str, Any]]]:

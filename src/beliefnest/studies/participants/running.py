@@ -94,9 +94,11 @@ def make_page(
     check_folder(folder)
     if post is not None:
         check_post(post)
-    pages = instruction_pages(shown) if instructions is None else read_instructions(instructions)
     end = [] if ending is None else [each for page in read_instructions(ending) for each in page]
     items = items_of(cells, documents)
+    pages = (
+        instruction_pages(shown, items) if instructions is None else read_instructions(instructions)
+    )
     content = experiment(shown_items(items, shown, on_item), shown, design.seed)
     write_folder(folder, page_files(content, title, pages, end, post))
     return Page(
