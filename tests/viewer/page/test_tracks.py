@@ -1,11 +1,13 @@
 """Tracks say at every tick what states, and `false_beliefs`, say."""
 
 import random
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
 import beliefnest as bn
+from beliefnest.belief import context
 from beliefnest.viewer.page import runs
 from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.pose_history import PoseBook
@@ -18,8 +20,15 @@ BOX = ((0, 0, 0), (12, 3, 8))
 CHESTS = [(3, 1, 3), (9, 1, 3)]
 
 
-@pytest.fixture(scope="module")
-def story() -> bn.Nest:
+@pytest.fixture(scope="module", params=[context.DENSE, 0], ids=["dense", "chunks"])
+def story(request: pytest.FixtureRequest) -> Iterator[bn.Nest]:
+    """Yield the nest of `_story`, whose nodes hold dense arrays or share chunks."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(context, "DENSE", request.param)
+        yield _story()
+
+
+def _story() -> bn.Nest:
     """Return a nest: a door that opens and shuts, two chests, three agents that walk at random."""
     blocks = {(x, 0, z): "stone" for x in range(13) for z in range(9)}
     blocks |= {(6, y, z): "stone" for y in (1, 2) for z in range(9)}
