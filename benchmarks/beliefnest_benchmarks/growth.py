@@ -17,6 +17,7 @@ from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Point
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest_benchmarks.figures import Metric
@@ -129,7 +130,7 @@ class _Walkers:
         self._yaws = {name: self._chance.uniform(-math.pi, math.pi) for name in self.feet}
         box = Box((0, 0, 0), (x - 1, y - 1, z - 1))
         agents = {name: AgentState(feet) for name, feet in self.feet.items()}
-        self.world = ScriptedWorld.from_snapshot(Snapshot(0, box, blocks, {}, agents))
+        self.world = ScriptedWorld.from_snapshot(Snapshot(0, box, Terrain.of(blocks), {}, agents))
         del blocks
         known = ["stone", "air"] if walk.is_known else []
         self.nest = Nest(self.world, static_blocks=known)

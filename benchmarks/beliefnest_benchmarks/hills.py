@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Point, Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -60,7 +61,9 @@ class Hills:
         width, height, depth = shape
         box = Box((0, 0, 0), (width - 1, height - 1, depth - 1))
         chests = {place: {"apple": 1 + n} for n, place in enumerate(self.chests)}
-        self.world = ScriptedWorld.from_snapshot(Snapshot(0, box, self._blocks, chests, poses))
+        self.world = ScriptedWorld.from_snapshot(
+            Snapshot(0, box, Terrain.of(self._blocks), chests, poses)
+        )
 
     def tick(self) -> None:
         """Let all agents take a step, and sometimes act."""

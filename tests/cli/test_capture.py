@@ -14,6 +14,7 @@ from beliefnest.cli.app import run_command_line
 from beliefnest.scenarios.cuboids import cuboids
 from beliefnest.scenarios.writing import scenario_text
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box
 
 ROOM = """
@@ -50,7 +51,7 @@ def said(scenario: Scenario) -> tuple[Any, ...]:
         )
         for name, state in place.agents.items()
     }
-    return place.box, place.blocks.tolist(), place.containers, place.signs, agents
+    return place.box, place.blocks.dense().tolist(), place.containers, place.signs, agents
 
 
 def believed(scenario: Scenario) -> list[Any]:
@@ -200,6 +201,6 @@ def test_cuboids_are_all_cells_once():
 
 
 def test_a_place_without_a_floor_is_refused():
-    nowhere = Snapshot(0, Box((0, 0, 0), (2, 3, 2)), np.zeros((3, 4, 3), np.int32), {}, {})
+    nowhere = Snapshot(0, Box((0, 0, 0), (2, 3, 2)), Terrain.full((3, 4, 3), 0), {}, {})
     with pytest.raises(Exception, match="there is no agent in the box, and no place for one"):
         scenario_text("nowhere", "", nowhere)

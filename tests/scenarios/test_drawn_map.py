@@ -86,7 +86,7 @@ def same(one, other) -> bool:
     first, second = one.setting.snapshot, other.setting.snapshot
     return (
         first.box == second.box
-        and np.array_equal(first.blocks, second.blocks)
+        and first.blocks == second.blocks
         and (first.containers, first.signs) == (second.containers, second.signs)
         and dict(first.agents) == dict(second.agents)
         and (one.labels, one.setting.places) == (other.labels, other.setting.places)
@@ -102,7 +102,7 @@ def test_a_map_is_the_scene_that_it_shows(tmp_path):
     kept = Scenario.kept(drawn.text, {}, None, "kept")
     assert same(kept, written)
     opened = Scenario.load(drawn.source, 2).setting.snapshot
-    changed = np.argwhere(opened.blocks != drawn.setting.snapshot.blocks).tolist()
+    changed = opened.blocks.differing(drawn.setting.snapshot.blocks).tolist()
     assert changed == [[6, 1, 2], [6, 2, 2]]
     moved = Scenario.load(drawn.source, 3).setting.snapshot.agents["bob"]
     assert (moved.position, moved.equipment) == ((7.5, 1, 3.5), {"main_hand": "stick"})
@@ -194,7 +194,7 @@ def test_floors_lie_on_each_other():
     )  # fmt: skip
     place = scenario.setting.snapshot
     assert (place.box.low, place.box.high) == ((5, 60, 5), (7, 64, 6))
-    solid = {tuple(at) for at in np.argwhere(place.blocks != 0).tolist()}
+    solid = {tuple(at) for at in np.argwhere(place.blocks.dense() != 0).tolist()}
     assert {(1, 0, 0), (1, 1, 0), (1, 2, 0), (1, 3, 0), (1, 4, 0), (1, 2, 1)} <= solid
     assert not {(1, 0, 1), (1, 1, 1), (0, 3, 0)} & solid
 

@@ -186,7 +186,7 @@ PARTS = {
 def test_a_setting_is_possible_or_refused(parts):
     world = ScriptedWorld(BOX, agents={"ann": (1, 1, 1)}, containers={(3, 1, 3): {}})
     fine = world.snapshot()
-    blocks = fine.blocks.copy()
+    blocks = fine.blocks.draft()
     blocks[0, 0, 0] = parts.get("state", 0)
     ann = fine.agents["ann"]
     try:
@@ -195,7 +195,7 @@ def test_a_setting_is_possible_or_refused(parts):
             Snapshot(
                 parts.get("tick", 0),
                 fine.box,
-                blocks,
+                blocks.terrain(),
                 {(3, 1, 3): {"dirt": parts["count"]} if "count" in parts else {}},
                 {parts.get("name", "ann"): type(ann)((parts.get("x", 1), 1, 1))},
             ),

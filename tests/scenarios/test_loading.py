@@ -104,7 +104,7 @@ def test_a_condition_changes_only_what_it_names(tmp_path: Path) -> None:
     one, two = Scenario.load_all(file)
     assert (one.condition, two.condition) == (1, 2)
     assert two.condition_description == "bob is elsewhere"
-    assert np.array_equal(one.setting.snapshot.blocks, two.setting.snapshot.blocks)
+    assert one.setting.snapshot.blocks == two.setting.snapshot.blocks
     assert two.setting.snapshot.agents["bob"].position == (5.5, 1.0, 6.5)
     assert two.setting.snapshot.agents["bob"].pitch == -0.25
     assert two.setting.snapshot.agents["ann"] == one.setting.snapshot.agents["ann"]

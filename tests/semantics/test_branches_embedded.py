@@ -62,7 +62,7 @@ def standing(nest, *path):
     there = nest._engine.body(path).snapshot()
     return {
         "tick": there.tick,
-        "blocks": there.blocks.tolist(),
+        "blocks": there.blocks.dense().tolist(),
         "containers": there.containers,
         "items": {
             n: (i.name, i.count, np.round(i.position, 3).tolist()) for n, i in there.items.items()

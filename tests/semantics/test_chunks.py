@@ -8,8 +8,8 @@ from tests.profiles import at_night
 from tests.semantics.stories import NAMES, Stage, Stories, Story
 from tests.semantics.test_against_reference import compare
 
-from beliefnest.belief import context
 from beliefnest.belief.view import State
+from beliefnest.world import terrain
 
 PATHS = ["/", *(f"/{a}" for a in NAMES), *(f"/{a}/{b}" for a in NAMES for b in NAMES if a != b)]
 few = settings(
@@ -20,7 +20,7 @@ few = settings(
 @pytest.fixture
 def chunks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let nodes of every box share chunks."""
-    monkeypatch.setattr(context, "DENSE", 0)
+    monkeypatch.setattr(terrain, "DENSE", 0)
 
 
 @pytest.mark.usefixtures("chunks")
@@ -48,7 +48,7 @@ def test_every_node_with_a_unique_item_in_few_chunks(story: Story):
 def beliefs(story: Story, monkeypatch: pytest.MonkeyPatch, dense: int) -> list[object]:
     """Return all that nodes hold after each act."""
     with monkeypatch.context() as patch:
-        patch.setattr(context, "DENSE", dense)
+        patch.setattr(terrain, "DENSE", dense)
         stage, told = Stage(story), []
         stage.play(lambda: told.append([held(stage.nest[path].state) for path in PATHS]))
     return told

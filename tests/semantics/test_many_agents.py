@@ -6,7 +6,7 @@ import pytest
 from tests.nest.comparing import values
 
 import beliefnest as bn
-from beliefnest.belief import context
+from beliefnest.world import terrain
 
 AGENTS = [f"a{number:02d}" for number in range(32)]
 BOX = ((-4, -2, -4), (19, 5, 19))
@@ -45,7 +45,7 @@ def walk(world: bn.ScriptedWorld, tick: int) -> None:
 def told(monkeypatch: pytest.MonkeyPatch, dense: int, *, each_tick: bool) -> list[object]:
     """Return what all nodes believe at the end, asked then alone or after each tick, too."""
     with monkeypatch.context() as patch:
-        patch.setattr(context, "DENSE", dense)
+        patch.setattr(terrain, "DENSE", dense)
         world = crowd()
         with bn.Nest(world, bn.Perception(max_visible_distance=7)) as nest:
             for tick in range(6):
@@ -65,7 +65,7 @@ def test_chunks_and_the_time_of_asking_change_no_belief_of_many_agents(
 
 
 def test_deeper_beliefs_know_no_block_that_shallower_ones_do_not(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(context, "DENSE", 0)
+    monkeypatch.setattr(terrain, "DENSE", 0)
     world = crowd()
     with bn.Nest(world, bn.Perception(max_visible_distance=7)) as nest:
         for tick in range(4):

@@ -8,6 +8,7 @@ from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box
 
 MAIN = TimelineKey((), "main")
@@ -60,5 +61,5 @@ def snapshot(tick):
     grid = np.arange(24, dtype=np.int32).reshape(2, 3, 4) + tick
     sally = AgentState((0.1, 1.0, 2.0))
     return Snapshot(
-        tick, Box((0, 0, 0), (1, 2, 3)), grid, {(0, 0, 0): {"egg": 1}}, {"sally": sally}
+        tick, Box((0, 0, 0), (1, 2, 3)), Terrain.of(grid), {(0, 0, 0): {"egg": 1}}, {"sally": sally}
     )

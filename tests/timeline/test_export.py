@@ -24,6 +24,7 @@ from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, EventKind, Sign
 
 DOCS = Path(__file__).parents[2] / "docs" / "export.md"
@@ -65,7 +66,9 @@ def first(registry):
     grid = np.zeros((2, 1, 1), np.int32)
     grid[1, 0, 0] = registry.state_id("stone")
     box = Box((5, 0, 0), (6, 0, 0))
-    return Snapshot(0, box, grid, {(6, 0, 0): {"egg": 1}}, {"sally": AgentState((5.5, 0.0, 0.5))})
+    return Snapshot(
+        0, box, Terrain.of(grid), {(6, 0, 0): {"egg": 1}}, {"sally": AgentState((5.5, 0.0, 0.5))}
+    )
 
 
 @pytest.fixture

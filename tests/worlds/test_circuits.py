@@ -9,6 +9,7 @@ from tests.profiles import at_night
 
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, EventKind, Position
 from beliefnest.worlds.by_name import open_world
 from beliefnest.worlds.protocol import World
@@ -40,7 +41,9 @@ def played(
         grid[BOX.index(place)] = registry.state_id(text)
     frames: list[Frame] = []
     agents = {"sally": AgentState(at)}
-    body = world.open_body("/", "seed", Snapshot(0, BOX, grid, {}, agents), frames.append)
+    body = world.open_body(
+        "/", "seed", Snapshot(0, BOX, Terrain.of(grid), {}, agents), frames.append
+    )
     try:
         result = body.run({"sally": program}, 4000)["sally"]
         there = body.snapshot()

@@ -11,10 +11,11 @@ import numpy as np
 
 from beliefnest.belief.arrays import Nodes, Space, States
 from beliefnest.perception.chunks import Rows, chunk_in, index_at, place_at
-from beliefnest.perception.codes import INTRUDED, OWN, VOLUME, Chunks
+from beliefnest.perception.codes import INTRUDED, OWN
 from beliefnest.perception.compiling import inlined, inner
 from beliefnest.perception.eyes import set_code
 from beliefnest.perception.rays import Cell, Codes, Scene, code_at, is_inside, neighbour
+from beliefnest.world.terrain import VOLUME, Chunks
 
 __all__ = [
     "block_at",

@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import UNKNOWN, Space
-from beliefnest.perception.codes import SIDE, VOLUME, chunks_of, code_grid
+from beliefnest.perception.codes import EMPTY, code_grid
+from beliefnest.world.terrain import SIDE, VOLUME, Terrain, chunks_of
 
 __all__ = ["NOTHING", "ChunkPool", "CutGrids", "cut_grids"]
 
@@ -117,70 +118,77 @@ class ChunkPool:
             self.use(rows)
         return grids
 
-    def grid(self, rows: Ints) -> States:
-        """Return a copy of the numbers of the blocks of a grid, in the shape of the box."""
-        x, y, z = self.chunks
-        cubes = self.blocks[rows].reshape(x, y, z, SIDE, SIDE, SIDE)
-        whole = cubes.transpose(0, 3, 1, 4, 2, 5).reshape(x * SIDE, y * SIDE, z * SIDE)
-        i, j, k = self._shape
-        return whole[1 : i + 1, 1 : j + 1, 1 : k + 1].copy()
+    def terrain(self, rows: Ints) -> Terrain:
+        """Return the numbers of the blocks of a grid, as they are now."""
+        is_used = np.zeros(len(self.shares), dtype=np.bool_)
+        is_used[rows] = True
+        numbers = (np.cumsum(is_used) - 1).astype(np.int32)
+        chunks = self.blocks[is_used].astype(np.int32).reshape(-1, SIDE, SIDE, SIDE)
+        chunks.setflags(write=False)
+        return Terrain(self._shape, numbers[rows], list(chunks))
 
 
-def cut_grids(space: Space, grids: Sequence[Blocks]) -> CutGrids:
+def cut_grids(space: Space, grids: Sequence[Terrain]) -> CutGrids:
     """Cut grids of block numbers of the box into chunks, and compute their geometry."""
     known: dict[bytes, int] = {}
     kept: list[bytes] = []
     rows: list[Ints] = []
     for grid in grids:
-        # Layer by layer along x, so that little more memory is needed.
-        layers = range(chunks_of(space.sizes)[0])
-        found = [_cut_layer(space, grid, layer, known, kept) for layer in layers]
-        rows.append(np.concatenate(found))
+        rows.append(_cut(space, grid, known, kept))
     size = VOLUME * np.dtype(np.int16).itemsize
     both = np.frombuffer(b"".join(kept), dtype=np.uint8).reshape(len(kept), 2 * size)
     blocks, codes = both[:, :size].copy(), both[:, size:].copy()
     return CutGrids(blocks.view(np.int16), codes.view(np.uint16), rows)
 
 
-def _cut_layer(
-    space: Space, grid: Blocks, layer: int, known: dict[bytes, int], kept: list[bytes]
-) -> Ints:
-    """Return the numbers of the chunks of a layer, and add new ones to `known` and `kept`."""
-    blocks, codes = _layer(space, grid, layer)
-    rows = np.empty(len(blocks), dtype=np.int32)
-    for chunk in range(len(blocks)):
-        content = blocks[chunk].tobytes() + codes[chunk].tobytes()
-        row = known.setdefault(content, len(kept))
-        if row == len(kept):
+def _cut(space: Space, grid: Terrain, known: dict[bytes, int], kept: list[bytes]) -> Ints:
+    """Return the numbers of the chunks of a grid, and add new ones to `known` and `kept`."""
+
+    def number_of(blocks: States, codes: Codes) -> int:
+        content = blocks.tobytes() + codes.tobytes()
+        number = known.setdefault(content, len(kept))
+        if number == len(kept):
             kept.append(content)
-        rows[chunk] = row
+        return number
+
+    empty = np.full((SIDE, SIDE, SIDE), UNKNOWN, dtype=np.int16)
+    rows = np.full(len(grid.rows), number_of(empty, _empty_codes()), dtype=np.int32)
+    for chunk, places, inside in grid.kinds():
+        blocks, codes = empty.copy(), _empty_codes()
+        blocks[inside] = chunk[inside]
+        codes[inside] = space.codes[chunk[inside]]
+        rows[places] = number_of(blocks, codes)
+    # Shapes of some blocks reach into neighbouring cells, and so into neighbouring chunks.
+    reaching = [state for state in grid.states if space.reaches[space.codes[state]]]
+    for place in grid.lattice.around(grid.find(reaching)).tolist() if reaching else ():
+        rows[place] = number_of(*_with_neighbours(space, grid, place))
     return rows
 
 
-def _layer(space: Space, grid: Blocks, layer: int) -> tuple[States, Codes]:
-    """Return the blocks and the codes of a layer of chunks, shape (chunks, VOLUME) each."""
-    _, y, z = chunks_of(space.sizes)
-    nx, ny, nz = grid.shape
-    # Coordinates of the code grid have a margin of one cell, and shapes reach into neighbours.
-    first, last = layer * SIDE, min((layer + 1) * SIDE, nx + 2)
-    low, high = max(first - 2, 0), min(last, nx)
-    near = code_grid(grid[low:high], space.codes, space.reaches)
-    codes = np.zeros((SIDE, y * SIDE, z * SIDE), dtype=np.uint16)
-    codes[: last - first, : ny + 2, : nz + 2] = near[first - low : last - low]
-    blocks = np.full((SIDE, y * SIDE, z * SIDE), UNKNOWN, dtype=np.int16)
-    begin, end = max(first - 1, 0), min(last - 1, nx)
-    blocks[begin + 1 - first : end + 1 - first, 1 : ny + 1, 1 : nz + 1] = grid[begin:end]
-    return _cut(blocks), _cut(codes)
+def _empty_codes() -> Codes:
+    """Return the codes of a chunk without shapes."""
+    return np.full((SIDE, SIDE, SIDE), EMPTY, dtype=np.uint16)
+
+
+def _with_neighbours(space: Space, grid: Terrain, place: int) -> tuple[States, Codes]:
+    """Return the blocks of a chunk, and their geometry with what reaches in from around it."""
+    start = grid.lattice.start(place)
+    low = [max(at - 1, 0) for at in start]
+    high = [min(at + SIDE + 1, size) for at, size in zip(start, grid.shape, strict=True)]
+    near = grid.cut((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    wide = np.full([SIDE + 4] * 3, EMPTY, dtype=np.uint16)
+    # A code grid has a margin of one cell.
+    wide[tuple(slice(a - s + 1, b - s + 3) for a, b, s in zip(low, high, start, strict=True))] = (
+        code_grid(near, space.codes, space.reaches)
+    )
+    held = np.full([SIDE + 2] * 3, UNKNOWN, dtype=np.int16)
+    held[tuple(slice(a - s + 1, b - s + 1) for a, b, s in zip(low, high, start, strict=True))] = (
+        near
+    )
+    return held[1:-1, 1:-1, 1:-1], wide[2:-2, 2:-2, 2:-2]
 
 
 def _longer(array: npt.NDArray[Any], used: int, size: int) -> npt.NDArray[Any]:
     longer = np.empty((size, *array.shape[1:]), dtype=array.dtype)
     longer[:used] = array[:used]
     return longer
-
-
-def _cut(layer: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return the cubes of a layer of chunks as rows."""
-    _, y, z = layer.shape
-    cubes = layer.reshape(SIDE, y // SIDE, SIDE, z // SIDE, SIDE).transpose(1, 3, 0, 2, 4)
-    return cubes.reshape(-1, VOLUME)

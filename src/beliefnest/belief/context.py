@@ -12,23 +12,19 @@ from beliefnest.belief.arrays import NOBODY, Space
 from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.grounds import SOURCES, Basis, Source
 from beliefnest.errors import InputError
-from beliefnest.perception.codes import chunks_of
 from beliefnest.perception.options import Perception
 from beliefnest.perception.sight import Sight
+from beliefnest.world import terrain
 from beliefnest.world.claims import Claim, claims_from_plain
-from beliefnest.world.frames import BlockGrid, places_of
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, is_sign, plain_state
+from beliefnest.world.terrain import Terrain, chunks_of
 from beliefnest.world.values import Block, Box, EventKind, Position, Sign
 
 __all__ = ["BeliefContext", "SavedWriting"]
 
 _NUMBERS = 2**15 - 1
 """Limit of block numbers, as arrays are int16: block states first, then signs with texts."""
-
-
-DENSE = 1 << 16
-"""Number of cells of a box up to which nodes hold dense arrays of it. Above, they share chunks."""
 
 
 Writing = tuple[Sign, tuple[Claim, ...]]
@@ -112,7 +108,7 @@ class BeliefContext:
         sizes = (nx + 2, ny + 2, nz + 2)
         return Space(
             sizes,
-            chunks_of(sizes) if self.cells > DENSE else None,
+            chunks_of(sizes) if self.cells > terrain.DENSE else None,
             registry.shape_start,
             registry.shape_boxes,
             sight.reaches,
@@ -212,24 +208,25 @@ class BeliefContext:
         """The signs with texts by number."""
         return {number: sign for (sign, _), number in self._signs.items()}
 
-    def states(self, numbers: BlockGrid) -> BlockGrid:
+    def states(self, numbers: Terrain) -> Terrain:
         """Return the block states of numbers. A sign's text is dropped."""
-        if not self._signs or numbers.max(initial=-1) < self.registry.states:
+        first = self.registry.states
+        if not self._signs or numbers.span[1] < first:
             return numbers
         plain = np.array([sign.state for sign, _ in self._signs], dtype=np.int32)
-        first = self.registry.states
-        return np.where(numbers < first, numbers, plain[np.maximum(numbers - first, 0)])
+        return numbers.mapped(
+            lambda part: np.where(part < first, part, plain[np.maximum(part - first, 0)])
+        )
 
-    def texts(self, numbers: BlockGrid) -> Mapping[Position, str]:
-        """Return the texts of signs by position, in order.
-
-        Args:
-            numbers: Block numbers of the whole box, in its shape.
-        """
+    def texts(self, numbers: Terrain) -> Mapping[Position, str]:
+        """Return the texts of signs by position, in order."""
         if not self._signs:
             return {}
-        found = places_of(numbers >= self.registry.states, self.box)
-        return {place: self.signs[int(numbers[index])].text for place, index in found}
+        x, y, z = self.box.low
+        return {
+            (x + i, y + j, z + k): self.signs[numbers[i, j, k]].text
+            for i, j, k in numbers.find(self.signs.keys()).tolist()
+        }
 
     def renumbered(
         self, numbers: npt.NDArray[np.int16], signs: Sequence[SavedWriting]

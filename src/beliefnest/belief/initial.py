@@ -1,6 +1,7 @@
 """Initial forests: of the real world with its priors, or forked from another forest."""
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -17,8 +18,9 @@ from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
 from beliefnest.belief.priors import merged_belief
 from beliefnest.world.claims import ClaimKind, claims_from_plain
-from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Position, Sign
 
 Rows = npt.NDArray[np.int32]
@@ -46,29 +48,25 @@ class Beginning:
     ) -> None:
         self.snapshot, self._context, self._static = snapshot, context, static_blocks
         self._cut: CutGrids | None = None
-        self._grids: tuple[BlockGrid, BlockGrid] | None = None
         self._world = _numbers(context, snapshot)
-        context.track(np.flatnonzero(context.holds[snapshot.blocks.ravel()]).tolist())
+        holders = [state for state in snapshot.blocks.states if context.holds[state]]
+        context.track(cell_of(context.box, place) for place in snapshot.places(holders))
 
-    def grids(self) -> tuple[BlockGrid, BlockGrid]:
-        """Return the numbers of all blocks of the world, and of those that everybody knows."""
-        if self._grids is not None:
-            return self._grids
-        context, blocks, world = self._context, self.snapshot.blocks, self._world
-        known = _states_of(context, {name for name in self._static if isinstance(name, str)})
-        prior = np.full_like(world, UNKNOWN)
-        np.copyto(prior, world, where=known[blocks])
+    @cached_property
+    def grids(self) -> tuple[Terrain, Terrain]:
+        """The numbers of all blocks of the world, and of those that everybody knows."""
+        context, world = self._context, self._world
+        known = _numbers_of(context, {name for name in self._static if isinstance(name, str)})
+        prior = world.mapped(lambda numbers: np.where(known[numbers], numbers, UNKNOWN)).draft()
         for place in self._static:
             if not isinstance(place, str):
                 prior[context.box.index(place)] = world[context.box.index(place)]
-        if context.space.chunks is None:
-            self._grids = (world, prior)
-        return world, prior
+        return world, prior.terrain()
 
     def cut(self) -> CutGrids:
         """Return the chunks of both grids of `grids`."""
         if self._cut is None:
-            self._cut = cut_grids(self._context.space, self.grids())
+            self._cut = cut_grids(self._context.space, self.grids)
         return self._cut
 
 
@@ -115,19 +113,22 @@ def initial_forest(
     return forest
 
 
-def _states_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.bool_]:
-    known = np.zeros(context.registry.states, dtype=np.bool_)
+def _numbers_of(context: BeliefContext, names: Iterable[str]) -> npt.NDArray[np.bool_]:
+    """Return by number of a block whether its block has one of some names."""
+    known = np.zeros(context.holds.size, dtype=np.bool_)
     for name in names:
         ids = context.registry.state_ids(name)
         known[ids.start : ids.stop] = True
+    for number, sign in context.signs.items():
+        known[number] = known[sign.state]
     return known
 
 
-def _numbers(context: BeliefContext, snapshot: Snapshot) -> BlockGrid:
+def _numbers(context: BeliefContext, snapshot: Snapshot) -> Terrain:
     """Return the numbers of all blocks of the world, and note its signs and what they claim."""
     if not snapshot.signs:
         return snapshot.blocks
-    numbers = snapshot.blocks.copy()
+    numbers = snapshot.blocks.draft()
     for place in sorted(snapshot.signs):
         claims = claims_from_plain(snapshot.sign_claims.get(place, ()))
         number = context.number(snapshot.block(place), claims)
@@ -135,7 +136,7 @@ def _numbers(context: BeliefContext, snapshot: Snapshot) -> BlockGrid:
         context.note_signs((cell_of(context.box, place),))
         about = [claim for claim in claims if claim.kind is not ClaimKind.POSITION]
         context.track(cell_of(context.box, claim.cell) for claim in about)
-    return numbers
+    return numbers.terrain()
 
 
 def _add_world(table: NodeTable, beginning: Beginning, rows: Sequence[Rows]) -> Holdings:
@@ -146,7 +147,7 @@ def _add_world(table: NodeTable, beginning: Beginning, rows: Sequence[Rows]) -> 
     context, snapshot = table.context, beginning.snapshot
     node = table.add((), UNKNOWN)
     if table.pool is None:
-        table.set_blocks(node, beginning.grids()[0])
+        table.set_blocks(node, beginning.grids[0])
     else:
         table.set_rows(node, rows[0])
     basis = Basis(snapshot.tick, Source.SEEN)
@@ -176,11 +177,11 @@ def _add_prior(
     basis = Basis(tick, Source.PRIOR)
     node = table.add(path, table.index[path[:-1]])
     if table.pool is None:
-        prior = beginning.grids()[1]
-        blocks = prior.copy() if mine.blocks else prior
+        prior = beginning.grids[1]
+        blocks = prior.draft()
         for place, block in mine.blocks.items():
             blocks[context.box.index(place)] = context.number(block)
-        table.set_blocks(node, blocks)
+        table.set_blocks(node, blocks.terrain())
     else:
         table.set_rows(node, rows[1])
         if mine.blocks:

@@ -50,12 +50,12 @@ from beliefnest.belief.cells import (
 )
 from beliefnest.belief.seeing import eye_of, sees_agent, sees_cell
 from beliefnest.perception.chunks import chunk_in, place_at
-from beliefnest.perception.codes import SIDE, VOLUME, Chunks
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.eyes import Eye
 from beliefnest.perception.options import HEAR_ALL, HEAR_SEEN, SenseLimits
 from beliefnest.perception.rays import Cell, Scene
 from beliefnest.world.event_kinds import Sense
+from beliefnest.world.terrain import SIDE, VOLUME, Chunks
 
 __all__ = ["fold", "put", "put_all"]
 

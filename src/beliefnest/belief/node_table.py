@@ -12,9 +12,9 @@ from beliefnest.belief.chunk_pool import NOTHING, ChunkPool, cut_grids
 from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.grounds import Basis
 from beliefnest.belief.poses import PoseDetails, PoseTable
-from beliefnest.perception.codes import SIDE, VOLUME, code_grid
-from beliefnest.world.frames import BlockGrid
+from beliefnest.perception.codes import code_grid
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.terrain import SIDE, VOLUME, Terrain
 from beliefnest.world.values import Point
 
 __all__ = ["NodeTable", "SavedNode"]
@@ -131,7 +131,7 @@ class NodeTable:
         self._weighing: Weighing | None = None
         # Results of the last call for the next one, until `link`: geometry of the blocks that were
         # set last, and rows of the chunks of another table that were copied.
-        self._coded: tuple[npt.NDArray[Any], Row] | None = None
+        self._coded: tuple[Terrain, Row] | None = None
         self._copied: tuple[NodeTable, Row] | None = None
 
     def nodes(self) -> Nodes:
@@ -303,8 +303,8 @@ class NodeTable:
         self._rows["pending"][node] = np.packbits(pending, bitorder="little").view("<u8")
         self._rows["fresh"][node] |= pending.any()
 
-    def set_blocks(self, node: int, blocks: npt.NDArray[np.signedinteger[Any]]) -> None:
-        """Set all blocks of a node, and its geometry. Do not change the array afterwards."""
+    def set_blocks(self, node: int, blocks: Terrain) -> None:
+        """Set all blocks of a node, and its geometry."""
         space = self.context.space
         if self.pool is not None:
             (rows,) = self.pool.add_grids(cut_grids(space, (blocks,)))
@@ -313,8 +313,9 @@ class NodeTable:
             return
         # Most nodes start with the same array, so the last geometry is kept for the next call.
         if self._coded is None or self._coded[0] is not blocks:
-            self._coded = (blocks, code_grid(blocks, space.codes, space.reaches).ravel())
-        self._rows["blocks"][node] = blocks.ravel()
+            codes = code_grid(blocks.dense(), space.codes, space.reaches)
+            self._coded = (blocks, codes.ravel())
+        self._rows["blocks"][node] = blocks.dense().ravel()
         self._rows["codes"][node] = self._coded[1]
 
     def set_rows(self, node: int, rows: Row) -> None:
@@ -467,7 +468,7 @@ class NodeTable:
         """Set the cells of a node to those of `_saved_cells`; its parent is restored already."""
         numbers = self.context.renumbered(np.frombuffer(saved.blocks, dtype=np.int16), signs)
         if self.pool is None:
-            self.set_blocks(node, numbers.reshape(self.context.box.shape))
+            self.set_blocks(node, Terrain.of(numbers.reshape(self.context.box.shape)))
             return
         codes = np.frombuffer(saved.codes, dtype=np.uint16).reshape(-1, VOLUME)
         added = self.pool.add(numbers.reshape(-1, VOLUME), codes)
@@ -550,19 +551,18 @@ class NodeTable:
         places: npt.NDArray[np.integer[Any]] = chunk * VOLUME + within
         return places
 
-    def blocks(self, node: int) -> BlockGrid:
-        """Return a copy of the numbers of a node's blocks, of the box's shape."""
+    def blocks(self, node: int) -> Terrain:
+        """Return the numbers of a node's blocks."""
         if self.pool is not None:
-            return self.pool.grid(self._rows["rows"][node]).astype(np.int32)
-        blocks: BlockGrid = self._rows["blocks"][node].astype(np.int32)
-        return blocks.reshape(self.context.box.shape)
+            return self.pool.terrain(self._rows["rows"][node])
+        return Terrain.of(self._rows["blocks"][node].reshape(self.context.box.shape))
 
     def flat_blocks(self, node: int) -> npt.NDArray[np.int16]:
         """Return the numbers of a node's blocks by cell; do not change the array."""
         if self.pool is None:
             flat: npt.NDArray[np.int16] = self._rows["blocks"][node]
             return flat
-        return self.pool.grid(self._rows["rows"][node]).ravel()
+        return self.blocks(node).dense().astype(np.int16).ravel()
 
     def versions(self) -> npt.NDArray[np.int32]:
         """Return a number by node that grows with every change of its blocks."""

@@ -13,8 +13,9 @@ from beliefnest.belief.columns import place_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.perception.sight import Geometry
-from beliefnest.world.frames import BlockGrid, Snapshot, places_of
+from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, EventKind, Position
 
 __all__ = ["NodeView", "Part"]
@@ -82,11 +83,16 @@ class NodeView:
 
     @Part
     def grid(self) -> BlockGrid:
-        """The believed block states, shape of the box, -1 unknown."""
+        """The believed block states as a dense array, shape of the box, -1 unknown."""
+        return self.terrain.dense()
+
+    @Part
+    def terrain(self) -> Terrain:
+        """The believed block states, -1 unknown."""
         return self._forest.context.states(self.numbers)
 
     @Part
-    def numbers(self) -> BlockGrid:
+    def numbers(self) -> Terrain:
         """The numbers of the believed blocks; signs with different texts have different numbers.
 
         See `BeliefContext.number`.
@@ -101,8 +107,10 @@ class NodeView:
     @Part
     def signs(self) -> Mapping[Position, str]:
         """The texts of known signs, in order of position; empty for a blank sign."""
-        found = np.isin(self.grid, self._forest.context.sign_states)
-        return {place: self.texts.get(place, "") for place, _ in places_of(found, self.box)}
+        x, y, z = self.box.low
+        found = self.terrain.find(self._forest.context.sign_states.tolist()).tolist()
+        places = ((x + i, y + j, z + k) for i, j, k in found)
+        return {place: self.texts.get(place, "") for place in places}
 
     @Part
     def geometry(self) -> Geometry:
@@ -172,7 +180,7 @@ class NodeView:
         """
         viewer = self.agents[agent]
         if viewer.position is None:
-            return np.zeros(self.grid.shape, dtype=np.bool_)
+            return np.zeros(self.box.shape, dtype=np.bool_)
         x, y, z = viewer.position
         return self.geometry.visible_blocks((x, y + EYE_HEIGHT, z), viewer.yaw, viewer.pitch)
 
@@ -199,7 +207,7 @@ class NodeView:
         return Snapshot(
             tick=self.tick,
             box=self.box,
-            blocks=np.maximum(self.grid, 0),
+            blocks=self.terrain.mapped(lambda part: np.maximum(part, 0)),
             containers={place: dict(c.items) for place, c in self.containers.items()},
             agents=agents,
             items=dict(self.items),

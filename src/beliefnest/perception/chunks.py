@@ -15,8 +15,8 @@ chunks are then dropped before compilation.
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.perception.codes import SIDE, VOLUME, Chunks
 from beliefnest.perception.compiling import inlined
+from beliefnest.world.terrain import SIDE, VOLUME, Chunks
 
 __all__ = ["Rows", "chunk_in", "index_at", "part", "place_at", "stride"]
 

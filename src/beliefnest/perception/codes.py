@@ -17,12 +17,8 @@ __all__ = [
     "INTRUDED",
     "LIMIT_SLACK",
     "OWN",
-    "SIDE",
-    "VOLUME",
-    "Chunks",
     "CodeGrid",
     "Reaches",
-    "chunks_of",
     "code_grid",
 ]
 
@@ -40,21 +36,6 @@ OWN = 0x7FFF
 LIMIT_SLACK = 1e-9
 """Tolerance added to limits of distance and angle. It makes the limits inclusive, however a
 mirrored or rotated world rounds."""
-
-
-SIDE = 8
-"""Number of cells along an edge of a chunk (see `chunks`), a power of 2."""
-VOLUME = SIDE**3
-"""Number of cells of a chunk."""
-
-Chunks = tuple[int, int, int]
-"""Numbers of chunks of a grid along x, y, z."""
-
-
-def chunks_of(sizes: tuple[int, int, int]) -> Chunks:
-    """Return the numbers of chunks of a grid of these sizes, its margin included."""
-    x, y, z = sizes
-    return -(-x // SIDE), -(-y // SIDE), -(-z // SIDE)
 
 
 def code_grid(

@@ -16,8 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.chunks import Rows, index_at, part, place_at, stride
-from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN, Chunks
+from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
 from beliefnest.perception.compiling import compiled, inlined, inner
+from beliefnest.world.terrain import Chunks
 
 __all__ = [
     "LEAST_LENGTH",

@@ -41,6 +41,7 @@ from beliefnest.world.frames import Snapshot, places_of
 from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Block, Point, Position, block_at
 
 __all__ = ["build_scenario"]
@@ -108,8 +109,10 @@ class _Builder:
         signs = build_signs(document, file, grid, box, registry)
         claims = build_sign_claims(document, file, signs, box)
         agents = build_agents(document, file, grid, box, registry)
-        grid.flags.writeable = False
-        self._snapshot = Snapshot(0, box, grid, containers, agents, signs=signs, sign_claims=claims)
+        blocks = Terrain.of(grid)
+        self._snapshot = Snapshot(
+            0, box, blocks, containers, agents, signs=signs, sign_claims=claims
+        )
         self.checks = Checks(document, self._snapshot, registry)
 
     def setting(self) -> Setting:

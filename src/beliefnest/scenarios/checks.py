@@ -75,7 +75,7 @@ class Checks:
     def contents(self, path: KeyPath, place: Position, items: Items) -> None:
         """Refuse items that the container at a place could not hold."""
         box = self.snapshot.box
-        name = self.registry.name(int(self.snapshot.blocks[box.index(place)]))
+        name = self.registry.name(self.snapshot.blocks[box.index(place)])
         self.items(path, items, container_slots(name), f"a {name}")
 
     def items(self, path: KeyPath, items: Items, slots: int, holder: str) -> None:

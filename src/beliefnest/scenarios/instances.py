@@ -242,11 +242,11 @@ class _Scene:
             options.field_of_view,
             options.transparent_blocks,
         )
-        return sight.geometry(self._place.blocks, self._place.box.low)
+        return sight.geometry(self._place.blocks.dense(), self._place.box.low)
 
     @cached_property
     def _ground(self) -> Ground:
-        return Ground(self._registry, self._place.box, self._place.blocks).with_doors_opened
+        return Ground(self._registry, self._place.box, self._place.blocks.dense()).with_doors_opened
 
 
 def _part_of(entry: Mapping[str, Any]) -> Box | None:

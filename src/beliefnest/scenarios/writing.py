@@ -12,7 +12,7 @@ from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.cuboids import cuboids
 from beliefnest.scenarios.loading import scenario_in
 from beliefnest.scenarios.yaml_reading import parse_yaml
-from beliefnest.world.frames import Snapshot, places_of
+from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, Position
@@ -81,7 +81,7 @@ def _blocks(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
     skipped = np.isin(place.blocks, [registry.air])
     for position in [*place.containers, *_sign_places(place, registry)]:
         skipped[place.box.index(position)] = True
-    for state, part in cuboids(place.blocks, skipped):
+    for state, part in cuboids(place.blocks.dense(), skipped):
         low, high = (_at(place.box, corner) for corner in (part.low, part.high))
         where: dict[str, Any] = {"at": low} if low == high else {"fill": _flow([low, high])}
         yield _flow({"block": registry.text(state), **where})
@@ -89,20 +89,20 @@ def _blocks(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
 
 def _containers(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
     for position, items in sorted(place.containers.items()):
-        block = registry.text(int(place.blocks[place.box.index(position)]))
+        block = registry.text(place.blocks[place.box.index(position)])
         yield _flow({"at": position, "block": block, **({"items": dict(items)} if items else {})})
 
 
 def _signs(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
     for position in _sign_places(place, registry):
-        block = registry.text(int(place.blocks[place.box.index(position)]))
+        block = registry.text(place.blocks[place.box.index(position)])
         text = place.signs.get(position, "")
         yield _flow({"at": position, "block": block, **({"text": text} if text else {})})
 
 
 def _sign_places(place: Snapshot, registry: Registry) -> list[Position]:
-    states = [s for s in np.unique(place.blocks).tolist() if is_sign(registry.name(s))]
-    return [at for at, _ in places_of(np.isin(place.blocks, states), place.box)]
+    states = [s for s in place.blocks.states if is_sign(registry.name(s))]
+    return place.places(states)
 
 
 def _agent(state: AgentState) -> Any:
@@ -117,7 +117,7 @@ def _agent(state: AgentState) -> Any:
 
 def _standing(place: Snapshot, registry: Registry) -> tuple[float, float, float]:
     """Return the lowest place to stand; of several, the nearest to the middle."""
-    full = {s: _fills(registry, s) for s in np.unique(place.blocks).tolist()}
+    full = {s: _fills(registry, s) for s in place.blocks.states}
     empty = np.isin(place.blocks, [s for s in full if not registry.boxes(s)])
     floor = np.isin(place.blocks, [s for s, fills in full.items() if fills])
     free = floor[:, :-2] & empty[:, 1:-1] & empty[:, 2:]
@@ -172,6 +172,6 @@ def _check(text: str, place: Snapshot) -> None:
         read = scenario_in(parse_yaml(text, "what was captured"), None).setting.snapshot
     except ScenarioError as error:
         raise InputError(f"a scenario cannot express the place: {error}") from error
-    same = (read.blocks == place.blocks).all() and read.containers == place.containers
+    same = read.blocks == place.blocks and read.containers == place.containers
     if not same or read.signs != place.signs:
         raise AssertionError("a scenario says something else than what was captured")

@@ -15,6 +15,7 @@ import numpy as np
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import Edit, Entry
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, Position
 
 __all__ = [
@@ -147,7 +148,7 @@ def encode_snapshot(snapshot: Snapshot) -> bytes:
             f"a grid of shape {snapshot.blocks.shape} does not fill {snapshot.box}, "
             f"which takes {snapshot.box.shape}"
         )
-    blocks = np.ascontiguousarray(snapshot.blocks, dtype="<i4").tobytes()
+    blocks = np.ascontiguousarray(snapshot.blocks.dense(), dtype="<i4").tobytes()
     return encode(
         _SnapshotBody(
             snapshot.tick,
@@ -170,7 +171,7 @@ def decode_snapshot(data: bytes) -> Snapshot:
     grid = np.frombuffer(body.blocks, dtype="<i4") if len(body.blocks) % 4 == 0 else None
     if grid is None or min(box.shape) < 1 or grid.size != np.prod(box.shape):
         raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}")
-    blocks = grid.reshape(box.shape).astype(np.int32, copy=False)
+    blocks = Terrain.of(grid.reshape(box.shape))
     return Snapshot(
         body.tick,
         box,

@@ -230,7 +230,7 @@ def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) 
 def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
     """Yield the rows of a timeline's first state; air has no rows."""
     place = _place(key, FIRST_ENTRY, snapshot.tick)
-    solid = places_of(snapshot.blocks != registry.air, snapshot.box)
+    solid = places_of(snapshot.blocks.dense() != registry.air, snapshot.box)
     cells = ((place, snapshot.block(place)) for place, _ in solid)
     claims = {at: claims_from_plain(plain) for at, plain in snapshot.sign_claims.items()}
     yield from _block_rows(place, cells, claims, registry, None)

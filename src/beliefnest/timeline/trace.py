@@ -36,6 +36,7 @@ from beliefnest.world.limits import (
 )
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
     AgentState,
@@ -250,7 +251,7 @@ class _Reader:
         self.first = Snapshot(
             line.tick,
             self._box,
-            blocks,
+            Terrain.of(blocks),
             {place: items for place, items in containers.items() if items is not None},
             {name: agent for name, agent in self._agents.items() if agent is not None},
             {n: item for n, item in self._entities(line.items).items() if item is not None},

@@ -4,13 +4,14 @@ A frame holds the changes of one simulator in one tick. A snapshot holds its who
 tick. Both hold facts, never beliefs.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import (
     AgentState,
     Block,
@@ -79,12 +80,12 @@ class Frame:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """State of one simulator at one tick; its grid must not be changed.
+    """State of one simulator at one tick; it must not be changed.
 
     Attributes:
         tick: The tick.
         box: Region of the scenario.
-        blocks: Grid of block states.
+        blocks: Block states.
         containers: Contents of containers.
         agents: States of agents.
         items: Dropped items by entity number.
@@ -97,7 +98,7 @@ class Snapshot:
 
     tick: int
     box: Box
-    blocks: BlockGrid
+    blocks: Terrain
     containers: Mapping[Position, Items]
     agents: Mapping[str, AgentState]
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
@@ -105,7 +106,12 @@ class Snapshot:
     signs: Mapping[Position, str] = field(default_factory=dict)
     sign_claims: Mapping[Position, PlainClaims] = field(default_factory=dict)
 
+    def places(self, states: Collection[int]) -> list[Position]:
+        """Return the positions of the blocks with one of some states, in order."""
+        x, y, z = self.box.low
+        return [(x + i, y + j, z + k) for i, j, k in self.blocks.find(states).tolist()]
+
     def block(self, place: Position) -> Block:
         """Return the block at a position of the box."""
-        state = int(self.blocks[self.box.index(place)])
+        state = self.blocks[self.box.index(place)]
         return Sign(state, self.signs[place]) if place in self.signs else state

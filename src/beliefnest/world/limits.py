@@ -137,9 +137,7 @@ def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
         )
     if snapshot.blocks.shape != snapshot.box.shape:
         faults.append(f"blocks of shape {snapshot.blocks.shape} do not fill {snapshot.box.shape}")
-    elif snapshot.blocks.size and not (
-        snapshot.blocks.min() >= -1 and snapshot.blocks.max() < registry.states
-    ):
+    elif not (snapshot.blocks.span[0] >= -1 and snapshot.blocks.span[1] < registry.states):
         faults.append(f"a block has a state that is not from -1 to {registry.states - 1}")
     for name, agent in snapshot.agents.items():
         numbers = (agent.yaw, agent.pitch, agent.health, agent.food)
@@ -155,7 +153,7 @@ def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
         if place not in snapshot.box:
             faults.append(f"the container at {place} lies outside the box")
         else:
-            state = int(snapshot.blocks[snapshot.box.index(place)])
+            state = snapshot.blocks[snapshot.box.index(place)]
             name = registry.name(state) if state >= 0 else "chest"
             faults.append(
                 items_fault(items, registry, container_slots(name), f"the {name} at {place}")
@@ -167,7 +165,7 @@ def _sign_fault(snapshot: Snapshot, place: Position, text: str, registry: Regist
     if place not in snapshot.box:
         return f"the sign at {place} lies outside the box"
     try:
-        written(registry, int(snapshot.blocks[snapshot.box.index(place)]), text)
+        written(registry, snapshot.blocks[snapshot.box.index(place)], text)
     except InputError as fault:
         return f"the sign at {place}: {fault}"
     return None

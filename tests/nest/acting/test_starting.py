@@ -21,6 +21,7 @@ from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box
 from beliefnest.worlds.by_name import Worlds
 
@@ -93,7 +94,7 @@ def start() -> Setting:
         "anne": AgentState((8.5, 1.0, 7.5), yaw=1.0, inventory=FULL, food=10),
     }
     contents = {CHEST: {"emerald": 3, "dirt": 5}, FURNACE: {}, BARREL: {}}
-    return Setting("place", Snapshot(0, BOX, blocks, contents, agents), bn.Perception())
+    return Setting("place", Snapshot(0, BOX, Terrain.of(blocks), contents, agents), bn.Perception())
 
 
 @pytest.fixture(scope="module")

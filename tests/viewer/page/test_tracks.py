@@ -7,24 +7,24 @@ import numpy as np
 import pytest
 
 import beliefnest as bn
-from beliefnest.belief import context
 from beliefnest.viewer.page import runs
 from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.pose_history import PoseBook
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.viewer.page.runs import numbers_text, text_numbers
 from beliefnest.viewer.page.tracks import CURRENT, PLACED, STALE, UNKNOWN, Track, TrackRecorder
+from beliefnest.world import terrain
 from beliefnest.world.paths import paths_below
 
 BOX = ((0, 0, 0), (12, 3, 8))
 CHESTS = [(3, 1, 3), (9, 1, 3)]
 
 
-@pytest.fixture(scope="module", params=[context.DENSE, 0], ids=["dense", "chunks"])
+@pytest.fixture(scope="module", params=[terrain.DENSE, 0], ids=["dense", "chunks"])
 def story(request: pytest.FixtureRequest) -> Iterator[bn.Nest]:
     """Yield the nest of `_story`, whose nodes hold dense arrays or share chunks."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(context, "DENSE", request.param)
+        patch.setattr(terrain, "DENSE", request.param)
         yield _story()
 
 

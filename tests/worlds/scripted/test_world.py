@@ -28,7 +28,7 @@ def facts(world):
     snapshot = world.snapshot()
     return (
         snapshot.tick,
-        snapshot.blocks.tolist(),
+        snapshot.blocks.dense().tolist(),
         snapshot.containers,
         snapshot.agents,
         snapshot.items,
@@ -148,14 +148,14 @@ def test_frames_alone_lead_from_a_snapshot_to_the_next_one():
     start = world.snapshot()
     for act in ACTS.values():
         act(world)
-    blocks, containers, agents = start.blocks.copy(), dict(start.containers), dict(start.agents)
+    blocks, containers, agents = start.blocks.draft(), dict(start.containers), dict(start.agents)
     for frame in frames:
         for position, state in frame.blocks.items():
             blocks[start.box.index(position)] = state
         containers.update(frame.containers)
         agents.update(frame.agents)
     end = world.snapshot()
-    assert blocks.tolist() == end.blocks.tolist()
+    assert blocks.terrain() == end.blocks
     assert containers == end.containers
     assert agents == end.agents
 

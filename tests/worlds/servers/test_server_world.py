@@ -14,6 +14,7 @@ from tests.servers import GameServer
 from beliefnest.errors import BeliefNestError, BodyError, InputError, WorldError
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, EventKind
 from beliefnest.worlds.by_name import open_world
 from beliefnest.worlds.names import check_world
@@ -32,7 +33,7 @@ def start() -> Snapshot:
     blocks[:, 0, :] = registry.state_id("stone")
     blocks[BOX.index(CHEST)] = registry.state_id("chest")
     agents = {"sally": AgentState((1.5, 1.0, 3.5), inventory={"diamond": 2})}
-    return Snapshot(0, BOX, blocks, {CHEST: {"emerald": 2}}, agents)
+    return Snapshot(0, BOX, Terrain.of(blocks), {CHEST: {"emerald": 2}}, agents)
 
 
 @pytest.fixture(scope="module")
@@ -177,7 +178,7 @@ def test_what_stands_in_the_box_is_not_touched_unless_asked_and_put_back(server)
     blocks = np.zeros(BOX.shape, dtype=np.int32)
     blocks[BOX.index(FOREIGN)] = registry.state_id("barrel[facing=up]")
     world = open_world(server.address(), 0)
-    opened(world, Snapshot(0, BOX, blocks, {FOREIGN: {"bread": 3}}, {}))
+    opened(world, Snapshot(0, BOX, Terrain.of(blocks), {FOREIGN: {"bread": 3}}, {}))
     world.close()
     server.type("setblock 5 2 5 minecraft:air")
 

@@ -204,7 +204,7 @@ class ObservationLayout:
 
 def _doors(setting: Setting, registry: Registry) -> list[Position]:
     snapshot = setting.snapshot
-    states = [s for s in np.unique(snapshot.blocks).tolist() if is_door(registry.name(s))]
+    states = [s for s in snapshot.blocks.states if is_door(registry.name(s))]
     # Leave upper halves of doors out: they move together with the lower ones.
     lower = [s for s in states if registry.properties(s).get("half") != "upper"]
     return _places(setting, lower)
@@ -212,7 +212,7 @@ def _doors(setting: Setting, registry: Registry) -> list[Position]:
 
 def _blocks(setting: Setting, wanted: Callable[[str], bool]) -> list[Position]:
     """Return the positions of blocks with wanted names, in order."""
-    registry, states = Registry.load(), np.unique(setting.snapshot.blocks).tolist()
+    registry, states = Registry.load(), setting.snapshot.blocks.states
     return _places(setting, [s for s in states if s >= 0 and wanted(registry.name(s))])
 
 

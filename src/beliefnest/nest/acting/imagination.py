@@ -24,6 +24,7 @@ from beliefnest.skills.calls import OPEN_CONTAINER, Call
 from beliefnest.world.frames import BlockGrid, Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position, block_at
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
@@ -120,7 +121,7 @@ class Imagination:
         self._grounds = grounds
         self._ground: tuple[BlockGrid, Ground] | None = None
         self._geometry: tuple[BlockGrid, Geometry] | None = None
-        self._switches: tuple[BlockGrid, Sequence[Position]] | None = None
+        self._switches: tuple[Terrain, Sequence[Position]] | None = None
         self._news = news
         self._sight = sight
         self._unseen, self._feet = start
@@ -193,7 +194,7 @@ class Imagination:
     @property
     def switches(self) -> Sequence[Position]:
         """Positions of levers, buttons and pressure plates, in order."""
-        blocks = self.world.blocks
+        blocks = self.world.terrain
         if self._switches is None or self._switches[0] is not blocks:
             self._switches = (blocks, switches_in(self.world.box, blocks))
         return self._switches[1]
@@ -455,7 +456,7 @@ def _print(view: NodeView) -> tuple[object, ...]:
         (name, each.position, each.yaw, each.pitch, each.current, *sorted(each.inventory.items()))
         for name, each in view.agents.items()
     ]
-    return (view.numbers.tobytes(), tuple(contents), tuple(agents))
+    return (view.numbers.dense().tobytes(), tuple(contents), tuple(agents))
 
 
 def _skipped(performers: Mapping[str, Performer]) -> int:

@@ -3,8 +3,6 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from beliefnest.belief.grounds import Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.acting.placement import BodySpace, moved_agents, placed, unknown_floors
@@ -109,7 +107,7 @@ def _floored(
     cells = [cell for cell in cells if known[cell] < 0]
     if not cells:
         return snapshot
-    blocks = np.array(snapshot.blocks)
+    blocks = snapshot.blocks.draft()
     for cell in cells:
         blocks[cell] = history.context.registry.state_id(_FLOOR)
-    return replace(snapshot, blocks=blocks)
+    return replace(snapshot, blocks=blocks.terrain())

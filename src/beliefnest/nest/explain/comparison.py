@@ -14,8 +14,8 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.words import html_lines, html_table, where_words
-from beliefnest.world.frames import places_of
 from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.terrain import Counts, States
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import contents_words, point_words
 
@@ -144,10 +144,7 @@ def compare(
     Blocks come first, then containers, agents and inventories, each in order.
     """
     one, other = recording.state(a, tick), recording.state(b, tick)
-    wanted = one.numbers != other.numbers
-    if not unknown:
-        wanted &= (one.numbers >= 0) & (other.numbers >= 0)
-    blocks = _blocks_in(wanted, one, other, recording.context)
+    blocks = _blocks_in(None if unknown else _both_known, one, other, recording.context)
     things = _different_things(one, other)
     known = (each for each in things if each.a is not None and each.b is not None)
     found = itertools.chain(blocks, things if unknown else known)
@@ -174,9 +171,7 @@ def false_beliefs(
     """
     belief = recording.state(path, tick)
     real = recording.state(against, tick if against_tick is None else against_tick)
-    # In a large box most blocks are unknown, so that single ones are looked at only if they count.
-    wanted = (belief.numbers >= 0) & (real.numbers != belief.numbers)
-    blocks = _blocks_in(wanted, real, belief, recording.context)
+    blocks = _blocks_in(_second_known, real, belief, recording.context)
     found = itertools.chain(blocks, false_things(real, belief))
     return Differences(found, path_text(against), path_text(path))
 
@@ -230,13 +225,22 @@ def are_false(real: Contents | None, belief: Contents) -> bool:
     return too_much or (belief.complete and dict(claimed) != dict(true))
 
 
+def _both_known(a: States, b: States) -> npt.NDArray[np.bool_]:
+    return (a >= 0) & (b >= 0)
+
+
+def _second_known(a: States, b: States) -> npt.NDArray[np.bool_]:
+    return b >= 0
+
+
 def _blocks_in(
-    mask: npt.NDArray[np.bool_], a: NodeView, b: NodeView, context: BeliefContext
+    counts: Counts | None, a: NodeView, b: NodeView, context: BeliefContext
 ) -> Iterator[Difference]:
-    """Yield the blocks of two nodes where a mask of the box is True."""
-    for place, index in places_of(mask, context.box):
-        texts = (context.block_text(int(view.numbers[index])) for view in (a, b))
-        yield Difference("block", place, *texts)
+    """Yield the blocks that differ between two nodes; `counts` is that of `Terrain.differing`."""
+    x, y, z = context.box.low
+    for i, j, k in a.numbers.differing(b.numbers, counts).tolist():
+        texts = (context.block_text(view.numbers[i, j, k]) for view in (a, b))
+        yield Difference("block", (x + i, y + j, z + k), *texts)
 
 
 def _different_things(a: BelievedThings, b: BelievedThings) -> Iterator[Difference]:

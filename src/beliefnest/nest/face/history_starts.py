@@ -42,7 +42,7 @@ class Starts:
         registry, snapshot = Registry.load(), self.snapshot
         if not (blocks or contents or agents):
             return snapshot
-        grid = snapshot.blocks.copy()
+        grid = snapshot.blocks.draft()
         held = {place: dict(items) for place, items in snapshot.containers.items()}
         for place, block in blocks.items():
             state = max(0, plain_state(block))
@@ -54,11 +54,11 @@ class Starts:
         chest = registry.state_id("chest")
         for place, items in contents.items():
             index = snapshot.box.index(place)
-            if not registry.is_container(registry.name(int(grid[index]))):
+            if not registry.is_container(registry.name(grid[index])):
                 grid[index] = chest
             held[place] = dict(items)
         states = {**snapshot.agents, **agents}
-        return replace(snapshot, blocks=grid, containers=held, agents=states)
+        return replace(snapshot, blocks=grid.terrain(), containers=held, agents=states)
 
     def entries(self, course: Course) -> list[Edit | Frame]:
         """Return what is recorded of a course."""

@@ -6,8 +6,6 @@ other block is tracked from the first claim about it on, and timelines are then 
 the beginning, so that the result does not depend on when the claim was met.
 """
 
-import numpy as np
-
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
@@ -74,7 +72,7 @@ def _claimed_at_first(context: BeliefContext, snapshot: Snapshot) -> list[int]:
 
 def _switches(context: BeliefContext, snapshot: Snapshot) -> list[int]:
     """Return cells of doors, gates, levers, buttons, signs and containers at the start."""
-    states = np.unique(snapshot.blocks).tolist()
+    states = snapshot.blocks.states
     registry = context.registry
     names = {state: registry.name(state) for state in states if state >= 0}
     wanted = [
@@ -82,5 +80,4 @@ def _switches(context: BeliefContext, snapshot: Snapshot) -> list[int]:
         for state, name in names.items()
         if is_door(name) or is_switch(name) or is_sign(name) or registry.is_container(name)
     ]
-    cells: list[int] = np.flatnonzero(np.isin(snapshot.blocks.ravel(), wanted)).tolist()
-    return cells
+    return [cell_of(context.box, place) for place in snapshot.places(wanted)]

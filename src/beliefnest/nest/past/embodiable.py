@@ -14,6 +14,7 @@ import numpy as np
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.limits import AGENT_SLOTS, container_slots, items_fault
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, HALF_WIDTH, AgentState, Box, Items, Position
 
 __all__ = ["CHEST", "chest_places", "embodiable", "with_chests", "with_chests_at"]
@@ -80,7 +81,7 @@ def embodiable(registry: Registry, snapshot: Snapshot, blocks: BlockGrid) -> Sna
     }
     return replace(
         snapshot,
-        blocks=np.maximum(blocks, 0),
+        blocks=Terrain.of(np.maximum(blocks, 0)),
         containers=held,
         agents={
             name: _laden(registry, _inside(snapshot.box, agent))

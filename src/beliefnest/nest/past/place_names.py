@@ -3,8 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
-import numpy as np
-
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.registry import Registry
@@ -51,14 +49,8 @@ def sign_places(setting: Setting) -> set[Position]:
 
 def _blocks(setting: Setting, accepts: Callable[[str], bool]) -> set[Position]:
     snapshot, registry = setting.snapshot, Registry.load()
-    states = [
-        int(n) for n in np.unique(snapshot.blocks) if n >= 0 and accepts(registry.name(int(n)))
-    ]
-    low = snapshot.box.low
-    return {
-        (low[0] + x, low[1] + y, low[2] + z)
-        for x, y, z in np.argwhere(np.isin(snapshot.blocks, states)).tolist()
-    }
+    states = [n for n in snapshot.blocks.states if n >= 0 and accepts(registry.name(n))]
+    return set(snapshot.places(states))
 
 
 def _base(setting: Setting, registry: Registry, at: Position, *, sign: bool) -> str:

@@ -33,6 +33,7 @@ from beliefnest.errors import InputError
 from beliefnest.suites.stories.story import WAITING_ROOM, Place, Story
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Items, Point, Position
 
 __all__ = ["WALL", "FloorPlan", "feet", "lay_out"]
@@ -124,14 +125,13 @@ def lay_out(story: Story) -> FloorPlan:
     }
     for position in signs.values():
         grid[position] = registry.state_id(_SIGN)
-    grid.flags.writeable = False
     items = item_names(tuple(story.things), registry)
     contents: dict[Position, Items] = {position: {} for position in places.values()}
     for thing, place in story.things.items():
         contents[places[place]] = {**contents[places[place]], items[thing]: 1}
     apart = apart or cells
     agents = {name: AgentState(feet(block)) for name, block in apart.items()}
-    snapshot = Snapshot(0, box, grid, contents, agents)
+    snapshot = Snapshot(0, box, Terrain.of(grid), contents, agents)
     return FloorPlan(snapshot, places, apart, stands, items, doors, signs)
 
 

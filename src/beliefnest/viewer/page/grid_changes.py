@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from beliefnest.belief.chunk_pool import NOTHING, ChunkPool
 from beliefnest.belief.node_table import NodeTable
-from beliefnest.perception.codes import SIDE, VOLUME
+from beliefnest.world.terrain import SIDE, VOLUME
 
 __all__ = ["Cells", "GridChanges", "States"]
 

@@ -292,18 +292,19 @@ class EmbeddedWorld(NodeWorld):
 
 def _difference(before: Snapshot, after: Snapshot) -> dict[str, Any]:
     """Return the changes from one snapshot to another, as arguments of `apply`."""
-    other = before.blocks != after.blocks
+    changes = node_messages.terrain_changes(before.blocks, after.blocks, after.box.low)
+    replaced = {(x, y, z) for x, y, z, _ in changes}
     gone = before.containers.keys() - after.containers.keys()
     # A container that replaces another one begins empty.
     contents = {
         place: items
         for place, items in after.containers.items()
-        if before.containers.get(place) != items or other[after.box.index(place)]
+        if before.containers.get(place) != items or place in replaced
     }
     agents = node_messages.agents_changes(before.agents, after.agents, node_messages.agent_message)
     return {
         **node_messages.signs_message(after.signs),
-        "blocks": node_messages.blocks_changes(before.blocks, after.blocks, after.box.low),
+        "blocks": changes,
         "containers": [
             *node_messages.contents_message(contents),
             *([*place, None] for place in sorted(gone)),

@@ -10,6 +10,7 @@ import numpy as np
 from beliefnest.errors import BeliefNestError, BodyError
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import (
     AgentState,
     Block,
@@ -35,6 +36,7 @@ __all__ = [
     "signs_message",
     "snapshot_message",
     "snapshot_of",
+    "terrain_changes",
 ]
 
 
@@ -96,7 +98,7 @@ def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
     return Snapshot(
         got.tick,
         box,
-        _blocks_of(got.blocks, box),
+        Terrain.of(_blocks_of(got.blocks, box)),
         {(x, y, z): items for x, y, z, items in sorted(got.containers, key=lambda c: c[:3])},
         dict(sorted(got.agents.items())),
         dict(sorted(got.items.items())),
@@ -110,7 +112,7 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
     return {
         "tick": snapshot.tick,
         "box": [snapshot.box.low, snapshot.box.high],
-        "blocks": runs_of(snapshot.blocks),
+        "blocks": runs_of(snapshot.blocks.dense()),
         "containers": contents_message(snapshot.containers),
         "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
         "items": items_message(snapshot.items),
@@ -201,8 +203,16 @@ def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, 
     return changes
 
 
-def blocks_changes(before: BlockGrid, after: BlockGrid, low: Position) -> list[list[int]]:
+def terrain_changes(before: Terrain, after: Terrain, low: Position) -> list[list[int]]:
     """Return changed blocks as rows of x, y, z, state; `low` is the box's lowest corner."""
+    return [
+        [low[0] + i, low[1] + j, low[2] + k, after[i, j, k]]
+        for i, j, k in before.differing(after).tolist()
+    ]
+
+
+def blocks_changes(before: BlockGrid, after: BlockGrid, low: Position) -> list[list[int]]:
+    """Return what `terrain_changes` returns, of dense grids."""
     return [
         [low[0] + i, low[1] + j, low[2] + k, int(after[i, j, k])]
         for i, j, k in np.argwhere(before != after).tolist()

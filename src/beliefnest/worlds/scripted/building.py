@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.hand import (
     Doing,
@@ -84,4 +84,4 @@ def _name_at(hand: Hand, place: Position) -> str:
 
 def _state_at(hand: Hand, place: Position) -> int:
     world = hand.world
-    return int(world.blocks[world.box.index(place)]) if place in world.box else AIR
+    return world.state_at(place)

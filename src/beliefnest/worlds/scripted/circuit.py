@@ -39,7 +39,7 @@ class Circuit:
     """
 
     def __init__(self, state_at: Callable[[Position], int]) -> None:
-        self._state_at = state_at
+        self.state_at = state_at
         self._states: dict[Position, int] = {}
         self._registry = Registry.load()
         self._facts = Circuits.load()
@@ -107,7 +107,7 @@ class Circuit:
     def _at(self, place: Position) -> int:
         state = self._states.get(place)
         if state is None:
-            state = self._states[place] = self._state_at(place)
+            state = self._states[place] = self.state_at(place)
         return state
 
     def _parts(self, place: Position) -> list[Position]:

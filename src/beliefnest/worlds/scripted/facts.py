@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 import msgspec
 
 from beliefnest.errors import WorldError
-from beliefnest.world.frames import BlockGrid, PlainClaims
+from beliefnest.world.frames import PlainClaims
 from beliefnest.world.limits import MOST_HELD, agent_name_fault, box_fault
+from beliefnest.world.terrain import Draft
 from beliefnest.world.texts import fault_of
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
@@ -39,7 +40,7 @@ __all__ = [
 class WorldFacts:
     """State of a scripted world; it is copied before each tick, to undo a failed one."""
 
-    blocks: BlockGrid
+    blocks: Draft
     containers: dict[Position, dict[str, int]]
     agents: dict[str, AgentState]
     items: dict[int, DroppedItem]
@@ -51,7 +52,7 @@ class WorldFacts:
     """Pressure plates."""
 
     def copied(self) -> "WorldFacts":
-        """Return a copy; it shares the grid of blocks (see `ScriptedState`)."""
+        """Return a copy; it shares the draft of blocks."""
         return WorldFacts(
             self.blocks,
             dict(self.containers),

@@ -156,7 +156,7 @@ def _bring(hand: Hand, cell: Position, *, opens: bool) -> Doing:
     world, registry = hand.world, Registry.load()
 
     def is_to_move() -> bool:
-        state = int(world.blocks[world.box.index(cell)]) if cell in world.box else AIR
+        state = world.state_at(cell)
         name = registry.name(state)
         return is_doorway(name) and moves_by_hand(name) and is_open(registry, state) is not opens
 

@@ -2,16 +2,13 @@
 
 import functools
 import math
-from collections.abc import Iterator
-
-import numpy as np
-import numpy.typing as npt
+from collections.abc import Collection, Iterator
 
 from beliefnest.world.circuits import Circuits
 from beliefnest.world.doors import is_switch
-from beliefnest.world.frames import BlockGrid
 from beliefnest.world.handling import Handling, pressed_button, with_power
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Point, Position
 from beliefnest.worlds.scripted.circuit import Circuit
 from beliefnest.worlds.scripted.facts import Pending
@@ -37,21 +34,21 @@ class PoweredState(ScriptedState):
 
     def moved_by(self, switch: Position) -> dict[Position, int]:
         """Return the new states of blocks that the use of a switch would move."""
-        before = self._state_at(switch)
+        before = self.state_at(switch)
         is_on = self._registry.properties(before)["powered"] == "true"
-        circuit = Circuit(self._state_at)
+        circuit = Circuit(self.state_at)
         circuit.note(switch, with_power(self._registry, before, powered=not is_on))
         return circuit.consequences(switch)
 
     def _alter(self, pending: Pending, place: Position, state: int) -> None:
         """Replace a block; let wires and other blocks react."""
-        before = self._state_at(place)
+        before = self.state_at(place)
         self._change(pending, place, state, None)
-        circuit = Circuit(self._state_at)
+        circuit = Circuit(self.state_at)
         if not circuit.reacts(before, state):
             return
         for other, after in circuit.consequences(place).items():
-            there = self._state_at(other)
+            there = self.state_at(other)
             is_lamp = self._registry.name(there) == _LAMP
             if is_lamp and self._registry.properties(there)["lit"] == "true":
                 self._wait(pending, other, Circuits.load().facts.dims)
@@ -75,22 +72,22 @@ class PoweredState(ScriptedState):
         for place in due:
             self._end(pending, place)
         for place in self._touched():
-            state = self._state_at(place)
+            state = self.state_at(place)
             if self._registry.properties(state)["powered"] == "false":
                 self._alter(pending, place, with_power(self._registry, state, powered=True))
             self._wait(pending, place, Circuits.load().facts.plate_looks)
 
     def _end(self, pending: Pending, place: Position) -> None:
         """Let a block do what it waited for."""
-        state, registry = self._state_at(place), self._registry
+        state, registry = self.state_at(place), self._registry
         if Handling.load().is_pressed(registry, state):
-            out = pressed_button(registry, self._state_at, place, powered=False)
+            out = pressed_button(registry, self.state_at, place, powered=False)
             self._alter(pending, place, out)
         elif state in Circuits.load().plates:
             if registry.properties(state)["powered"] == "true" and place not in self._touched():
                 self._alter(pending, place, with_power(registry, state, powered=False))
         elif registry.name(state) == _LAMP:
-            for part, after in Circuit(self._state_at).answer(place).items():
+            for part, after in Circuit(self.state_at).answer(place).items():
                 self._change(pending, part, after, None)
 
     def _touched(self) -> list[Position]:
@@ -103,7 +100,7 @@ class PoweredState(ScriptedState):
             place
             for each in facts.items.values()
             for place in self._under(each.position, _ITEM)
-            if plates[self._state_at(place)] == "all"
+            if plates[self.state_at(place)] == "all"
         ]
         return list(dict.fromkeys(found))
 
@@ -123,37 +120,29 @@ class PoweredState(ScriptedState):
                     yield place
 
 
-def plates_in(box: Box, blocks: BlockGrid) -> frozenset[Position]:
+def plates_in(box: Box, blocks: Terrain) -> frozenset[Position]:
     """Return the positions of pressure plates in a grid."""
-    return frozenset(_places(box, blocks, _are_plates()))
+    return frozenset(_places(box, blocks, Circuits.load().plates))
 
 
-def switches_in(box: Box, blocks: BlockGrid) -> list[Position]:
+def switches_in(box: Box, blocks: Terrain) -> list[Position]:
     """Return the positions of levers, buttons and pressure plates in a grid, in order."""
-    return list(_places(box, blocks, _are_switches()))
+    return list(_places(box, blocks, _switch_states()))
 
 
-def _places(box: Box, blocks: BlockGrid, wanted: npt.NDArray[np.bool_]) -> Iterator[Position]:
-    """Yield the positions of blocks with wanted states; `wanted` has a value for each state."""
+def _places(box: Box, blocks: Terrain, wanted: Collection[int]) -> Iterator[Position]:
+    """Yield the positions of blocks with wanted states."""
     x, y, z = box.low
-    for i, j, k in np.argwhere(wanted[blocks]).tolist():
+    for i, j, k in blocks.find(wanted).tolist():
         yield (x + i, y + j, z + k)
 
 
 @functools.cache
-def _are_plates() -> npt.NDArray[np.bool_]:
-    found = np.zeros(Registry.load().states, dtype=np.bool_)
-    found[list(Circuits.load().plates)] = True
-    return found
-
-
-@functools.cache
-def _are_switches() -> npt.NDArray[np.bool_]:
-    registry, found = Registry.load(), _are_plates().copy()
-    for name in registry.block_names:
-        if is_switch(name):
-            found[list(registry.state_ids(name))] = True
-    return found
+def _switch_states() -> frozenset[int]:
+    registry = Registry.load()
+    switches = (name for name in registry.block_names if is_switch(name))
+    states = (state for name in switches for state in registry.state_ids(name))
+    return frozenset({*states, *Circuits.load().plates})
 
 
 def _overlaps(middle: float, half: float, low: int, inset: float) -> bool:

@@ -12,7 +12,7 @@ from beliefnest.errors import InputError, WorldError
 from beliefnest.skills.calls import OPEN_CONTAINER, Call
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_open
-from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_fault
 from beliefnest.world.values import EYE_HEIGHT, Position, block_at
 from beliefnest.worlds.scripted.building import mine_block, place_item, press_button, switch_lever
@@ -81,7 +81,7 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
         place = block_in(position)
         yield from walk_to_use(hand, place)
         world = hand.world
-        there = int(world.blocks[world.box.index(place)]) if place in world.box else AIR
+        there = world.state_at(place)
         if is_open(Registry.load(), there) is to_open:
             return
         yield 0

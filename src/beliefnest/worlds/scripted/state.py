@@ -5,8 +5,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.owned import Barred
 from beliefnest.world.circuits import Circuits
@@ -14,6 +12,7 @@ from beliefnest.world.frames import BlockGrid, PlainClaims
 from beliefnest.world.limits import items_fault
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import written
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import (
     AgentState,
     Block,
@@ -53,8 +52,7 @@ class ScriptedState(Barred):
         self._registry = Registry.load()
         self._plates = Circuits.load().plates
         self._box = checked_box(box)
-        self._handed_out = False
-        self._facts = WorldFacts(np.zeros(self._box.shape, dtype=np.int32), {}, {}, {})
+        self._facts = WorldFacts(Terrain.full(self._box.shape, AIR).draft(), {}, {}, {})
 
     @property
     def box(self) -> Box:
@@ -89,13 +87,21 @@ class ScriptedState(Barred):
 
     def block_text(self, place: Position) -> str:
         """Return the block state at a position as text; air outside the box."""
-        return self._registry.text(self._state_at(place))
+        return self._registry.text(self.state_at(place))
+
+    @property
+    def terrain(self) -> Terrain:
+        """Block states of the box, as they are now."""
+        return self._facts.blocks.terrain()
 
     @property
     def blocks(self) -> BlockGrid:
-        """Block state ids of the box; later ticks do not change a grid that was handed out."""
-        self._handed_out = True
-        return self._facts.blocks
+        """Block states of the box as one dense array, which later ticks do not change."""
+        return self.terrain.dense()
+
+    def state_at(self, place: Position) -> int:
+        """Return the block state at a position; air outside the box."""
+        return self._facts.blocks[self._box.index(place)] if place in self._box else AIR
 
     @property
     def signs(self) -> Mapping[Position, str]:
@@ -104,10 +110,7 @@ class ScriptedState(Barred):
 
     def _change(self, pending: Pending, place: Position, state: int, actor: str | None) -> None:
         """Replace a block in the current tick."""
-        if self._handed_out:
-            self._facts.blocks = self._facts.blocks.copy()
-            self._handed_out = False
-        pending.replaced.append((self._box.index(place), self._state_at(place)))
+        pending.replaced.append((self._box.index(place), self.state_at(place)))
         held = self._facts.containers.get(place)
         self._put(place, self._registry.text(state))
         if self._facts.containers.get(place) is not held:
@@ -121,27 +124,18 @@ class ScriptedState(Barred):
 
     def _undo(self, pending: Pending) -> None:
         """Restore the facts before the current tick."""
-        blocks = self._facts.blocks
-        if pending.replaced:
-            # Somebody may have been given the grid during the tick.
-            blocks, self._handed_out = blocks.copy(), False
         for index, state in reversed(pending.replaced):
-            blocks[index] = state
+            self._facts.blocks[index] = state
         self._facts = pending.saved
-        self._facts.blocks = blocks
-
-    def _state_at(self, place: Position) -> int:
-        """Return the block state at a position; air outside the box."""
-        return int(self._facts.blocks[self._box.index(place)]) if place in self._box else AIR
 
     def _block(self, place: Position) -> Block:
         """Return the block at a position, with its text if it is a sign."""
-        state = self._state_at(place)
+        state = self.state_at(place)
         return Sign(state, self._facts.signs[place]) if place in self._facts.signs else state
 
     def _write(self, place: Position, text: str) -> None:
         try:
-            block = written(self._registry, self._state_at(place), text)
+            block = written(self._registry, self.state_at(place), text)
         except InputError as fault:
             raise WorldError(f"the text at {place} cannot be written: {fault}") from None
         self._wipe(place)
@@ -161,7 +155,7 @@ class ScriptedState(Barred):
 
     def _put(self, place: Position, block: str) -> None:
         state = self._state(block)
-        before = self._registry.name(self._state_at(place))
+        before = self._registry.name(self.state_at(place))
         name = self._registry.name(state)
         if before != name:
             self._wipe(place)
@@ -199,7 +193,7 @@ class ScriptedState(Barred):
     def _container(self, position: Position) -> Position:
         place = self._inside(position)
         if place not in self._facts.containers:
-            there = self._registry.text(self._state_at(place))
+            there = self._registry.text(self.state_at(place))
             raise WorldError(f"there is no container at {place}, but {there}")
         return place
 

@@ -125,7 +125,7 @@ class ScriptedWorld(PoweredState):
         other = copy(self)
         other._listeners, other._pending = [], None
         other._facts = self._facts.copied()
-        self._handed_out = other._handed_out = True
+        other._facts.blocks = self.terrain.draft()
         return other
 
     @property
@@ -152,7 +152,7 @@ class ScriptedWorld(PoweredState):
         return Snapshot(
             self._tick,
             self._box,
-            self.blocks,
+            self.terrain,
             {place: dict(items) for place, items in facts.containers.items()},
             dict(facts.agents),
             dict(facts.items),
@@ -167,7 +167,7 @@ class ScriptedWorld(PoweredState):
             raise WorldError(f"a snapshot of {snapshot.box} does not fit into {self._box}")
         self._tick = snapshot.tick
         self._facts = WorldFacts(
-            snapshot.blocks.copy(),
+            snapshot.blocks.draft(),
             {place: dict(items) for place, items in snapshot.containers.items()},
             dict(snapshot.agents),
             dict(snapshot.items),
@@ -234,7 +234,7 @@ class ScriptedWorld(PoweredState):
             place = self._inside(position)
             if actor is not None:
                 self._agent(actor)
-            before, state = self._state_at(place), self._state(block)
+            before, state = self.state_at(place), self._state(block)
             if state != before:
                 self._change(pending, place, state, actor)
 
@@ -243,7 +243,7 @@ class ScriptedWorld(PoweredState):
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
-            moved = used_door(self._registry, self._state_at, place, opens=open)
+            moved = used_door(self._registry, self.state_at, place, opens=open)
             for part, state in moved.items():
                 self._change(pending, part, state, None)
             detail = {"position": min(moved), "open": open}
@@ -254,7 +254,7 @@ class ScriptedWorld(PoweredState):
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
-            moved = switched_lever(self._registry, self._state_at, place, powered=powered)
+            moved = switched_lever(self._registry, self.state_at, place, powered=powered)
             self._alter(pending, place, moved)
             detail = {"position": place, "powered": powered}
             pending.events.append(Event(EventKind.USE_LEVER, name, detail))
@@ -264,7 +264,7 @@ class ScriptedWorld(PoweredState):
         with self._act() as pending:
             self._agent(name)
             place = self._inside(position)
-            moved = pressed_button(self._registry, self._state_at, place)
+            moved = pressed_button(self._registry, self.state_at, place)
             self._alter(pending, place, moved)
             self._wait(pending, place, Handling.load().pressed_ticks(self._registry.name(moved)))
             pending.events.append(Event(EventKind.PRESS_BUTTON, name, {"position": place}))
@@ -274,9 +274,9 @@ class ScriptedWorld(PoweredState):
         with self._act() as pending:
             agent = self._agent(name)
             place = self._inside(position)
-            state = self._state_at(place)
+            state = self.state_at(place)
             drops = Handling.load().drops(self._registry.name(state), agent.inventory)
-            check_holds_nothing(self._registry, self._state_at, place)
+            check_holds_nothing(self._registry, self.state_at, place)
             held = self._fitting(name, agent.inventory, drops, AGENT_SLOTS + WORN_SLOTS)
             self._alter(pending, place, AIR)
             self._set_agent(name, inventory=held)
@@ -292,7 +292,7 @@ class ScriptedWorld(PoweredState):
             moved = self._items({item: 1})
             held = rest_of(agent.inventory, moved, f"{name} cannot put {item}: it")
             bodies = [each.position for each in self._facts.agents.values()]
-            state = put_block(self._registry, self._state_at, place, item, bodies)
+            state = put_block(self._registry, self.state_at, place, item, bodies)
             self._alter(pending, place, state)
             self._set_agent(name, inventory=held)
             pending.agents.add(name)
@@ -399,7 +399,7 @@ class ScriptedWorld(PoweredState):
             held, inside = agent.inventory, self._facts.containers[place]
             if kind is EventKind.DEPOSIT_ITEM_INTO_CHEST:
                 held = rest_of(held, moved, f"{name} cannot put {moved} into {place}: it")
-                state = self._state_at(place)
+                state = self.state_at(place)
                 there = self._registry.name(state)
                 inside = self._fitting(
                     f"the {there} at {place}", inside, moved, container_slots(there)

@@ -38,4 +38,4 @@ class WorldFacts:
 
     def block(self, place: Position) -> str | None:
         """Return the text of a block state."""
-        return Registry.load().text(int(self._world.blocks[self._world.box.index(place)]))
+        return Registry.load().text(self._world.state_at(place))

@@ -8,10 +8,11 @@ import msgspec
 import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.world.frames import BlockGrid, Snapshot, places_of
+from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign, sign_fault
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Items, Position
 from beliefnest.worlds.minecraft import node_messages
 from beliefnest.worlds.minecraft.channel import Channel
@@ -106,7 +107,7 @@ def capture_file(data: bytes, corner: Position) -> Captured:
     registry = Registry.load()
     states, unknown = _states(place.palette, registry)
     cells = np.frombuffer(place.blocks, dtype="<i4").reshape(box.shape)
-    blocks: BlockGrid = states[cells].astype(np.int32)
+    blocks = Terrain.of(states[cells])
 
     def there(at: Sequence[int]) -> Position:
         return (at[0] + corner[0], at[1] + corner[1], at[2] + corner[2])
@@ -145,12 +146,14 @@ def _states(palette: Sequence[str], registry: Registry) -> tuple[BlockGrid, str]
 def _said(found: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
     """Return the part of a place that a scenario can express, and sentences about the rest."""
     left_out = []
-    air = np.where(np.isin(found.blocks, registry.airs), registry.air, found.blocks)
-    found = replace(found, blocks=air.astype(np.int32))
-    names = {state: registry.name(state) for state in np.unique(found.blocks).tolist()}
+    blocks = found.blocks.mapped(
+        lambda states: np.where(np.isin(states, registry.airs), registry.air, states)
+    )
+    found = replace(found, blocks=blocks)
+    names = {state: registry.name(state) for state in blocks.states}
 
     def name_at(place: Position) -> str:
-        return names[int(found.blocks[found.box.index(place)])]
+        return names[found.blocks[found.box.index(place)]]
 
     containers: dict[Position, Items] = {}
     others, strange = set(), set()
@@ -160,8 +163,7 @@ def _said(found: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
             containers[place] = {i: count for i, count in items.items() if registry.has_item(i)}
         elif items:
             others.add(name_at(place))
-    holders = np.isin(found.blocks, _container_states(names, registry))
-    for place, _ in places_of(holders, found.box):
+    for place in found.places(_container_states(names, registry)):
         containers.setdefault(place, {})
     signs = {
         place: text

@@ -1,0 +1,421 @@
+"""Terrain: block states of a box, in chunks that several terrains share.
+
+A box of up to `DENSE` cells is one chunk of its own shape. A larger one is cut into cubes of
+`SIDE` cells. The cubes begin one cell before the box, so that they are also those of a grid of
+shape codes with its margin (`perception.codes`); cells of a cube outside the box have no meaning.
+
+An index is a tuple of cell numbers along x, y, z, counted from the lower corner of the box. Values
+are block state ids; -1 is unknown.
+"""
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = [
+    "DENSE",
+    "SIDE",
+    "VOLUME",
+    "Chunks",
+    "Counts",
+    "Draft",
+    "Index",
+    "Lattice",
+    "States",
+    "Terrain",
+    "chunks_of",
+]
+
+SIDE = 8
+"""Number of cells along an edge of a chunk, a power of 2."""
+VOLUME = SIDE**3
+"""Number of cells of a chunk."""
+
+DENSE = 1 << 16
+"""Greatest number of cells of a box that is one chunk."""
+
+Chunks = tuple[int, int, int]
+"""Numbers of chunks along x, y, z."""
+
+Index = tuple[int, int, int]
+
+States = npt.NDArray[np.int32]
+"""Block state ids along x, y, z."""
+
+Counts = Callable[[States, States], npt.NDArray[np.bool_]]
+
+_MARGIN = 1
+_SPARE = 256
+
+
+def chunks_of(sizes: tuple[int, int, int]) -> Chunks:
+    """Return the numbers of chunks of a grid of these sizes, its margin included."""
+    x, y, z = sizes
+    return -(-x // SIDE), -(-y // SIDE), -(-z // SIDE)
+
+
+@dataclass(frozen=True)
+class Lattice:
+    """Chunks of a box by number, z fastest.
+
+    Attributes:
+        shape: Shape of the box.
+        is_one: True if the box is one chunk.
+    """
+
+    shape: tuple[int, int, int]
+    is_one: bool
+
+    @classmethod
+    def of(cls, shape: tuple[int, int, int]) -> "Lattice":
+        """Return the division of a box of this shape."""
+        x, y, z = shape
+        return cls(shape, x * y * z <= DENSE)
+
+    @cached_property
+    def counts(self) -> Chunks:
+        """Numbers of chunks along x, y, z."""
+        if self.is_one:
+            return (1, 1, 1)
+        x, y, z = self.shape
+        return chunks_of((x + 2 * _MARGIN, y + 2 * _MARGIN, z + 2 * _MARGIN))
+
+    def slot(self, index: Index) -> tuple[int, Index]:
+        """Return the number of a cell's chunk and the cell's index in the chunk."""
+        if self.is_one:
+            return 0, index
+        i, j, k = (part + _MARGIN for part in index)
+        _, ny, nz = self.counts
+        number = ((i // SIDE) * ny + j // SIDE) * nz + k // SIDE
+        return number, (i % SIDE, j % SIDE, k % SIDE)
+
+    def start(self, number: int) -> Index:
+        """Return the index of the first cell of a chunk, which may lie in the margin."""
+        if self.is_one:
+            return (0, 0, 0)
+        _, ny, nz = self.counts
+        i, j, k = number // (ny * nz), number // nz % ny, number % nz
+        return i * SIDE - _MARGIN, j * SIDE - _MARGIN, k * SIDE - _MARGIN
+
+    def ranges(self, low: Index, high: Index) -> list[list[tuple[int, int, int]]]:
+        """Return by axis the chunks with cells from `low` to before `high`.
+
+        Each is the number of the chunk along the axis, and its first and its last cell and one.
+        """
+        if self.is_one:
+            return [[(0, a, b)] if a < b else [] for a, b in zip(low, high, strict=True)]
+        found = []
+        for a, b in zip(low, high, strict=True):
+            first, last = a + _MARGIN, b + _MARGIN
+            numbers = range(first // SIDE, -(-last // SIDE)) if a < b else range(0)
+            found.append(
+                [(n, max(first - n * SIDE, 0), min(last - n * SIDE, SIDE)) for n in numbers]
+            )
+        return found
+
+    def around(self, cells: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+        """Return the numbers of the chunks, margins included, that hold cells or touch them."""
+        steps = np.array([(0, 0, 0), *np.eye(3, dtype=int), *-np.eye(3, dtype=int)])
+        near = (cells[:, None] + steps + _MARGIN).reshape(-1, 3) // SIDE
+        return np.unique(np.ravel_multi_index(tuple(near.T), self.counts))
+
+    def clipped(self, cells: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+        """Return those of some indices (n, 3) that lie in the box, in order."""
+        inside = ((cells >= 0) & (cells < np.array(self.shape))).all(axis=1)
+        cells = cells[inside]
+        return cells[np.lexsort(cells.T[::-1])]
+
+
+class Terrain:
+    """Block states of a box; it never changes.
+
+    Args:
+        shape: Shape of the box.
+        rows: By chunk, its place in `chunks`; int32 (number of chunks,).
+        chunks: Block states of the chunks, int32, read-only.
+    """
+
+    def __init__(
+        self, shape: tuple[int, int, int], rows: npt.NDArray[np.int32], chunks: Sequence[States]
+    ) -> None:
+        self.shape = shape
+        self.rows, self.chunks = rows, chunks
+        self.lattice = Lattice(shape, len(rows) == 1)
+
+    @classmethod
+    def full(cls, shape: tuple[int, int, int], state: int) -> "Terrain":
+        """Return the terrain of a box filled with one block state."""
+        lattice = Lattice.of(shape)
+        size = shape if lattice.is_one else (SIDE, SIDE, SIDE)
+        chunk = np.full(size, state, dtype=np.int32)
+        chunk.setflags(write=False)
+        return cls(shape, np.zeros(int(np.prod(lattice.counts)), dtype=np.int32), [chunk])
+
+    @classmethod
+    def of(cls, grid: npt.NDArray[np.signedinteger[Any]]) -> "Terrain":
+        """Return the terrain of a dense grid of states (nx, ny, nz)."""
+        nx, ny, nz = grid.shape
+        lattice = Lattice.of((nx, ny, nz))
+        if lattice.is_one:
+            chunk = np.array(grid, dtype=np.int32, order="C")
+            chunk.setflags(write=False)
+            return cls(lattice.shape, np.zeros(1, dtype=np.int32), [chunk])
+        known: dict[bytes, int] = {}
+        chunks: list[States] = []
+        rows: list[int] = []
+        for layer in _layers(lattice, grid):
+            for cube in layer:
+                row = known.setdefault(cube.tobytes(), len(chunks))
+                if row == len(chunks):
+                    chunk = cube.reshape(SIDE, SIDE, SIDE).copy()
+                    chunk.setflags(write=False)
+                    chunks.append(chunk)
+                rows.append(row)
+        return cls(lattice.shape, np.array(rows, dtype=np.int32), chunks)
+
+    @property
+    def size(self) -> int:
+        """Number of cells of the box."""
+        x, y, z = self.shape
+        return x * y * z
+
+    @property
+    def is_dense(self) -> bool:
+        """True if the box is one chunk."""
+        return self.lattice.is_one
+
+    def __getitem__(self, index: Index) -> int:
+        number, within = self.lattice.slot(index)
+        return int(self.chunks[self.rows[number]][within])
+
+    def cut(self, low: Index, high: Index) -> States:
+        """Return the states of the cells from index `low` to before `high`, read-only.
+
+        A terrain of one chunk returns a view.
+        """
+        if self.is_dense:
+            return self.chunks[0][low[0] : high[0], low[1] : high[1], low[2] : high[2]]
+        x, y, z = (max(b - a, 0) for a, b in zip(low, high, strict=True))
+        found = np.empty((x, y, z), dtype=np.int32)
+        _, ny, nz = self.lattice.counts
+        rows = self.rows.tolist()
+        shift = [_MARGIN + part for part in low]
+        for (i, a, b), (j, c, d), (k, e, f) in product(*self.lattice.ranges(low, high)):
+            at = (i * SIDE - shift[0], j * SIDE - shift[1], k * SIDE - shift[2])
+            found[at[0] + a : at[0] + b, at[1] + c : at[1] + d, at[2] + e : at[2] + f] = (
+                self.chunks[rows[(i * ny + j) * nz + k]][a:b, c:d, e:f]
+            )
+        found.setflags(write=False)
+        return found
+
+    def dense(self) -> States:
+        """Return the states of all cells, read-only; takes 4 bytes for each cell of the box."""
+        return self.chunks[0] if self.is_dense else self.cut((0, 0, 0), self.shape)
+
+    def __array__(
+        self, dtype: npt.DTypeLike | None = None, copy: bool | None = None
+    ) -> npt.NDArray[Any]:
+        if dtype is None and not copy:
+            return self.dense()
+        return np.array(self.dense(), dtype=dtype)
+
+    @cached_property
+    def span(self) -> tuple[int, int]:
+        """The least and the greatest state that occurs."""
+        parts = [chunk[inside] for chunk, _, inside in self.kinds()]
+        return int(min(part.min() for part in parts)), int(max(part.max() for part in parts))
+
+    @cached_property
+    def states(self) -> tuple[int, ...]:
+        """The block states that occur, in order."""
+        found: set[int] = set()
+        for chunk, _, inside in self.kinds():
+            found.update(np.unique(chunk[inside]).tolist())
+        return tuple(sorted(found))
+
+    def kinds(
+        self,
+    ) -> Iterator[tuple[States, npt.NDArray[np.int64], tuple[slice, slice, slice]]]:
+        """Yield each different chunk once, with the numbers of its places and its cells in the box.
+
+        A chunk whose places at the edge of the box differ is yielded for each kind of place.
+        """
+        spans = self.lattice.ranges((0, 0, 0), self.shape)
+        rows = self.rows.reshape(self.lattice.counts).astype(np.int64)
+        codes = [
+            {span: code for code, span in enumerate(sorted({(a, b) for _, a, b in axis}))}
+            for axis in spans
+        ]
+        parts = [
+            np.array([codes[axis][a, b] for _, a, b in spans[axis]], dtype=np.int64)
+            for axis in range(3)
+        ]
+        # The last chunk along an axis may lie in the margin alone.
+        x, y, z = map(len, parts)
+        key = rows[:x, :y, :z]
+        for axis, part in enumerate(parts):
+            form = [1, 1, 1]
+            form[axis] = -1
+            key = key * len(codes[axis]) + part.reshape(form)
+        order = np.argsort(key, axis=None, kind="stable")
+        _, firsts = np.unique(key.reshape(-1)[order], return_index=True)
+        _, ny, nz = self.lattice.counts
+        for members in np.split(order, firsts[1:]):
+            i, j, k = members // (y * z), members // z % y, members % z
+            inside = [slice(*spans[axis][int(at[0])][1:]) for axis, at in enumerate((i, j, k))]
+            chunk = self.chunks[rows[i[0], j[0], k[0]]]
+            yield chunk, (i * ny + j) * nz + k, (inside[0], inside[1], inside[2])
+
+    def find(self, states: Collection[int]) -> npt.NDArray[np.intp]:
+        """Return the indices (n, 3) of the cells with one of some states, in order."""
+        masks = np.isin(np.stack(self.chunks), list(states))
+        found = [np.empty((0, 3), dtype=np.intp)]
+        has = masks.reshape(len(masks), -1).any(axis=1)
+        for number in np.flatnonzero(has[self.rows]).tolist():
+            cells = np.argwhere(masks[self.rows[number]])
+            found.append(cells + np.array(self.lattice.start(number)))
+        return self.lattice.clipped(np.concatenate(found))
+
+    def differing(self, other: "Terrain", counts: Counts | None = None) -> npt.NDArray[np.intp]:
+        """Return the indices (n, 3) of the cells in which another terrain of the box differs.
+
+        Args:
+            other: The other terrain.
+            counts: Function of states of this and of the other terrain that returns a mask of the
+                cells that count; None: all count.
+        """
+        if self.is_dense is not other.is_dense:
+            raise AssertionError("the terrains are cut differently")
+        mine, theirs = (
+            np.array([id(chunk) for chunk in each.chunks], dtype=np.int64)[each.rows]
+            for each in (self, other)
+        )
+        found = [np.empty((0, 3), dtype=np.intp)]
+        apart: dict[tuple[int, int], npt.NDArray[np.intp]] = {}
+        for number in np.flatnonzero(mine != theirs).tolist():
+            pair = int(self.rows[number]), int(other.rows[number])
+            if pair not in apart:
+                held, its = self.chunks[pair[0]], other.chunks[pair[1]]
+                mask = held != its
+                apart[pair] = np.argwhere(mask if counts is None else mask & counts(held, its))
+            if len(apart[pair]):
+                found.append(apart[pair] + np.array(self.lattice.start(number)))
+        return self.lattice.clipped(np.concatenate(found))
+
+    def mapped(self, change: Callable[[States], npt.NDArray[np.signedinteger[Any]]]) -> "Terrain":
+        """Return the terrain after a change of each cell that depends on its state alone."""
+        chunks = []
+        for chunk in self.chunks:
+            changed = change(chunk).astype(np.int32, copy=False)
+            changed.setflags(write=False)
+            chunks.append(changed)
+        return Terrain(self.shape, self.rows, chunks)
+
+    def draft(self) -> "Draft":
+        """Return a copy that can be changed."""
+        return Draft(self)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Terrain):
+            return NotImplemented
+        return self.shape == other.shape and len(self.differing(other)) == 0
+
+    __hash__ = None  # type: ignore[assignment]  # compared by value, and values are large
+
+    def __repr__(self) -> str:
+        return f"<terrain of {' x '.join(map(str, self.shape))} blocks>"
+
+
+class Draft:
+    """Terrain that can be changed; it copies a chunk of its terrain before a change in it."""
+
+    def __init__(self, terrain: Terrain) -> None:
+        self._terrain = terrain
+        self._lattice = terrain.lattice
+        self._rows, self._chunks = terrain.rows, list(terrain.chunks)
+        self._own: set[int] = set()
+        self._is_shared = True
+        self._kept = len(self._chunks)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Shape of the box."""
+        return self._lattice.shape
+
+    def __getitem__(self, index: Index) -> int:
+        number, within = self._lattice.slot(index)
+        return int(self._chunks[self._rows[number]][within])
+
+    def __setitem__(self, index: Index, state: int) -> None:
+        number, within = self._lattice.slot(index)
+        row = int(self._rows[number])
+        if row not in self._own:
+            row = self._add(self._chunks[row].copy())
+            self._own.add(row)
+            self._write_rows()[number] = row
+        self._chunks[row][within] = state
+
+    def fill(self, low: Index, high: Index, state: int) -> None:
+        """Set the cells from index `low` to before `high`."""
+        _, ny, nz = self._lattice.counts
+        rows = self._write_rows()
+        made: dict[tuple[int, ...], int] = {}
+        for (i, a, b), (j, c, d), (k, e, f) in product(*self._lattice.ranges(low, high)):
+            number = (i * ny + j) * nz + k
+            # Equal parts of equal chunks stay one chunk.
+            part = (int(rows[number]), a, b, c, d, e, f)
+            if part not in made:
+                chunk = self._chunks[part[0]].copy()
+                chunk[a:b, c:d, e:f] = state
+                chunk.setflags(write=False)
+                self._own.discard(part[0] if self._lattice.is_one else -1)
+                made[part] = self._add(chunk)
+            rows[number] = made[part]
+
+    def terrain(self) -> Terrain:
+        """Return the terrain as it is now; later changes of the draft do not change it."""
+        if self._own or not self._is_shared:
+            for row in self._own:
+                self._chunks[row].setflags(write=False)
+            if len(self._chunks) > 2 * self._kept + _SPARE:
+                used, rows = np.unique(self._rows, return_inverse=True)
+                self._rows = rows.reshape(-1).astype(np.int32)
+                self._chunks = [self._chunks[row] for row in used.tolist()]
+                self._kept = len(self._chunks)
+            self._terrain = Terrain(self.shape, self._rows, tuple(self._chunks))
+            self._own.clear()
+            self._is_shared = True
+        return self._terrain
+
+    def _add(self, chunk: States) -> int:
+        if self._lattice.is_one:
+            self._chunks = [chunk]
+            return 0
+        self._chunks.append(chunk)
+        return len(self._chunks) - 1
+
+    def _write_rows(self) -> npt.NDArray[np.int32]:
+        if self._is_shared:
+            self._rows, self._is_shared = self._rows.copy(), False
+        return self._rows
+
+
+def _layers(
+    lattice: Lattice, grid: npt.NDArray[np.signedinteger[Any]]
+) -> Iterator[npt.NDArray[np.int32]]:
+    """Yield the chunks of each layer along x as rows of `VOLUME` states."""
+    (nx, ny, nz), (count, high, deep) = lattice.shape, lattice.counts
+    for layer in range(count):
+        cells = np.zeros((SIDE, high * SIDE, deep * SIDE), dtype=np.int32)
+        first = layer * SIDE - _MARGIN
+        begin, end = max(first, 0), min(first + SIDE, nx)
+        if begin < end:
+            inner = cells[begin - first : end - first, _MARGIN:, _MARGIN:]
+            inner[:, :ny, :nz] = grid[begin:end]
+        cubes = cells.reshape(SIDE, high, SIDE, deep, SIDE).transpose(1, 3, 0, 2, 4)
+        yield cubes.reshape(-1, VOLUME)
