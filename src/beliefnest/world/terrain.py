@@ -273,7 +273,7 @@ class Terrain:
 
     def find(self, states: Collection[int]) -> npt.NDArray[np.intp]:
         """Return the indices (n, 3) of the cells with one of some states, in order."""
-        masks = np.isin(np.stack(self.chunks), list(states))
+        masks: npt.NDArray[np.bool_] = np.isin(np.stack(self.chunks), list(states))
         found = [np.empty((0, 3), dtype=np.intp)]
         has = masks.reshape(len(masks), -1).any(axis=1)
         for number in np.flatnonzero(has[self.rows]).tolist():
