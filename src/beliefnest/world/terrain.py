@@ -276,7 +276,7 @@ class Terrain:
         masks: npt.NDArray[np.bool_] = np.isin(np.stack(self.chunks), list(states))
         found = [np.empty((0, 3), dtype=np.intp)]
         has = masks.reshape(len(masks), -1).any(axis=1)
-        for number in np.flatnonzero(has[self.rows]).tolist():
+        for number in np.flatnonzero(np.asarray(has)[self.rows]).tolist():
             cells = np.argwhere(masks[self.rows[number]])
             found.append(cells + np.array(self.lattice.start(number)))
         return self.lattice.clipped(np.concatenate(found))
