@@ -4,7 +4,13 @@ import pytest
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
-from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import (
+    EntryFilter,
+    ForkPoint,
+    TimelineInfo,
+    TimelineKey,
+    is_found,
+)
 from beliefnest.world.frames import Frame
 
 MAIN = TimelineKey((), "main")
@@ -267,3 +273,58 @@ def test_checkpoints_go_with_their_timeline(journal, make_history):
     journal.delete(trunk)
     journal.create(trunk, None, 0)
     assert journal.nearest_checkpoint(trunk, "a", 10) is None
+
+
+@pytest.mark.parametrize("step", [1, 100, 2000])
+def test_a_long_record_is_read_as_it_was_written(journal, make_history, step):
+    entries = make_history(1500)
+    begin(journal, entries, step)
+    for start, stop in ((0, 10**6), (100, 140), (600, 1000), (len(entries) - 3, len(entries))):
+        assert list(journal.entries(MAIN, start, stop)) == entries[start:stop]
+        for what in EntryFilter:
+            found = list(journal.filtered(MAIN, start, stop, what))
+            assert found == [
+                (n, e) for n, e in enumerate(entries) if start <= n < stop and is_found(e, what)
+            ]
+    for number in (0, 1, 128, 639, 641, 900, 1279, 1281, len(entries)):
+        part = [entry for entry in entries[:number] if isinstance(entry, Frame)]
+        assert journal.events_until(MAIN, number) == sum(len(each.events) for each in part)
+        agents = {name: state for each in part for name, state in each.agents.items()}
+        assert journal.agents_after(MAIN, number) == agents
+    for tick in range(0, 1502, 50):
+        assert journal.entries_until(MAIN, tick) == sum(e.tick <= tick for e in entries)
+
+
+@pytest.mark.parametrize("known", [10, 700, 2000])
+def test_a_long_call_that_is_undone_leaves_the_record_as_it_was(journal, make_history, known):
+    entries = make_history(4000)
+    begin(journal, entries[:known], 50)
+    journal.put_checkpoint(MAIN, "a", 5, b"old")
+    before = journal.info(MAIN)
+    for _ in range(2):
+        with pytest.raises(ZeroDivisionError), journal.together():
+            for at in range(known, len(entries), 99):
+                part = entries[at : at + 99]
+                with journal.together():
+                    journal.append(MAIN, part, part[-1].tick)
+                journal.put_checkpoint(MAIN, "a", at, b"undone")
+            journal.put_body_state(MAIN, known, before.head, b"undone")
+            raise ZeroDivisionError
+        assert journal.info(MAIN) == before
+        assert list(journal.entries(MAIN, 0, 10**6)) == entries[:known]
+        assert journal.nearest_checkpoint(MAIN, "a", known) == (5, b"old")
+        assert journal.body_state(MAIN, known, before.head) is None
+    journal.append(MAIN, entries[known:], entries[-1].tick)
+    assert list(journal.entries(MAIN, 0, 10**6)) == entries
+
+
+def test_a_long_record_that_is_deleted_while_it_is_read_ends_with_an_error(journal, make_history):
+    entries = make_history(2000)
+    begin(journal, entries, 100)
+    reading = journal.entries(MAIN, 0, len(entries))
+    assert next(reading) == entries[0]
+    journal.delete(MAIN)
+    with pytest.raises(BranchError, match="no branch 'main'"):
+        list(reading)
+    journal.create(MAIN, None, 0)
+    assert list(journal.entries(MAIN, 0, 10)) == []

@@ -75,6 +75,8 @@ class Columns:
         # One column for each field of `Facts`, of the same name.
         self._columns = {name: Growing(np.int32) for name in Facts._fields}
         self._tick, self._event_at = self._columns["tick"], self._columns["event_at"]
+        self._pose_at, self._block_at = self._columns["pose_at"], self._columns["block_at"]
+        self._count_of_poses = self._count_of_blocks = 0
         self._close_entry()
 
     @property
@@ -107,6 +109,8 @@ class Columns:
         if entry in self.frames or entry in self.acts:
             self._effects.append(entry)
         self._tick.append(frame.tick)
+        self._count_of_poses += len(frame.agents)
+        self._count_of_blocks += len(frame.blocks)
         self._close_entry()
 
     def add_quiet(self, tick: int) -> None:
@@ -179,7 +183,7 @@ class Columns:
         self.held.extend(cell_of(self._context.box, claim.cell) for claim in about)
 
     def _close_entry(self) -> None:
-        columns = self._columns
-        columns["pose_at"].append(len(columns["pose_id"]))
-        columns["block_at"].append(len(columns["block_cell"]))
-        columns["event_at"].append(len(columns["event_sense"]))
+        # Hot path: counting rows of the columns takes twice as long.
+        self._pose_at.append(self._count_of_poses)
+        self._block_at.append(self._count_of_blocks)
+        self._event_at.append(len(self.events))

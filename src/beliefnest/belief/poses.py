@@ -62,6 +62,16 @@ class PoseDetails:
     health: float
     food: float
 
+    def are_of(self, agent: AgentState) -> bool:
+        """Return True if they are the details of an agent; faster than a comparison of two."""
+        return (
+            self.on_ground == agent.on_ground
+            and self.equipment == agent.equipment
+            and self.inventory == agent.inventory
+            and self.health == agent.health
+            and self.food == agent.food
+        )
+
 
 class PoseTable:
     """Poses and their details, for one stretch of a timeline. The id of a pose is its row."""
@@ -82,12 +92,11 @@ class PoseTable:
 
     def add(self, name: str, agent: AgentState) -> int:
         """Add a pose of an agent that the timeline itself recorded, and return its id."""
-        details = PoseDetails(
-            agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food
-        )
         last = self._last.get(name, 0)
-        if self._table[last] != details:
-            self._table.append(details)
+        known = self._table[last]
+        if known is None or not known.are_of(agent):
+            facts = (agent.on_ground, agent.equipment, agent.inventory, agent.health, agent.food)
+            self._table.append(PoseDetails(*facts))
             last = self._last[name] = len(self._table) - 1
         return self._append(agent.position, agent.yaw, agent.pitch, last, recorded=True)
 

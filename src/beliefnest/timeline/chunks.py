@@ -124,7 +124,7 @@ class Chunks:
         timeline: int,
         start: int,
         stop: int,
-        gone: Callable[[], BranchError] | None = None,
+        gone: Callable[[], BranchError | None] | None = None,
     ) -> Iterator[msgspec.Raw]:
         """Yield the encoded entries with indexes start to stop - 1.
 
@@ -132,7 +132,7 @@ class Chunks:
             timeline: Row id of the timeline.
             start: Index of the first entry.
             stop: Index after the last entry; the timeline must have that many.
-            gone: Makes the error to raise if the timeline was deleted meanwhile.
+            gone: Returns the error to raise if the timeline was deleted meanwhile, otherwise None.
 
         Raises:
             StoreError: An entry is missing or damaged.
@@ -140,8 +140,9 @@ class Chunks:
         # Query anew for each chunk: a writer may join chunks between two reads.
         while start < stop:
             found = self._chunk(timeline, "first <= ? ORDER BY first DESC", start)
-            if found is None and gone is not None and not self._has(timeline):
-                raise gone()
+            missed = gone() if found is None and gone is not None else None
+            if missed is not None:
+                raise missed
             part = []
             if found is not None:
                 part = self._encoded(found)[start - found.first : stop - found.first]
@@ -220,9 +221,6 @@ class Chunks:
         """Return the agents stored with the compressed chunk before an entry, or none."""
         found = self._chunk(timeline, "first < ? ORDER BY first DESC", first)
         return {} if found is None else codec.decode_agents(self.decompressed(found.agents))
-
-    def _has(self, timeline: int) -> bool:
-        return bool(self._database.rows("SELECT id FROM timeline WHERE id = ?", (timeline,)))
 
     def _chunk(self, timeline: int, where: str, *values: int) -> _Chunk | None:
         chosen, what = f"piece WHERE timeline = ? AND {where} LIMIT 1", "entries"

@@ -115,7 +115,7 @@ class OlderFormat:
 
 
 class Database(Owned):
-    """An open run file, created by `create`, `in_memory`, `open` or `read`.
+    """An open run file, created by `create`, `temporary`, `open` or `read`.
 
     In a forked child every call raises ForkedError, except `close`, which does nothing there.
 
@@ -155,11 +155,14 @@ class Database(Owned):
         return database
 
     @classmethod
-    def in_memory(cls, statements: Iterable[str]) -> "Database":
-        """Create a database in memory with the tables that `statements` define."""
-        memory = ":memory:"
-        connection = sqlite3.connect(memory, isolation_level=None, check_same_thread=False)
-        database = cls(connection, Path(memory), None)
+    def temporary(cls, statements: Iterable[str]) -> "Database":
+        """Create a database that ends with this object, with the tables that `statements` define.
+
+        It is in memory until it outgrows SQLite's cache of 2 MB, then in a file without a name,
+        which the system removes even if the process is killed (https://sqlite.org/tempfiles.html).
+        """
+        connection = sqlite3.connect("", isolation_level=None, check_same_thread=False)
+        database = cls(connection, Path("temporary run file"), None)
         database.writable = True
         for statement in statements:
             database.execute(statement)

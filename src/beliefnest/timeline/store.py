@@ -28,6 +28,7 @@ from beliefnest.timeline.journal import (
     check_place,
 )
 from beliefnest.timeline.run_records import Records, path_from, path_to
+from beliefnest.timeline.stored_states import StoredStates
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import AgentState
 
@@ -75,6 +76,7 @@ class SqliteJournal:
     def __init__(self, database: Database) -> None:
         self._database = database
         self._chunks = Chunks(database)
+        self._states = StoredStates(database, self._chunks)
         self.path, self.writable = database.path, database.writable
         self.records = Records(database)
 
@@ -185,7 +187,8 @@ class SqliteJournal:
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
         """Yield the entries with indexes start to stop - 1, oldest first."""
         row = self._row(key)
-        found = self._chunks.raw(row.id, start, min(stop, row.entries), lambda: self._missing(key))
+        stop = min(stop, row.entries)
+        found = self._chunks.raw(row.id, start, stop, lambda: self._gone(row.id, key))
         return map(codec.decode_entry, found)
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
@@ -227,13 +230,8 @@ class SqliteJournal:
             based = [other.key for other in self._timeline_rows("WHERE base = ?", row.id)]
             if based:
                 raise branch_carries(key, based)
-            for table, column in (
-                ("piece", "timeline"),
-                ("keyframe", "timeline"),
-                ("body_state", "timeline"),
-                ("timeline", "id"),
-            ):
-                self._database.execute(f"DELETE FROM {table} WHERE {column} = ?", (row.id,))
+            self._states.forget(row.id)
+            self._database.execute("DELETE FROM timeline WHERE id = ?", (row.id,))
             self.records.forget_branch(key.path, key.branch)
 
     def describe(self, key: TimelineKey, description: str) -> None:
@@ -247,49 +245,24 @@ class SqliteJournal:
         with self._database.transaction():
             row = self._row(key)
             check_place(_info(row, None), entries)
-            self._database.write(
-                "INSERT OR REPLACE INTO keyframe",
-                timeline=row.id,
-                name=name,
-                entries=entries,
-                body=packed,
-            )
+            self._states.put_checkpoint(row.id, name, entries, packed)
 
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
         """Return the last checkpoint of that name at or before entry `entries`, and its place."""
-        found = self._database.sound_rows(
-            "timeline, name, entries, body",
-            "keyframe WHERE timeline = ? AND name = ? AND entries <= ? "
-            "ORDER BY entries DESC LIMIT 1",
-            (self._row(key).id, name, entries),
-            f"a keyframe of {key}",
-        )
-        return next(((place, self._chunks.decompressed(body)) for *_, place, body in found), None)
+        return self._states.nearest_checkpoint(self._row(key).id, name, entries)
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
         """Store the internal state of a timeline's body; InputError if there are fewer entries."""
         with self._database.transaction():
             row = self._row(key)
             check_place(_info(row, None), entries)
-            self._database.write(
-                "INSERT OR REPLACE INTO body_state",
-                timeline=row.id,
-                entries=entries,
-                tick=tick,
-                state=self._chunks.compressed(state),
-            )
+            self._states.put_body_state(row.id, entries, tick, state)
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
         """Return the internal state stored for exactly this moment; None if there is none."""
-        found = self._database.sound_rows(
-            "timeline, entries, tick, state",
-            "body_state WHERE timeline = ? AND entries = ? AND tick = ?",
-            (self._row(key).id, entries, tick),
-            f"the state of a body of {key}",
-        )
-        return next((self._chunks.decompressed(state) for *_, state in found), None)
+        return self._states.body_state(self._row(key).id, entries, tick)
 
     def close(self) -> None:
         """Close the file and release its lock; closing twice is allowed."""
@@ -308,6 +281,10 @@ class SqliteJournal:
         if row is None:
             raise self._missing(key)
         return row
+
+    def _gone(self, number: int, key: TimelineKey) -> BranchError | None:
+        """Return the error for a timeline if it was deleted, None if it was not."""
+        return None if any(self._timeline_rows("WHERE id = ?", number)) else self._missing(key)
 
     def _missing(self, key: TimelineKey) -> BranchError:
         beside = self._timeline_rows("WHERE path = ?", path_to(key.path))

@@ -11,6 +11,7 @@ from contextlib import closing
 __all__ = [
     "APPLICATION_ID",
     "BODY_STATE",
+    "PAST",
     "RECORDS",
     "SCHEMA_VERSION",
     "SMALL_TABLES",
@@ -65,24 +66,7 @@ RECORDS = (
 )
 """SQL statements of the tables for all records besides timelines."""
 
-STATEMENTS = (
-    # A path is a JSON array of agent names. The first `packed` entries are in compressed chunks.
-    """CREATE TABLE timeline (
-        id INTEGER PRIMARY KEY AUTOINCREMENT,
-        path TEXT NOT NULL,
-        branch TEXT NOT NULL,
-        base INTEGER REFERENCES timeline (id),
-        base_entries INTEGER,
-        base_tick INTEGER,
-        start INTEGER NOT NULL,
-        head INTEGER NOT NULL,
-        entries INTEGER NOT NULL,
-        packed INTEGER NOT NULL,
-        description TEXT NOT NULL,
-        seal INTEGER NOT NULL,
-        UNIQUE (path, branch)
-    )""",
-    "CREATE INDEX timeline_by_base ON timeline (base)",
+PAST = (
     # A chunk holds the entries `first` to `first + count - 1` of a timeline, joined by codec.join.
     # `events` is the number of their events. `changes` is the number of entries that change more
     # than agents. In compressed chunks `agents` holds the last state of every agent up to the end
@@ -118,6 +102,28 @@ STATEMENTS = (
         UNIQUE (timeline, name, entries)
     )""",
     BODY_STATE,
+)
+"""SQL statements of the tables for entries, checkpoints and internal states of bodies."""
+
+STATEMENTS = (
+    # A path is a JSON array of agent names. The first `packed` entries are in compressed chunks.
+    """CREATE TABLE timeline (
+        id INTEGER PRIMARY KEY AUTOINCREMENT,
+        path TEXT NOT NULL,
+        branch TEXT NOT NULL,
+        base INTEGER REFERENCES timeline (id),
+        base_entries INTEGER,
+        base_tick INTEGER,
+        start INTEGER NOT NULL,
+        head INTEGER NOT NULL,
+        entries INTEGER NOT NULL,
+        packed INTEGER NOT NULL,
+        description TEXT NOT NULL,
+        seal INTEGER NOT NULL,
+        UNIQUE (path, branch)
+    )""",
+    "CREATE INDEX timeline_by_base ON timeline (base)",
+    *PAST,
     *RECORDS,
 )
 
