@@ -6,10 +6,12 @@ import random
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import pairwise, product
+from pathlib import Path
 
 import numpy as np
 
@@ -21,9 +23,9 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Point
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest_benchmarks.figures import Metric
-from beliefnest_benchmarks.memory import peak_megabytes
+from beliefnest_benchmarks.memory import megabytes, peak_megabytes
 
-__all__ = ["measure", "walked"]
+__all__ = ["followed", "measure", "walked"]
 
 _STEP = 0.2158
 """Blocks a player walks in one tick."""
@@ -33,6 +35,8 @@ _FIELD = 40
 """Edge in blocks of the part of the box in which agents walk, from the box's lower corner."""
 _WARM, _TICKS = 40, 120
 _SPAWN, _SEED = 3, 1
+_FULL, _LONG, _EVERY = 9000, 12_000, 100
+"""Ticks after which all caches are full, ticks of a long walk, and ticks between two readings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +51,7 @@ class _Walk:
 
 def measure() -> Sequence[Metric]:
     """Return the figures; each walk is a process of its own."""
+    span = f"ticks {_FULL} to {_LONG} of 32 agents"
     small = _child(_Walk((40, 64, 40), 3, 2))
     large = _child(_Walk((640, 64, 640), 3, 2))
     deep = _child(_Walk((160, 64, 160), 8, 3))
@@ -67,17 +72,53 @@ def measure() -> Sequence[Metric]:
         Metric("tick of 1,024 nodes, 32 agents, depth 2", crowd["tick"], "ms", 25.0),
         Metric("tick of 64 nodes, 64 agents, depth 1", wide["tick"], "ms", 10.0),
         Metric("tick of 456 nodes, 8 agents, depth 3", hall["tick"], "ms"),
+        Metric(f"memory grown, {span}, in memory", _grown(in_file=False), "MB", 5.0),
+        Metric(f"memory grown, {span}, in a run file", _grown(in_file=True), "MB", 5.0),
     ]
 
 
 def _child(walk: _Walk) -> Mapping[str, float]:
     """Return the figures of a walk in a process of its own."""
-    code = f"from {__name__} import walked; print(walked({json.dumps(json.dumps(asdict(walk)))}))"
+    figures: Mapping[str, float] = json.loads(_printed(f"walked({json.dumps(asdict(walk))!r})"))
+    return figures
+
+
+def _grown(*, in_file: bool) -> float:
+    """Return the MB that a long walk adds once caches are full, recorded in memory or in a file."""
+    with tempfile.TemporaryDirectory() as folder:
+        store = str(Path(folder) / "run.bn") if in_file else None
+        return float(_printed(f"followed({store!r})"))
+
+
+def _printed(call: str) -> str:
+    """Return the result of a function of this module in a process of its own."""
+    code = f"from {__name__} import *; print({call})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise BodyError(f"a process in which agents walk failed: {done.stderr.strip()}")
-    figures: Mapping[str, float] = json.loads(done.stdout)
-    return figures
+    return done.stdout
+
+
+def followed(store: str | None) -> float:
+    """Let 32 agents walk, read 1,024 nodes now and then, and return the MB grown after `_FULL`."""
+    walkers = _Walkers(_Walk((80, 20, 80), 32, 2, is_known=True), store)
+    paths = _paths(list(walkers.feet), 2)
+    walkers.nest.states(paths)
+    full = 0.0
+    for tick in range(1, _LONG + 1):
+        walkers.tick()
+        if tick % _EVERY == 0:
+            for path in paths:
+                walkers.nest[path].state  # noqa: B018 - brings all nodes up to date
+        if tick == _FULL:
+            full = megabytes()
+    return megabytes() - full
+
+
+def _paths(names: Sequence[str], depth: int) -> list[str]:
+    """Return all paths down to a depth."""
+    chains = (chain for length in range(1, depth + 1) for chain in product(names, repeat=length))
+    return ["/" + "/".join(c) for c in chains if all(a != b for a, b in pairwise(c))]
 
 
 def walked(text: str) -> str:
@@ -88,10 +129,7 @@ def walked(text: str) -> str:
     """
     given = json.loads(text)
     walkers = _Walkers(_Walk(tuple(given.pop("shape")), **given))
-    names = list(walkers.feet)
-    lengths = range(1, given["depth"] + 1)
-    chains = (chain for length in lengths for chain in product(names, repeat=length))
-    paths = ["/" + "/".join(c) for c in chains if all(a != b for a, b in pairwise(c))]
+    paths = _paths(list(walkers.feet), given["depth"])
     started = time.process_time()
     walkers.nest.states(paths)
     first = time.process_time() - started
@@ -115,7 +153,7 @@ class _Walkers:
         nest: Nest of their beliefs.
     """
 
-    def __init__(self, walk: _Walk) -> None:
+    def __init__(self, walk: _Walk, store: str | None = None) -> None:
         self._chance = random.Random(_SEED)
         registry = Registry.load()
         stone, (x, y, z) = registry.state_id("stone"), walk.shape
@@ -133,7 +171,7 @@ class _Walkers:
         self.world = ScriptedWorld.from_snapshot(Snapshot(0, box, Terrain.of(blocks), {}, agents))
         del blocks
         known = ["stone", "air"] if walk.is_known else []
-        self.nest = Nest(self.world, static_blocks=known)
+        self.nest = Nest(self.world, static_blocks=known, store=store)
 
     def tick(self) -> None:
         """Let every agent walk on in one tick."""

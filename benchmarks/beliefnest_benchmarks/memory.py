@@ -5,7 +5,7 @@ import resource
 import sys
 from pathlib import Path
 
-__all__ = ["peak_megabytes"]
+__all__ = ["megabytes", "peak_megabytes"]
 
 _STATUS = Path("/proc/self/status")
 
@@ -22,3 +22,15 @@ def peak_megabytes() -> float:
             return int(peak[1]) * 1024 / 1e6
     unit = 1e6 if sys.platform == "darwin" else 1e3
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+
+
+def megabytes() -> float:
+    """Return the memory that this process holds now, in MB (10^6 bytes).
+
+    Where the system does not tell, return the most that it has held.
+    """
+    if _STATUS.is_file():
+        held = re.search(r"VmRSS:\s+(\d+) kB", _STATUS.read_text(encoding="ascii"))
+        if held is not None:
+            return int(held[1]) * 1024 / 1e6
+    return peak_megabytes()
