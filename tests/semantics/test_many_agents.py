@@ -3,7 +3,8 @@
 import random
 
 import pytest
-from tests.nest.comparing import values
+from tests.nest.comparing import everything, values
+from tests.semantics.reference import Reference
 
 import beliefnest as bn
 from beliefnest.world import terrain
@@ -75,3 +76,30 @@ def test_deeper_beliefs_know_no_block_that_shallower_ones_do_not(monkeypatch: py
         owner = path[: path.rindex("/")]
         unknown = states[owner].blocks.grid < 0
         assert (states[path].blocks.grid[unknown] < 0).all()
+
+
+def test_the_reference_agrees_about_32_agents():
+    chance = random.Random(3)
+    places = [(x + 0.5, 0.0, z + 0.5) for x in range(8) for z in range(4)]
+    walls = {(x, y, 4): "stone" for x in (1, 2, 5) for y in (0, 1)}
+    agents = dict(zip(AGENTS, places, strict=True))
+    world = bn.ScriptedWorld(((0, 0, 0), (7, 1, 5)), walls, agents)
+    options = bn.Perception(max_visible_distance=4)
+    reference = Reference(world.snapshot(), options, frozenset(["air"]), depth=2)
+    with bn.Nest(world, options, static_blocks=["air"]) as nest:
+        world.listen(lambda frame: reference.frame((), frame))
+        for _ in range(2):
+            with world.tick():
+                for name in chance.sample(AGENTS, 16):
+                    at = (chance.randrange(8) + 0.5, 0.0, chance.choice([0.5, 3.5, 5.5]))
+                    world.place_agent(name, at, yaw=chance.uniform(-3, 3))
+                world.say(chance.choice(AGENTS), "hi")
+                world.set_block((chance.randrange(8), 1, 4), chance.choice(["stone", "air"]))
+        for one, other in zip(AGENTS, AGENTS[5:] + AGENTS[:5], strict=True):
+            for path in ((one,), (one, other)):
+                expected, found = (
+                    reference.everything(path),
+                    everything(nest["/" + "/".join(path)].state),
+                )
+                for part, value in expected.items():
+                    assert found[part] == value, f"{part} of {path}"
