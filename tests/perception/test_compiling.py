@@ -1,5 +1,6 @@
 """Kernels are compiled once for a user, wherever their sources are, and again when they change."""
 
+import gc
 import importlib.util
 import os
 import shutil
@@ -7,6 +8,7 @@ import subprocess
 import sys
 
 import numba
+import numba.core.event
 import pytest
 
 from beliefnest.perception.compiling import is_compiled, kernel_folder
@@ -123,3 +125,25 @@ def compiler_is_imported(place):
         [sys.executable, "-c", PROCESS], cwd=place, capture_output=True, text=True, check=True
     )
     return ended.stdout.strip() == "True"
+
+
+def test_garbage_is_not_collected_while_a_kernel_is_compiled(tmp_path, monkeypatch):
+    found = []
+    with numba.core.event.install_listener("numba:compile", Watcher(found)):
+        assert loaded(installed(tmp_path / "first"), monkeypatch)(2) == 8
+    assert found
+    assert not any(found)
+    assert gc.isenabled()
+
+
+class Watcher(numba.core.event.Listener):
+    """Listener that notes at each compilation if the garbage collector is on."""
+
+    def __init__(self, found):
+        self.found = found
+
+    def on_start(self, event):
+        self.found.append(gc.isenabled())
+
+    def on_end(self, event):
+        """Do nothing."""

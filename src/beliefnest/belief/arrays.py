@@ -20,9 +20,12 @@ __all__ = [
     "READ",
     "SOURCE_SEEN",
     "UNKNOWN",
+    "Bases",
     "Changes",
     "Facts",
+    "Grids",
     "Ints",
+    "Looks",
     "Nodes",
     "Poses",
     "Space",
@@ -168,6 +171,53 @@ class Nodes(NamedTuple):
     seen_geometry: Ints
     tried: Ints
     sees: Flags
+    tracked: Ints
+    places: Ints
+    watched: Flags
+    basis_at: Ints
+    basis_source: npt.NDArray[np.uint8]
+    basis_current: Flags
+
+
+class Looks(NamedTuple):
+    """Arrays of `Nodes` about agents and eyes.
+
+    Kernels take parts of `Nodes`, because each of them takes time to compile for each array.
+    """
+
+    parent: Ints
+    agent: Ints
+    pose: Ints
+    equipment: Ints
+    seen_at: Ints
+    current: Flags
+    eye: Ints
+    seen_geometry: Ints
+    tried: Ints
+    sees: Flags
+
+
+class Grids(NamedTuple):
+    """Arrays of `Nodes` about blocks; see `Looks`."""
+
+    parent: Ints
+    child_at: Ints
+    child: Ints
+    rows: Ints
+    shares: Ints
+    spare: Ints
+    blocks: States
+    codes: npt.NDArray[np.uint16]
+    geometry: Ints
+    versions: Ints
+    pending: npt.NDArray[np.uint64]
+    fresh: Flags
+
+
+class Bases(NamedTuple):
+    """Arrays of `Nodes` about tracked cells; see `Looks`."""
+
+    parent: Ints
     tracked: Ints
     places: Ints
     watched: Flags

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from beliefnest.belief.arrays import Nodes, Space, States
+from beliefnest.belief.arrays import Grids, Nodes, Space, States
 from beliefnest.perception.chunks import Rows, chunk_in, index_at, place_at
 from beliefnest.perception.codes import INTRUDED, OWN
-from beliefnest.perception.compiling import inlined, inner
+from beliefnest.perception.compiling import inlined, inner, merged
 from beliefnest.perception.eyes import set_code
 from beliefnest.perception.rays import Cell, Codes, Scene, code_at, is_inside, neighbour
 from beliefnest.world.terrain import VOLUME, Chunks
@@ -21,6 +21,7 @@ __all__ = [
     "block_at",
     "chunk_at",
     "grid_cell",
+    "grids_of",
     "line_of",
     "place_of",
     "put_block",
@@ -36,6 +37,25 @@ _Number = int | np.signedinteger[Any]
 def whole(number: _Number) -> int:
     """Return the number as int64, so that kernels are compiled for one kind of integer only."""
     return np.int64(number)  # type: ignore[return-value]  # Python's int, once compiled
+
+
+@merged
+def grids_of(nodes: Nodes) -> Grids:
+    """Return the arrays about blocks."""
+    return Grids(
+        nodes.parent,
+        nodes.child_at,
+        nodes.child,
+        nodes.rows,
+        nodes.shares,
+        nodes.spare,
+        nodes.blocks,
+        nodes.codes,
+        nodes.geometry,
+        nodes.versions,
+        nodes.pending,
+        nodes.fresh,
+    )
 
 
 @inlined
@@ -82,47 +102,47 @@ def scene_of(space: Space, codes: Codes, rows: Rows) -> Scene:
 
 
 @inner
-def _own(nodes: Nodes, node: int, chunk: int) -> None:
+def _own(grids: Grids, node: int, chunk: int) -> None:
     """Give a node a chunk of its own: a copy, if other nodes use the present one."""
-    old = whole(nodes.rows[node, chunk])
-    if nodes.shares[old] == 1:
+    old = whole(grids.rows[node, chunk])
+    if grids.shares[old] == 1:
         return
-    if nodes.spare[0] > 0:
-        new = whole(nodes.spare[1 + nodes.spare[0]])
-        nodes.spare[0] -= 1
+    if grids.spare[0] > 0:
+        new = whole(grids.spare[1 + grids.spare[0]])
+        grids.spare[0] -= 1
     else:
-        new = whole(nodes.spare[1])
-        nodes.spare[1] += 1
-    nodes.shares[old] -= 1
-    nodes.shares[new] = 1
-    nodes.rows[node, chunk] = new
+        new = whole(grids.spare[1])
+        grids.spare[1] += 1
+    grids.shares[old] -= 1
+    grids.shares[new] = 1
+    grids.rows[node, chunk] = new
     for cell in range(VOLUME):
-        nodes.blocks[0, new * VOLUME + cell] = nodes.blocks[0, old * VOLUME + cell]
-        nodes.codes[0, new * VOLUME + cell] = nodes.codes[0, old * VOLUME + cell]
+        grids.blocks[0, new * VOLUME + cell] = grids.blocks[0, old * VOLUME + cell]
+        grids.codes[0, new * VOLUME + cell] = grids.codes[0, old * VOLUME + cell]
 
 
 @inner
-def share(nodes: Nodes, node: int, parent: int, chunk: int) -> None:
+def share(grids: Grids, node: int, parent: int, chunk: int) -> None:
     """Let a node use the parent's row of a chunk if both are equal, and free its own."""
-    own, other = whole(nodes.rows[node, chunk]), whole(nodes.rows[parent, chunk])
+    own, other = whole(grids.rows[node, chunk]), whole(grids.rows[parent, chunk])
     for cell in range(VOLUME):
         if (
-            nodes.blocks[0, own * VOLUME + cell] != nodes.blocks[0, other * VOLUME + cell]
-            or nodes.codes[0, own * VOLUME + cell] != nodes.codes[0, other * VOLUME + cell]
+            grids.blocks[0, own * VOLUME + cell] != grids.blocks[0, other * VOLUME + cell]
+            or grids.codes[0, own * VOLUME + cell] != grids.codes[0, other * VOLUME + cell]
         ):
             return
-    nodes.rows[node, chunk] = other
-    nodes.shares[other] += 1
-    nodes.shares[own] -= 1
-    if nodes.shares[own] == 0:
-        nodes.spare[0] += 1
-        nodes.spare[1 + nodes.spare[0]] = own
+    grids.rows[node, chunk] = other
+    grids.shares[other] += 1
+    grids.shares[own] -= 1
+    if grids.shares[own] == 0:
+        grids.spare[0] += 1
+        grids.spare[1 + grids.spare[0]] = own
 
 
 @inner
-def _intrude(space: Space, nodes: Nodes, node: int, cell: Cell) -> None:
+def _intrude(space: Space, grids: Grids, node: int, cell: Cell) -> None:
     """Set or clear `INTRUDED` of a cell of a grid in chunks, from the shapes of its neighbours."""
-    scene = scene_of(space, nodes.codes[0], nodes.rows[node])
+    scene = scene_of(space, grids.codes[0], grids.rows[node])
     intruded = False
     for side in range(6):
         other = neighbour(cell, side)
@@ -132,39 +152,39 @@ def _intrude(space: Space, nodes: Nodes, node: int, cell: Cell) -> None:
     wanted = code & OWN | INTRUDED if intruded else code & OWN
     if wanted != code:
         place = place_at(space.chunks, space.sizes, cell)
-        _own(nodes, node, chunk_in(place))
-        nodes.codes[0, index_at(space.chunks, nodes.rows[node], place)] = wanted
+        _own(grids, node, chunk_in(place))
+        grids.codes[0, index_at(space.chunks, grids.rows[node], place)] = wanted
 
 
 @inner
-def _put_in_chunk(space: Space, nodes: Nodes, node: int, cell: Cell, state: int) -> None:
+def _put_in_chunk(space: Space, grids: Grids, node: int, cell: Cell, state: int) -> None:
     """Set a block of a node whose cells are in chunks, and its geometry."""
     place = place_at(space.chunks, space.sizes, cell)
-    _own(nodes, node, chunk_in(place))
-    index = index_at(space.chunks, nodes.rows[node], place)
-    before, code = nodes.codes[0, index], space.codes[state]
-    nodes.blocks[0, index] = state
+    _own(grids, node, chunk_in(place))
+    index = index_at(space.chunks, grids.rows[node], place)
+    before, code = grids.codes[0, index], space.codes[state]
+    grids.blocks[0, index] = state
     if before & OWN == code:
         return
-    nodes.codes[0, index] = before & INTRUDED | code
-    nodes.geometry[node] += 1
+    grids.codes[0, index] = before & INTRUDED | code
+    grids.geometry[node] += 1
     if space.reaches[before & OWN] != 0 or space.reaches[code] != 0:
         for side in range(6):
-            _intrude(space, nodes, node, neighbour(cell, side))
+            _intrude(space, grids, node, neighbour(cell, side))
 
 
 @inlined
 def put_block(
-    chunks: Chunks | None, space: Space, nodes: Nodes, node: int, cell: int, state: int
+    chunks: Chunks | None, space: Space, grids: Grids, node: int, cell: int, state: int
 ) -> None:
     """Set a block of a node, and its geometry."""
-    nodes.versions[node] += 1
+    grids.versions[node] += 1
     if chunks is None:
-        old = nodes.blocks[node, cell]
-        nodes.blocks[node, cell] = state
+        old = grids.blocks[node, cell]
+        grids.blocks[node, cell] = state
         if space.codes[old] != space.codes[state]:
             place = grid_cell(space, cell)
-            set_code(nodes.codes[node], space.sizes, space.reaches, place, space.codes[state])
-            nodes.geometry[node] += 1
+            set_code(grids.codes[node], space.sizes, space.reaches, place, space.codes[state])
+            grids.geometry[node] += 1
     else:
-        _put_in_chunk(space, nodes, node, grid_cell(space, cell), state)
+        _put_in_chunk(space, grids, node, grid_cell(space, cell), state)

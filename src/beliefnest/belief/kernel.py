@@ -29,8 +29,11 @@ from beliefnest.belief.arrays import (
     NOBODY,
     SOURCE_SEEN,
     UNKNOWN,
+    Bases,
     Changes,
     Facts,
+    Grids,
+    Looks,
     Nodes,
     Poses,
     Space,
@@ -41,6 +44,7 @@ from beliefnest.belief.cells import (
     block_at,
     chunk_at,
     grid_cell,
+    grids_of,
     line_of,
     place_of,
     put_block,
@@ -53,84 +57,123 @@ from beliefnest.perception.chunks import chunk_in, place_at
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.eyes import Eye
 from beliefnest.perception.options import HEAR_ALL, HEAR_SEEN, SenseLimits
-from beliefnest.perception.rays import Cell, Scene
+from beliefnest.perception.rays import Cell, Scene, lower, upper
 from beliefnest.world.event_kinds import Sense
 from beliefnest.world.terrain import SIDE, VOLUME, Chunks
 
 __all__ = ["fold", "put", "put_all"]
 
 _WORD = 64
+_ABSENT, _STILL, _MOVED = 0, 1, 2
+
+
+@merged
+def _looks_of(nodes: Nodes) -> Looks:
+    """Return the arrays about agents and eyes."""
+    return Looks(
+        nodes.parent,
+        nodes.agent,
+        nodes.pose,
+        nodes.equipment,
+        nodes.seen_at,
+        nodes.current,
+        nodes.eye,
+        nodes.seen_geometry,
+        nodes.tried,
+        nodes.sees,
+    )
+
+
+@merged
+def _bases_of(nodes: Nodes) -> Bases:
+    """Return the arrays about tracked cells."""
+    return Bases(
+        nodes.parent,
+        nodes.tracked,
+        nodes.places,
+        nodes.watched,
+        nodes.basis_at,
+        nodes.basis_source,
+        nodes.basis_current,
+    )
 
 
 @inlined
-def _held(space: Space, nodes: Nodes, node: int, place: int) -> int:
+def _held(space: Space, grids: Grids, node: int, place: int) -> int:
     """Return the number of a node's block at a place."""
-    return block_at(space.chunks, nodes.blocks, nodes.rows[node], node, place)
+    return block_at(space.chunks, grids.blocks, grids.rows[node], node, place)
 
 
 @inlined
-def _scene(space: Space, nodes: Nodes, node: int) -> Scene:
+def _scene(space: Space, grids: Grids, node: int) -> Scene:
     """Return the shapes of a node."""
-    return scene_of(space, nodes.codes[line_of(space.chunks, node)], nodes.rows[node])
+    return scene_of(space, grids.codes[line_of(space.chunks, node)], grids.rows[node])
 
 
 @inner
-def _mark(space: Space, nodes: Nodes, node: int, place: int) -> None:
+def _mark(space: Space, grids: Grids, node: int, place: int) -> None:
     """Set the pending bit of a place in a node below node 0 if the parent knows another block.
 
     Clear the bit otherwise, unless it stands for a chunk.
     """
-    held = _held(space, nodes, whole(nodes.parent[node]), place)
+    held = _held(space, grids, whole(grids.parent[node]), place)
     number = chunk_at(space.chunks, place)
     word, bit = number // _WORD, np.uint64(1) << np.uint64(number % _WORD)
-    if held != UNKNOWN and held != _held(space, nodes, node, place):
-        nodes.pending[node, word] |= bit
-        nodes.fresh[node] = True
+    if held != UNKNOWN and held != _held(space, grids, node, place):
+        grids.pending[node, word] |= bit
+        grids.fresh[node] = True
     elif space.chunks is None:
-        nodes.pending[node, word] &= ~bit
+        grids.pending[node, word] &= ~bit
+
+
+@inner
+def _put(space: Space, grids: Grids, node: int, cell: int, state: int) -> None:
+    """Set the block of a cell in a node, its geometry, and the pending bits that depend on it."""
+    place = place_of(space.chunks, space, cell)
+    if _held(space, grids, node, place) == state:
+        return
+    put_block(space.chunks, space, grids, node, cell, state)
+    if node > 0:
+        _mark(space, grids, node, place)
+    for n in range(grids.child_at[node], grids.child_at[node + 1]):
+        _mark(space, grids, whole(grids.child[n]), place)
 
 
 @compiled
 def put(space: Space, nodes: Nodes, node: int, cell: int, state: int) -> None:
-    """Set the block of a cell in a node, its geometry, and the pending bits that depend on it."""
-    place = place_of(space.chunks, space, cell)
-    if _held(space, nodes, node, place) == state:
-        return
-    put_block(space.chunks, space, nodes, node, cell, state)
-    if node > 0:
-        _mark(space, nodes, node, place)
-    for n in range(nodes.child_at[node], nodes.child_at[node + 1]):
-        _mark(space, nodes, whole(nodes.child[n]), place)
+    """Call `_put`; kernels call that one, which has no wrapper for Python."""
+    _put(space, grids_of(nodes), whole(node), whole(cell), whole(state))
 
 
 @inlined
-def _handed_source(nodes: Nodes, parent: int, spot: int) -> int:
+def _handed_source(bases: Bases, parent: int, spot: int) -> int:
     """Return the source that an owner takes over for a tracked cell that it sees in its parent.
 
     In the real world everything is current (section 2), so a child of node 0 holds it as seen.
     """
-    return SOURCE_SEEN if parent == 0 else nodes.basis_source[parent, spot]
+    return SOURCE_SEEN if parent == 0 else bases.basis_source[parent, spot]
 
 
-@inner
-def _settle(nodes: Nodes, node: int, last: int) -> None:
+@merged
+def _settle(looks: Looks, bases: Bases, node: int, last: int) -> None:
     """Set `observed_at` of everything that was current so far to tick `last` (section 2).
 
     While an element is current no tick is written. This function runs before the flags are computed
     anew: an element that is no longer current then keeps `last` as its `observed_at`.
     """
-    for who in range(nodes.pose.shape[1]):
-        if nodes.current[node, who]:
-            nodes.seen_at[node, who] = last
-    for spot in range(len(nodes.tracked)):
-        if nodes.basis_current[node, spot]:
-            nodes.basis_at[node, spot] = last
+    for who in range(looks.pose.shape[1]):
+        if looks.current[node, who]:
+            looks.seen_at[node, who] = last
+    for spot in range(len(bases.tracked)):
+        if bases.basis_current[node, spot]:
+            bases.basis_at[node, spot] = last
 
 
 @inner
 def _put_noted(
     space: Space,
-    nodes: Nodes,
+    grids: Grids,
+    bases: Bases,
     changes: Changes,
     entry: int,
     tick: int,
@@ -138,11 +181,11 @@ def _put_noted(
     cell: int,
     state: int,
 ) -> None:
-    """Call `put`. Add a row to `changes` if the old or the new block is a container.
+    """Call `_put`. Add a row to `changes` if the old or the new block is a container.
 
     The row carries the basis of the new block: that of the parent, from which the owner took it.
     """
-    old = _held(space, nodes, node, place_of(space.chunks, space, cell))
+    old = _held(space, grids, node, place_of(space.chunks, space, cell))
     if old == state:
         return
     if space.holds[old] or space.holds[state]:
@@ -152,14 +195,14 @@ def _put_noted(
         changes.rows[row, 2] = cell
         changes.rows[row, 3] = old
         changes.rows[row, 4] = state
-        for spot in range(len(nodes.tracked)):
-            if nodes.tracked[spot] == cell:
-                parent = max(nodes.parent[node], 0)
-                is_current = nodes.basis_current[parent, spot]
-                changes.rows[row, 5] = tick if is_current else nodes.basis_at[parent, spot]
-                changes.rows[row, 6] = _handed_source(nodes, parent, spot)
+        for spot in range(len(bases.tracked)):
+            if bases.tracked[spot] == cell:
+                parent = grids.parent[node] if node > 0 else 0
+                is_current = bases.basis_current[parent, spot]
+                changes.rows[row, 5] = tick if is_current else bases.basis_at[parent, spot]
+                changes.rows[row, 6] = _handed_source(bases, parent, spot)
         changes.used[0] = row + 1
-    put(space, nodes, node, cell, state)
+    _put(space, grids, node, cell, state)
 
 
 @compiled
@@ -171,56 +214,69 @@ def put_all(
     states: npt.NDArray[np.int64],
 ) -> None:
     """Call `put` for several nodes: `states[k]` is for node `which[k]`."""
+    grids = grids_of(nodes)
     for number in range(len(which)):
-        put(space, nodes, whole(which[number]), whole(cell), whole(states[number]))
+        _put(space, grids, whole(which[number]), whole(cell), whole(states[number]))
 
 
 @merged
-def _apply_entry(space: Space, facts: Facts, nodes: Nodes, changes: Changes, entry: int) -> None:
+def _apply_entry(
+    space: Space,
+    facts: Facts,
+    looks: Looks,
+    grids: Grids,
+    bases: Bases,
+    changes: Changes,
+    entry: int,
+) -> None:
     """Apply an entry to node 0. Everything that node 0 knows is current (section 2)."""
     for row in range(facts.pose_at[entry], facts.pose_at[entry + 1]):
         who, pose = facts.pose_agent[row], facts.pose_id[row]
-        nodes.pose[0, who] = pose
-        nodes.equipment[0, who] = pose
-    for who in range(nodes.pose.shape[1]):
-        known = nodes.pose[0, who] != UNKNOWN
-        nodes.current[0, who] = known
+        looks.pose[0, who] = pose
+        looks.equipment[0, who] = pose
+    for who in range(looks.pose.shape[1]):
+        known = looks.pose[0, who] != UNKNOWN
+        looks.current[0, who] = known
         if known:
-            nodes.seen_at[0, who] = facts.tick[entry]
+            looks.seen_at[0, who] = facts.tick[entry]
     for row in range(facts.block_at[entry], facts.block_at[entry + 1]):
         cell, state = whole(facts.block_cell[row]), whole(facts.block_state[row])
-        _put_noted(space, nodes, changes, entry, whole(facts.tick[entry]), whole(0), cell, state)
-    for spot in range(len(nodes.tracked)):
-        known = _held(space, nodes, whole(0), whole(nodes.places[spot])) != UNKNOWN
-        nodes.basis_current[0, spot] = known
+        _put_noted(
+            space, grids, bases, changes, entry, whole(facts.tick[entry]), whole(0), cell, state
+        )
+    for spot in range(len(bases.tracked)):
+        known = _held(space, grids, whole(0), whole(bases.places[spot])) != UNKNOWN
+        bases.basis_current[0, spot] = known
         if known:
-            nodes.basis_at[0, spot] = facts.tick[entry]
-            nodes.basis_source[0, spot] = SOURCE_SEEN
+            bases.basis_at[0, spot] = facts.tick[entry]
+            bases.basis_source[0, spot] = SOURCE_SEEN
 
 
 @merged
-def _propagate_bases(space: Space, nodes: Nodes, node: int, eye: Eye, moved: bool) -> None:
+def _propagate_bases(
+    space: Space, grids: Grids, bases: Bases, node: int, eye: Eye, moved: bool
+) -> None:
     """Take over the basis of each tracked cell that the owner of a node sees in its parent.
 
     A cell is current for the owner only if it is current in the parent. A stale one keeps its old
     tick (section 5.4).
     """
-    parent = whole(nodes.parent[node])
-    for spot in range(len(nodes.tracked)):
+    parent = whole(grids.parent[node])
+    for spot in range(len(bases.tracked)):
         if moved:
-            cell = grid_cell(space, whole(nodes.tracked[spot]))
-            nodes.watched[node, spot] = sees_cell(space, _scene(space, nodes, parent), eye, cell)
-        nodes.basis_current[node, spot] = False
-        held = _held(space, nodes, parent, whole(nodes.places[spot]))
-        if nodes.watched[node, spot] and held != UNKNOWN:
-            nodes.basis_at[node, spot] = nodes.basis_at[parent, spot]
-            nodes.basis_source[node, spot] = _handed_source(nodes, parent, spot)
-            nodes.basis_current[node, spot] = nodes.basis_current[parent, spot]
+            cell = grid_cell(space, whole(bases.tracked[spot]))
+            bases.watched[node, spot] = sees_cell(space, _scene(space, grids, parent), eye, cell)
+        bases.basis_current[node, spot] = False
+        held = _held(space, grids, parent, whole(bases.places[spot]))
+        if bases.watched[node, spot] and held != UNKNOWN:
+            bases.basis_at[node, spot] = bases.basis_at[parent, spot]
+            bases.basis_source[node, spot] = _handed_source(bases, parent, spot)
+            bases.basis_current[node, spot] = bases.basis_current[parent, spot]
 
 
 @merged
 def _observe_agents(
-    space: Space, poses: Poses, nodes: Nodes, node: int, eye: Eye, moved: bool
+    space: Space, poses: Poses, looks: Looks, grids: Grids, node: int, eye: Eye, moved: bool
 ) -> None:
     """Take over poses and equipment of the agents that the owner sees in its parent.
 
@@ -228,31 +284,31 @@ def _observe_agents(
     (section 5.4). With `negative_evidence` a believed pose becomes unknown if the owner sees that
     place without the agent (section 4).
     """
-    parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
-    scene = _scene(space, nodes, parent)
-    for who in range(nodes.pose.shape[1]):
-        pose = whole(nodes.pose[parent, who])
+    parent, me = whole(looks.parent[node]), whole(looks.agent[node])
+    scene = _scene(space, grids, parent)
+    for who in range(looks.pose.shape[1]):
+        pose = whole(looks.pose[parent, who])
         seen = who == me
         if not seen and pose != UNKNOWN:
-            if moved or nodes.tried[node, who] != pose:
-                nodes.sees[node, who] = sees_agent(space, poses, scene, eye, pose)
-                nodes.tried[node, who] = pose
-            seen = nodes.sees[node, who]
+            if moved or looks.tried[node, who] != pose:
+                looks.sees[node, who] = sees_agent(space, poses, scene, eye, pose)
+                looks.tried[node, who] = pose
+            seen = looks.sees[node, who]
         if seen:
-            nodes.pose[node, who] = pose
-            if nodes.equipment[parent, who] != UNKNOWN:
-                nodes.equipment[node, who] = nodes.equipment[parent, who]
-            nodes.seen_at[node, who] = nodes.seen_at[parent, who]
-            nodes.current[node, who] = nodes.current[parent, who]
+            looks.pose[node, who] = pose
+            if looks.equipment[parent, who] != UNKNOWN:
+                looks.equipment[node, who] = looks.equipment[parent, who]
+            looks.seen_at[node, who] = looks.seen_at[parent, who]
+            looks.current[node, who] = looks.current[parent, who]
             continue
-        nodes.current[node, who] = False
-        believed = whole(nodes.pose[node, who])
+        looks.current[node, who] = False
+        believed = whole(looks.pose[node, who])
         if (
             space.senses.negative
             and believed != UNKNOWN
             and sees_agent(space, poses, scene, eye, believed)
         ):
-            nodes.pose[node, who] = UNKNOWN
+            looks.pose[node, who] = UNKNOWN
 
 
 @inlined
@@ -262,13 +318,15 @@ def _in_range(place: float, far: float, size: int) -> tuple[int, int]:
     There may be one cell more on each side.
     """
     low, high = place - 1.0 - far, place + 1.0 + far
-    return int(min(max(low, 0.0), float(size))), int(min(max(high, 0.0), float(size)))
+    edge = float(size)
+    return int(lower(upper(low, 0.0), edge)), int(lower(upper(high, 0.0), edge))
 
 
 @merged
 def _observe_cells(
     space: Space,
-    nodes: Nodes,
+    grids: Grids,
+    bases: Bases,
     changes: Changes,
     entry: int,
     tick: int,
@@ -281,42 +339,44 @@ def _observe_cells(
     words of 64 bits with a set bit. Words lie in the order of columns, so a word that two columns
     share is visited once. `put` clears the bit of each block taken over.
     """
-    parent = whole(nodes.parent[node])
-    scene = _scene(space, nodes, parent)
+    parent = whole(grids.parent[node])
+    scene = _scene(space, grids, parent)
     ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
     (px, py, pz), _, _, far = eye
     # Most nodes have few pending cells, or none.
-    first, last = 0, nodes.pending.shape[1] - 1
-    while first <= last and nodes.pending[node, first] == 0:
+    first, last = 0, grids.pending.shape[1] - 1
+    while first <= last and grids.pending[node, first] == 0:
         first += 1
-    while first < last and nodes.pending[node, last] == 0:
+    while first < last and grids.pending[node, last] == 0:
         last -= 1
     x0, x1 = _in_range(px - 1.0, far, space.sizes[0] - 2)
-    x0, x1 = max(x0, first * _WORD // (ny * nz)), min(x1, (last * _WORD + _WORD) // (ny * nz) + 1)
+    x0 = upper(x0, first * _WORD // (ny * nz))
+    x1 = lower(x1, (last * _WORD + _WORD) // (ny * nz) + 1)
     y0, y1 = _in_range(py - 1.0, far, ny)
     word = 0
     for x in range(x0, x1):
         for y in range(y0, y1):
             dx, dy = x + 1.5 - px, y + 1.5 - py
-            near = math.sqrt(max(far * far - dx * dx - dy * dy, 0.0))
+            near = math.sqrt(upper(far * far - dx * dx - dy * dy, 0.0))
             z0, z1 = _in_range(pz - 1.0, near, nz)
             row = (x * ny + y) * nz
-            word = max(word, (row + z0) // _WORD)
+            word = upper(word, (row + z0) // _WORD)
             while word * _WORD < row + z1:
-                bits = nodes.pending[node, word]
+                bits = grids.pending[node, word]
                 for place in range(_WORD if bits != 0 else 0):
                     if (bits >> np.uint64(place)) & np.uint64(1):
                         cell = word * _WORD + place
                         if sees_cell(space, scene, eye, grid_cell(space, cell)):
-                            state = whole(nodes.blocks[parent, cell])
-                            _put_noted(space, nodes, changes, entry, tick, node, cell, state)
+                            state = whole(grids.blocks[parent, cell])
+                            _put_noted(space, grids, bases, changes, entry, tick, node, cell, state)
                 word += 1
 
 
 @inner
 def _observe_chunk(
     space: Space,
-    nodes: Nodes,
+    grids: Grids,
+    bases: Bases,
     changes: Changes,
     entry: int,
     tick: int,
@@ -328,32 +388,33 @@ def _observe_chunk(
 
     `corner` is the first cell of the chunk. Cells of the margin are unknown in all nodes.
     """
-    parent = whole(nodes.parent[node])
+    parent = whole(grids.parent[node])
     chunk = chunk_in(place_at(space.chunks, space.sizes, corner))
-    theirs, ny, nz = nodes.rows[parent, chunk], space.sizes[1] - 2, space.sizes[2] - 2
-    if nodes.rows[node, chunk] == theirs:
+    theirs, ny, nz = grids.rows[parent, chunk], space.sizes[1] - 2, space.sizes[2] - 2
+    if grids.rows[node, chunk] == theirs:
         return False
-    scene, left = _scene(space, nodes, parent), False
+    scene, left = _scene(space, grids, parent), False
     for within in range(VOLUME):
-        state = whole(nodes.blocks[0, theirs * VOLUME + within])
-        own = whole(nodes.blocks[0, nodes.rows[node, chunk] * VOLUME + within])
+        state = whole(grids.blocks[0, theirs * VOLUME + within])
+        own = whole(grids.blocks[0, grids.rows[node, chunk] * VOLUME + within])
         if state not in (UNKNOWN, own):
             i, j, k = corner[0] + within // (SIDE * SIDE), within // SIDE % SIDE, within % SIDE
             j, k = corner[1] + j, corner[2] + k
             if sees_cell(space, scene, eye, (i, j, k)):
                 cell = ((i - 1) * ny + j - 1) * nz + k - 1
-                _put_noted(space, nodes, changes, entry, tick, node, cell, state)
+                _put_noted(space, grids, bases, changes, entry, tick, node, cell, state)
             else:
                 left = True
     if not left:
-        share(nodes, node, parent, chunk)
+        share(grids, node, parent, chunk)
     return left
 
 
 @inner
 def _observe_chunks(
     space: Space,
-    nodes: Nodes,
+    grids: Grids,
+    bases: Bases,
     changes: Changes,
     entry: int,
     tick: int,
@@ -370,10 +431,10 @@ def _observe_chunks(
             for k in range(z0 // SIDE * SIDE, z1, SIDE):
                 chunk = chunk_in(place_at(space.chunks, space.sizes, (i, j, k)))
                 word, bit = chunk // _WORD, np.uint64(1) << np.uint64(chunk % _WORD)
-                if nodes.pending[node, word] & bit and not _observe_chunk(
-                    space, nodes, changes, entry, tick, node, eye, (i, j, k)
+                if grids.pending[node, word] & bit and not _observe_chunk(
+                    space, grids, bases, changes, entry, tick, node, eye, (i, j, k)
                 ):
-                    nodes.pending[node, word] &= ~bit
+                    grids.pending[node, word] &= ~bit
 
 
 @inlined
@@ -384,24 +445,24 @@ def _is_common_ground(senses: SenseLimits, facts: Facts, event: int, me: int) ->
     """
     to = facts.event_to[event]
     if to != NOBODY:
-        return bool(me in (to, facts.event_actor[event]))
+        return bool(me == to or me == facts.event_actor[event])
     return bool(senses.hearing == HEAR_ALL or facts.event_actor[event] == me)
 
 
-@inlined
-def _hears(senses: SenseLimits, poses: Poses, nodes: Nodes, node: int, speaker: int) -> bool:
+@merged
+def _hears(senses: SenseLimits, poses: Poses, looks: Looks, node: int, speaker: int) -> bool:
     """Return True if the present owner of a node hears another agent that speaks aloud.
 
     The test runs on the speaker's pose in the parent, under `sight` or `radius` (section 5.5).
     """
     if senses.hearing == HEAR_SEEN:
-        known = nodes.pose[nodes.parent[node], speaker] != UNKNOWN
-        return bool(nodes.sees[node, speaker] and known)
-    parent = whole(nodes.parent[node])
-    other = whole(nodes.pose[parent, speaker])
+        known = looks.pose[looks.parent[node], speaker] != UNKNOWN
+        return bool(looks.sees[node, speaker] and known)
+    parent = whole(looks.parent[node])
+    other = whole(looks.pose[parent, speaker])
     if other == UNKNOWN:
         return False
-    own = whole(nodes.pose[parent, nodes.agent[node]])
+    own = whole(looks.pose[parent, looks.agent[node]])
     x = poses.feet[own, 0] - poses.feet[other, 0]
     y = poses.feet[own, 1] - poses.feet[other, 1]
     z = poses.feet[own, 2] - poses.feet[other, 2]
@@ -413,18 +474,20 @@ def _perceive_events(
     space: Space,
     poses: Poses,
     facts: Facts,
-    nodes: Nodes,
+    looks: Looks,
+    grids: Grids,
     changes: Changes,
     span: Span,
     entry: int,
     node: int,
+    eye: Eye,
 ) -> None:
     """Set in `changes.perceived` which events of an entry the present owner of a node perceives.
 
     An event that was not perceived in the parent is skipped: a deeper belief never contains more
     than the shallower one.
     """
-    parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
+    parent, me = whole(looks.parent[node]), whole(looks.agent[node])
     first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         if not changes.perceived[event - first_event, parent]:
@@ -436,22 +499,22 @@ def _perceive_events(
             got = False
         elif sense == Sense.HEARING:
             got = _is_common_ground(space.senses, facts, event, me) or (
-                facts.event_to[event] == NOBODY and _hears(space.senses, poses, nodes, node, actor)
+                facts.event_to[event] == NOBODY and _hears(space.senses, poses, looks, node, actor)
             )
         elif sense == Sense.PLACE:
-            cell, eye = whole(facts.event_cell[event]), eye_of(space, poses, whole(nodes.eye[node]))
-            place = grid_cell(space, cell)
-            got = sees_cell(space, _scene(space, nodes, parent), eye, place)
+            place = grid_cell(space, whole(facts.event_cell[event]))
+            got = sees_cell(space, _scene(space, grids, parent), eye, place)
         else:
-            got = actor >= 0 and nodes.pose[parent, actor] != UNKNOWN and nodes.sees[node, actor]
+            got = actor >= 0 and looks.pose[parent, actor] != UNKNOWN and looks.sees[node, actor]
         changes.perceived[event - first_event, node] = got
 
 
-@inner
+@merged
 def _update_absent(
     senses: SenseLimits,
     facts: Facts,
-    nodes: Nodes,
+    looks: Looks,
+    bases: Bases,
     changes: Changes,
     span: Span,
     entry: int,
@@ -462,16 +525,18 @@ def _update_absent(
     Nothing stays current, and the owner is credited with nothing but utterances that are common
     ground (sections 5.2 and 5.5).
     """
-    nodes.current[node, :] = False
-    nodes.basis_current[node, :] = False
-    nodes.eye[node] = UNKNOWN
-    nodes.watched[node, :] = False
-    me = whole(nodes.agent[node])
+    for who in range(looks.pose.shape[1]):
+        looks.current[node, who] = False
+    for spot in range(len(bases.tracked)):
+        bases.basis_current[node, spot] = False
+        bases.watched[node, spot] = False
+    looks.eye[node] = UNKNOWN
+    me = whole(looks.agent[node])
     first_event = whole(facts.event_at[span.start])
     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
         is_heard = facts.event_sense[event] == Sense.HEARING
         if is_heard and _is_common_ground(senses, facts, event, me):
-            heard = changes.perceived[event - first_event, nodes.parent[node]]
+            heard = changes.perceived[event - first_event, looks.parent[node]]
             changes.perceived[event - first_event, node] = heard
 
 
@@ -483,7 +548,7 @@ def _copy(row: npt.NDArray[np.int32], to: npt.NDArray[np.int32]) -> None:
 
 
 @inner
-def _count_to(nodes: Nodes, weighing: Weighing, node: int, tick: int) -> None:
+def _count_to(looks: Looks, bases: Bases, weighing: Weighing, node: int, tick: int) -> None:
     """Count the ticks up to `tick` for condition 1b of section 8.1, with the present flags.
 
     `missed` grows for every agent that the owner did not perceive. The copies of `missed` for
@@ -495,10 +560,10 @@ def _count_to(nodes: Nodes, weighing: Weighing, node: int, tick: int) -> None:
     passed = tick - weighing.counted[node]
     weighing.counted[node] = tick
     for who in range(weighing.missed.shape[1]):
-        if not nodes.current[node, who]:
+        if not looks.current[node, who]:
             weighing.missed[node, who] += passed
-    for spot in range(len(nodes.tracked)):
-        if nodes.watched[node, spot]:
+    for spot in range(len(bases.tracked)):
+        if bases.watched[node, spot]:
             _copy(weighing.missed[node], weighing.watch_missed[node, spot])
     for who in range(weighing.missed.shape[1]):
         if weighing.meets[node, who]:
@@ -507,18 +572,24 @@ def _count_to(nodes: Nodes, weighing: Weighing, node: int, tick: int) -> None:
 
 @inner
 def _observe_meetings(
-    space: Space, poses: Poses, nodes: Nodes, weighing: Weighing, node: int, moved: bool
+    space: Space,
+    poses: Poses,
+    looks: Looks,
+    grids: Grids,
+    weighing: Weighing,
+    node: int,
+    moved: bool,
 ) -> None:
     """Note the pose in which the present owner of a node perceives each agent.
 
     Set `met` to unknown where the owner sees the last such place without the agent. The test is
     repeated only if the owner looks anew (`moved`) or has just lost the agent from sight.
     """
-    parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
-    eye = eye_of(space, poses, whole(nodes.eye[node]))
+    parent, me = whole(looks.parent[node]), whole(looks.agent[node])
+    eye = eye_of(space, poses, whole(looks.eye[node]))
     for who in range(weighing.missed.shape[1]):
-        pose = whole(nodes.pose[parent, who])
-        if who == me or (pose != UNKNOWN and nodes.sees[node, who]):
+        pose = whole(looks.pose[parent, who])
+        if who == me or (pose != UNKNOWN and looks.sees[node, who]):
             weighing.met[node, who] = pose
             weighing.meets[node, who] = True
             continue
@@ -526,7 +597,7 @@ def _observe_meetings(
         if (
             met != UNKNOWN
             and (moved or weighing.meets[node, who])
-            and sees_agent(space, poses, _scene(space, nodes, parent), eye, met)
+            and sees_agent(space, poses, _scene(space, grids, parent), eye, met)
         ):
             weighing.met[node, who] = UNKNOWN
         weighing.meets[node, who] = False
@@ -535,7 +606,7 @@ def _observe_meetings(
 @inner
 def _note_watched_places(
     facts: Facts,
-    nodes: Nodes,
+    bases: Bases,
     weighing: Weighing,
     changes: Changes,
     span: Span,
@@ -552,69 +623,62 @@ def _note_watched_places(
         if cell < 0 or facts.event_actor[event] < 0:
             continue
         if changes.perceived[event - first_event, node]:
-            for spot in range(len(nodes.tracked)):
-                if nodes.tracked[spot] == cell:
+            for spot in range(len(bases.tracked)):
+                if bases.tracked[spot] == cell:
                     _copy(weighing.missed[node], weighing.watch_missed[node, spot])
 
 
 @merged
-def _update_node(
+def _begin(
     space: Space,
-    poses: Poses,
     facts: Facts,
-    nodes: Nodes,
+    looks: Looks,
+    grids: Grids,
+    bases: Bases,
     weighing: Weighing | None,
     changes: Changes,
     span: Span,
     entry: int,
     node: int,
-    chunks: Chunks | None,
-) -> None:
-    """Fold an entry into one node whose parent was updated before.
+) -> int:
+    """Begin to fold an entry into a node whose parent was updated before; return how it looks.
 
     The order matters. First the ticks before this one are accounted for, with the flags that held
-    during them. Then the flags are computed anew. The tick of the entry counts with the new ones.
+    during them. The caller then computes the flags anew. The tick of the entry counts with the
+    new ones.
+
+    Returns:
+        `_ABSENT` if the owner is not present in the parent; the node is complete then. `_MOVED` if
+        the eye or the shapes changed since the last look; otherwise `_STILL`.
     """
     tick = whole(facts.tick[entry])
     # An edit lies between two ticks: what was current before it was so at this tick too.
     last = tick - 1 if span.happens else tick
-    _settle(nodes, node, last)
+    _settle(looks, bases, node, last)
     if weighing is not None:
-        _count_to(nodes, weighing, node, last)
-    parent, me = whole(nodes.parent[node]), whole(nodes.agent[node])
-    if not nodes.current[parent, me]:
-        _update_absent(space.senses, facts, nodes, changes, span, entry, node)
+        _count_to(looks, bases, weighing, node, last)
+    parent, me = whole(looks.parent[node]), whole(looks.agent[node])
+    if not looks.current[parent, me]:
+        _update_absent(space.senses, facts, looks, bases, changes, span, entry, node)
         if weighing is not None:
-            weighing.meets[node, :] = False
-            _count_to(nodes, weighing, node, tick)
-        return
-    pose = whole(nodes.pose[parent, me])
-    eye = eye_of(space, poses, pose)
-    moved = nodes.eye[node] != pose or nodes.seen_geometry[node] != nodes.geometry[parent]
-    nodes.eye[node] = pose
-    nodes.seen_geometry[node] = nodes.geometry[parent]
-    _observe_agents(space, poses, nodes, node, eye, moved)
-    if moved or nodes.fresh[node]:
-        if chunks is None:
-            _observe_cells(space, nodes, changes, entry, tick, node, eye)
-        else:
-            _observe_chunks(space, nodes, changes, entry, tick, node, eye)
-        nodes.fresh[node] = False
-    _perceive_events(space, poses, facts, nodes, changes, span, entry, node)
-    _propagate_bases(space, nodes, node, eye, moved)
-    if weighing is not None:
-        _observe_meetings(space, poses, nodes, weighing, node, moved)
-        _count_to(nodes, weighing, node, tick)
-        _note_watched_places(facts, nodes, weighing, changes, span, entry, node)
+            for who in range(weighing.missed.shape[1]):
+                weighing.meets[node, who] = False
+            _count_to(looks, bases, weighing, node, tick)
+        return _ABSENT
+    pose, shapes = whole(looks.pose[parent, me]), whole(grids.geometry[parent])
+    moved = looks.eye[node] != pose or looks.seen_geometry[node] != shapes
+    looks.eye[node] = pose
+    looks.seen_geometry[node] = shapes
+    return _MOVED if moved else _STILL
 
 
-@inlined
-def _lacks_room(chunks: Chunks | None, nodes: Nodes) -> bool:
+@merged
+def _lacks_room(chunks: Chunks | None, grids: Grids) -> bool:
     """Return True if a node that changes all of its chunks might not find room in the pool."""
     if chunks is None:
         return False
-    free = nodes.spare[0] + len(nodes.shares) - nodes.spare[1]
-    return bool(free < nodes.rows.shape[1])
+    free = grids.spare[0] + len(grids.shares) - grids.spare[1]
+    return bool(free < grids.rows.shape[1])
 
 
 @compiled
@@ -649,6 +713,7 @@ def fold(
         next entry adds might not fit into `changes.rows`, or the chunks that the next node changes
         into the pool; then it leaves the number of that node in `changes.used`.
     """
+    looks, grids, bases = _looks_of(nodes), grids_of(nodes), _bases_of(nodes)
     first_event = whole(facts.event_at[span.start])
     room = changes.rows.shape[0]
     first_node = span.node
@@ -657,18 +722,34 @@ def fold(
         # `Forest._changes`). So no entry that begins with half of the room free can overflow it.
         if first_node == 0 and changes.used[0] > 0 and changes.used[0] > room // 2:
             return entry
-        for node in range(first_node, len(nodes.parent)):
+        for node in range(first_node, len(looks.parent)):
             if which[node]:
-                if _lacks_room(space.chunks, nodes):
+                if _lacks_room(chunks, grids):
                     changes.used[1] = node
                     return entry
                 if node == 0:
-                    _apply_entry(space, facts, nodes, changes, entry)
+                    _apply_entry(space, facts, looks, grids, bases, changes, entry)
                     for event in range(facts.event_at[entry], facts.event_at[entry + 1]):
                         changes.perceived[event - first_event, 0] = True
-                else:
-                    _update_node(
-                        space, poses, facts, nodes, weighing, changes, span, entry, node, chunks
-                    )
+                    continue
+                look = _begin(
+                    space, facts, looks, grids, bases, weighing, changes, span, entry, node
+                )
+                if look == _ABSENT:
+                    continue
+                eye, tick = eye_of(space, poses, whole(looks.eye[node])), whole(facts.tick[entry])
+                _observe_agents(space, poses, looks, grids, node, eye, look == _MOVED)
+                if look == _MOVED or grids.fresh[node]:
+                    if chunks is None:
+                        _observe_cells(space, grids, bases, changes, entry, tick, node, eye)
+                    else:
+                        _observe_chunks(space, grids, bases, changes, entry, tick, node, eye)
+                    grids.fresh[node] = False
+                _perceive_events(space, poses, facts, looks, grids, changes, span, entry, node, eye)
+                _propagate_bases(space, grids, bases, node, eye, look == _MOVED)
+                if weighing is not None:
+                    _observe_meetings(space, poses, looks, grids, weighing, node, look == _MOVED)
+                    _count_to(looks, bases, weighing, node, tick)
+                    _note_watched_places(facts, bases, weighing, changes, span, entry, node)
         first_node = 0
     return span.stop

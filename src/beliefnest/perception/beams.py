@@ -22,11 +22,13 @@ from beliefnest.perception.rays import (
     code_at,
     hidden_by,
     is_inside,
+    lower,
     main_axis,
     may_lie_in_face,
     neighbour,
     turned,
     turned_back,
+    upper,
 )
 from beliefnest.perception.shadows import ROOM, Shadows
 
@@ -137,8 +139,8 @@ def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
         xa, xb = x0 * slopes[0, n], x1 * slopes[0, n]
         ya, yb = y0 * slopes[1, n], y1 * slopes[1, n]
         za, zb = z0 * slopes[2, n], z1 * slopes[2, n]
-        t0 = max(min(xa, xb), min(za, zb), min(ya, yb), 0.0)
-        t1 = min(max(xa, xb), max(za, zb), max(ya, yb), 1.0)
+        t0 = upper(upper(lower(xa, xb), lower(za, zb)), upper(lower(ya, yb), 0.0))
+        t1 = lower(lower(upper(xa, xb), upper(za, zb)), lower(upper(ya, yb), 1.0))
         opens[n] = 0 if t1 - t0 > least else opens[n]
         left |= opens[n]
     return left != 0
@@ -170,7 +172,7 @@ def _bounds(
     """Return the first and last cell a beam can touch between two distances, along one axis."""
     first = e + slope0 * (d1 if slope0 < 0 else d0)
     last = e + slope1 * (d1 if slope1 > 0 else d0)
-    first, last = max(first, min(e, low)), min(last, max(e, low + 1.0))
+    first, last = upper(first, lower(e, low)), lower(last, upper(e, low + 1.0))
     return math.floor(first - _SPARE), math.floor(last + _SPARE)
 
 
@@ -191,7 +193,7 @@ def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
     stride_b, stride_c = stride(chunks, sizes, axis_b), stride(chunks, sizes, axis_c)
     step = 1 if ta + 0.5 > ea else -1
     far = abs(ta + 0.5 - ea) + 0.5
-    near = max(far - 1.0, 1e-6)
+    near = upper(far - 1.0, 1e-6)
     lb, hb, lc, hc = tb - eb, tb + 1 - eb, tc - ec, tc + 1 - ec
     b_slope0, b_slope1 = lb / (near if lb < 0 else far), hb / (near if hb > 0 else far)
     c_slope0, c_slope1 = lc / (near if lc < 0 else far), hc / (near if hc > 0 else far)
@@ -200,12 +202,12 @@ def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
         if layer < 0 or layer >= size_a:
             continue
         d = (layer + 0.5 - ea) * step
-        b0, b1 = _bounds(eb, tb, b_slope0, b_slope1, max(d - 0.5, 0.0), d + 0.5)
-        c0, c1 = _bounds(ec, tc, c_slope0, c_slope1, max(d - 0.5, 0.0), d + 0.5)
+        b0, b1 = _bounds(eb, tb, b_slope0, b_slope1, upper(d - 0.5, 0.0), d + 0.5)
+        c0, c1 = _bounds(ec, tc, c_slope0, c_slope1, upper(d - 0.5, 0.0), d + 0.5)
         part_a = part(chunks, layer, stride_a, axis)
-        for b in range(max(b0, 0), min(b1, size_b - 1) + 1):
+        for b in range(upper(b0, 0), lower(b1, size_b - 1) + 1):
             part_ab = part_a + part(chunks, b, stride_b, axis_b)
-            for c in range(max(c0, 0), min(c1, size_c - 1) + 1):
+            for c in range(upper(c0, 0), lower(c1, size_c - 1) + 1):
                 place = part_ab + part(chunks, c, stride_c, axis_c)
                 code = codes[index_at(chunks, rows, place)]
                 if code == EMPTY:
@@ -266,7 +268,7 @@ def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
     # One length serves for all rays: lengths to the sample points differ by less than a block.
-    slopes[3, 0] = LEAST_LENGTH / max(math.sqrt(x * x + z * z + y * y), 0.5)
+    slopes[3, 0] = LEAST_LENGTH / upper(math.sqrt(x * x + z * z + y * y), 0.5)
     for n in range(_SAMPLES):
         opens[n] = -1
     levels = 0

@@ -6,10 +6,12 @@ the same kernel finds it, wherever the package is installed, and versions do not
 other. Numba itself distinguishes processors and types of arguments within such a file.
 """
 
+import functools
+import gc
 import os
 import pickle
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from enum import EnumType
 from hashlib import blake2b
 from pathlib import Path
@@ -108,7 +110,37 @@ def _kept(function: F, options: dict[str, Any]) -> F:
 
 
 def _jit(function: F, options: dict[str, Any]) -> F:
-    return cast(F, numba.njit(**options)(function))
+    kernel: Any = numba.njit(**options)(function)
+    kernel.compile = _without_collections(kernel.compile)
+    return cast(F, kernel)
+
+
+def _without_collections(function: F) -> F:
+    """Return a function that runs with the garbage collector paused.
+
+    Numba makes many objects that live until a kernel is compiled. Searching them again and again
+    took a sixth of the compilation.
+    """
+
+    @functools.wraps(function)
+    def run(*args: Any) -> Any:
+        with _collections_paused():
+            return function(*args)
+
+    return cast(F, run)
+
+
+@contextmanager
+def _collections_paused() -> Iterator[None]:
+    """Pause the garbage collector, unless somebody else has done so."""
+    if not gc.isenabled():
+        yield
+        return
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
 
 
 def _folders(source: str) -> Iterator[Path]:

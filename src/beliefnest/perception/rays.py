@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from beliefnest.perception.chunks import Rows, index_at, part, place_at, stride
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
-from beliefnest.perception.compiling import compiled, inlined, inner
+from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.world.terrain import Chunks
 
 __all__ = [
@@ -28,10 +28,12 @@ __all__ = [
     "Scene",
     "Vector",
     "at",
+    "blocker",
     "cell_at",
     "code_at",
     "hidden_by",
     "is_inside",
+    "lower",
     "main_axis",
     "may_lie_in_face",
     "neighbour",
@@ -39,6 +41,7 @@ __all__ = [
     "span",
     "turned",
     "turned_back",
+    "upper",
 ]
 
 N = TypeVar("N", int, float)
@@ -82,6 +85,18 @@ _NUDGE = 1e-7
 _SPARE = 1e-11
 # No shape comes this near to the outer side of the margin.
 _RIM = 1e-3
+
+
+@inlined
+def lower(a: N, b: N) -> N:
+    """Return the lesser of two numbers; `min` is compiled anew for each kernel that calls it."""
+    return b if b < a else a
+
+
+@inlined
+def upper(a: N, b: N) -> N:
+    """Return the greater of two numbers; `max` is compiled anew for each kernel that calls it."""
+    return b if b > a else a
 
 
 @inlined
@@ -145,7 +160,7 @@ def _clip(e: float, inverse: float, low: float, high: float) -> tuple[float, flo
         return math.inf, -math.inf
     ta = (low - e) * inverse
     tb = (high - e) * inverse
-    return min(ta, tb), max(ta, tb)
+    return lower(ta, tb), upper(ta, tb)
 
 
 @inlined
@@ -155,7 +170,7 @@ def span(ray: Ray, low: Vector, high: Vector) -> tuple[float, float]:
     x0, x1 = _clip(eye[0], inverse[0], low[0], high[0])
     y0, y1 = _clip(eye[1], inverse[1], low[1], high[1])
     z0, z1 = _clip(eye[2], inverse[2], low[2], high[2])
-    return max(x0, z0, y0, 0.0), min(x1, z1, y1, 1.0)
+    return upper(upper(x0, z0), upper(y0, 0.0)), lower(lower(x1, z1), lower(y1, 1.0))
 
 
 @inlined
@@ -172,7 +187,7 @@ def _block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
         high = (i + boxes[row, 3], j + boxes[row, 4], k + boxes[row, 5])
         t0, t1 = span(ray, low, high)
         if t1 - t0 > least:
-            entry = min(entry, t0)
+            entry = lower(entry, t0)
     return entry
 
 
@@ -235,19 +250,19 @@ def main_axis(d: Vector) -> int:
     return 1 if y >= z else 2
 
 
-@inlined
+@merged
 def _part_inside(sizes: Cell, ray: Ray) -> tuple[float, float]:
     """Return the part (t0, t1) of a ray inside the grid, short of its outer rim."""
     nx, ny, nz = sizes
     (x, y, z), d, _, _ = ray
     low, high = (_RIM, _RIM, _RIM), (nx - _RIM, ny - _RIM, nz - _RIM)
     if (
-        low[0] < min(x, x + d[0])
-        and max(x, x + d[0]) < high[0]
-        and low[1] < min(y, y + d[1])
-        and max(y, y + d[1]) < high[1]
-        and low[2] < min(z, z + d[2])
-        and max(z, z + d[2]) < high[2]
+        low[0] < lower(x, x + d[0])
+        and upper(x, x + d[0]) < high[0]
+        and low[1] < lower(y, y + d[1])
+        and upper(y, y + d[1]) < high[1]
+        and low[2] < lower(z, z + d[2])
+        and upper(z, z + d[2]) < high[2]
     ):
         return 0.0, 1.0
     return span(ray, low, high)
@@ -297,8 +312,8 @@ def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
             or abs(c1 - c0) > 1
         ):
             entry, hit = MISSED, NOWHERE
-            for nb in range(min(b0, b1), max(b0, b1) + 1):
-                for nc in range(min(c0, c1), max(c0, c1) + 1):
+            for nb in range(lower(b0, b1), upper(b0, b1) + 1):
+                for nc in range(lower(c0, c1), upper(c0, c1) + 1):
                     cell = turned_back(layer, nb, nc, axis)
                     if code_at(scene, cell) != EMPTY:
                         t, block = _cell_entry(scene, cell, target, ray)
@@ -317,7 +332,7 @@ def may_lie_in_face(e: float, d: float) -> bool:
     return d == 0.0 and e * 32.0 == math.floor(e * 32.0)
 
 
-@compiled
+@inner
 def hidden_by(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
     """Return the cell of the first block that hides eye + d; `NOWHERE` if none does.
 
@@ -344,3 +359,9 @@ def hidden_by(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
         if hit[0] < 0:
             return hit
     return hit
+
+
+@compiled
+def blocker(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
+    """Return `hidden_by`; kernels call that one, which has no wrapper for Python."""
+    return hidden_by(scene, target, eye, d)

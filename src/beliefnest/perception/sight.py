@@ -140,7 +140,7 @@ class Geometry:
             InputError: A position lies outside the grid.
             UnknownNameError: A value is neither a block state id nor -1.
         """
-        from beliefnest.perception.eyes import set_code
+        from beliefnest.perception.eyes import change_code
 
         codes = self.codes.copy()
         states = self.sight.registry.states
@@ -152,7 +152,7 @@ class Geometry:
             i, j, k = cell
             code = int(self.sight.state_codes[state])
             place = (i + 1, j + 1, k + 1)
-            set_code(codes.reshape(-1), self._scene.sizes, self.sight.reaches, place, code)
+            change_code(codes.reshape(-1), self._scene.sizes, self.sight.reaches, place, code)
         return Geometry(self.sight, self.origin, codes)
 
     def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
@@ -234,7 +234,7 @@ class Geometry:
 
         start, end = self._local(np.array([eye, point], dtype=np.float64)).tolist()
         d = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
-        i, j, k = rays.hidden_by(self._scene, rays.NOWHERE, (start[0], start[1], start[2]), d)
+        i, j, k = rays.blocker(self._scene, rays.NOWHERE, (start[0], start[1], start[2]), d)
         if i < 0:
             return None
         x, y, z = self.origin
