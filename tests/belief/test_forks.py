@@ -53,7 +53,7 @@ def held(forest: Forest) -> list[object]:
     """Return all that the nodes of a forest hold."""
     views = [NodeView(forest, path) for path in forest.paths]
     return [
-        (view.path, view.numbers.tolist(), view.agents, view.containers, view.items)
+        (view.path, view.numbers.dense().tolist(), view.agents, view.containers, view.items)
         for view in views
     ]
 

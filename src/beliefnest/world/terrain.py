@@ -203,12 +203,11 @@ class Terrain:
         x, y, z = (max(b - a, 0) for a, b in zip(low, high, strict=True))
         found = np.empty((x, y, z), dtype=np.int32)
         _, ny, nz = self.lattice.counts
-        rows = self.rows.tolist()
         shift = [_MARGIN + part for part in low]
         for (i, a, b), (j, c, d), (k, e, f) in product(*self.lattice.ranges(low, high)):
             at = (i * SIDE - shift[0], j * SIDE - shift[1], k * SIDE - shift[2])
             found[at[0] + a : at[0] + b, at[1] + c : at[1] + d, at[2] + e : at[2] + f] = (
-                self.chunks[rows[(i * ny + j) * nz + k]][a:b, c:d, e:f]
+                self.chunks[self.rows[(i * ny + j) * nz + k]][a:b, c:d, e:f]
             )
         found.setflags(write=False)
         return found
@@ -363,6 +362,7 @@ class Draft:
     def fill(self, low: Index, high: Index, state: int) -> None:
         """Set the cells from index `low` to before `high`."""
         _, ny, nz = self._lattice.counts
+        self._compact()
         rows = self._write_rows()
         made: dict[tuple[int, ...], int] = {}
         for (i, a, b), (j, c, d), (k, e, f) in product(*self._lattice.ranges(low, high)):
@@ -382,11 +382,7 @@ class Draft:
         if self._own or not self._is_shared:
             for row in self._own:
                 self._chunks[row].setflags(write=False)
-            if len(self._chunks) > 2 * self._kept + _SPARE:
-                used, rows = np.unique(self._rows, return_inverse=True)
-                self._rows = rows.reshape(-1).astype(np.int32)
-                self._chunks = [self._chunks[row] for row in used.tolist()]
-                self._kept = len(self._chunks)
+            self._compact()
             self._terrain = Terrain(self.shape, self._rows, tuple(self._chunks))
             self._own.clear()
             self._is_shared = True
@@ -398,6 +394,16 @@ class Draft:
             return 0
         self._chunks.append(chunk)
         return len(self._chunks) - 1
+
+    def _compact(self) -> None:
+        """Drop the chunks that no place uses, if there may be many."""
+        if len(self._chunks) <= 2 * self._kept + _SPARE:
+            return
+        used, rows = np.unique(self._rows, return_inverse=True)
+        self._rows, self._is_shared = rows.reshape(-1).astype(np.int32), False
+        self._own = {new for new, old in enumerate(used.tolist()) if old in self._own}
+        self._chunks = [self._chunks[row] for row in used.tolist()]
+        self._kept = len(self._chunks)
 
     def _write_rows(self) -> npt.NDArray[np.int32]:
         if self._is_shared:

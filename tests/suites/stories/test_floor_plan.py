@@ -10,7 +10,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import EYE_HEIGHT
 
 PLAN = lay_out(read_story(SHARED_SECRET))
-BOX, GRID = PLAN.snapshot.box, PLAN.snapshot.blocks
+BOX, GRID = PLAN.snapshot.box, PLAN.snapshot.blocks.dense()
 SIGHT = Sight(Registry.load(), max_visible_distance=None)
 GEOMETRY = SIGHT.geometry(GRID, BOX.low)
 

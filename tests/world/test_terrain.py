@@ -1,0 +1,80 @@
+"""Terrains and drafts against dense arrays, for boxes of one chunk and of several."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beliefnest.world.terrain import Draft, Terrain
+
+SMALL, LARGE = (20, 4, 20), (41, 50, 45)
+LONG = (400, 8, 400)
+
+
+@given(st.sampled_from([SMALL, LARGE]), st.integers(0, 2**32), st.integers(1, 12))
+def test_a_terrain_is_what_a_dense_array_is(shape, seed, edits):
+    chance = np.random.default_rng(seed)
+    grid = chance.integers(-1, 5, shape).astype(np.int32)
+    first = Terrain.of(grid)
+    draft, wanted = first.draft(), grid.copy()
+    for _ in range(edits):
+        low = [int(chance.integers(0, size)) for size in shape]
+        high = [int(chance.integers(a, size + 1)) for a, size in zip(low, shape, strict=True)]
+        draft.fill(tuple(low), tuple(high), 7)
+        wanted[tuple(slice(a, b) for a, b in zip(low, high, strict=True))] = 7
+        cell = tuple(int(chance.integers(0, size)) for size in shape)
+        draft[cell] = 9
+        wanted[cell] = 9
+        assert draft[cell] == 9
+        assert np.array_equal(draft.terrain().dense(), wanted)
+    made = draft.terrain()
+    assert np.array_equal(first.dense(), grid)
+    assert np.array_equal(made.cut(tuple(low), tuple(high)), wanted[cut(low, high)])
+    assert made.states == tuple(np.unique(wanted).tolist())
+    assert made.span == (wanted.min(), wanted.max())
+    assert np.array_equal(made.find([7, -1]), np.argwhere((wanted == 7) | (wanted == -1)))
+    assert np.array_equal(made.differing(first), np.argwhere(wanted != grid))
+    both = (wanted != grid) & (wanted >= 0) & (grid >= 0)
+    known = made.differing(first, lambda a, b: (a >= 0) & (b >= 0))
+    assert np.array_equal(known, np.argwhere(both))
+    plain = made.mapped(lambda part: np.maximum(part, 0))
+    assert np.array_equal(plain.dense(), np.maximum(wanted, 0))
+    assert made == Terrain.of(wanted)
+    assert (made == first) is np.array_equal(wanted, grid)
+
+
+def cut(low, high):
+    return tuple(slice(a, b) for a, b in zip(low, high, strict=True))
+
+
+def test_what_was_handed_out_cannot_be_changed():
+    terrain = Terrain.full(SMALL, 1)
+    draft = terrain.draft()
+    draft[0, 0, 0] = 2
+    made = draft.terrain()
+    for each in (terrain, made):
+        with pytest.raises(ValueError, match="read-only"):
+            each.dense()[0, 0, 0] = 3
+
+
+def set_one(draft: Draft, number: int) -> None:
+    draft[3, 4, 5] = number
+
+
+def set_one_and_show(draft: Draft, number: int) -> None:
+    draft[3, 4, 5] = number
+    draft.terrain()
+
+
+def fill_one(draft: Draft, number: int) -> None:
+    draft.fill((3, 4, 5), (4, 5, 6), number)
+
+
+@pytest.mark.parametrize("edit", [set_one, set_one_and_show, fill_one])
+def test_chunks_of_many_edits_are_dropped(edit):
+    draft = Terrain.full(LONG, 0).draft()
+    for number in range(2000):
+        edit(draft, number)
+    made = draft.terrain()
+    assert made[3, 4, 5] == 1999
+    assert len(made.chunks) < 600
