@@ -16,6 +16,7 @@ from beliefnest.perception.options import Perception
 from beliefnest.perception.sight import Sight
 from beliefnest.world import terrain
 from beliefnest.world.claims import Claim, claims_from_plain
+from beliefnest.world.memory import MemoryLimit, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, is_sign, plain_state
 from beliefnest.world.terrain import Terrain, chunks_of
@@ -79,6 +80,16 @@ class BeliefContext:
         nx, ny, nz = self.box.shape
         return nx * ny * nz
 
+    @property
+    def is_dense(self) -> bool:
+        """True if nodes hold dense arrays of the box; otherwise they share chunks."""
+        return self.cells <= terrain.DENSE
+
+    @cached_property
+    def memory(self) -> MemoryLimit | None:
+        """The greatest memory of this process; None: the system tells none."""
+        return memory_limit()
+
     @cached_property
     def numbers(self) -> dict[str, int]:
         """The number of each agent by name."""
@@ -108,7 +119,7 @@ class BeliefContext:
         sizes = (nx + 2, ny + 2, nz + 2)
         return Space(
             sizes,
-            chunks_of(sizes) if self.cells > terrain.DENSE else None,
+            None if self.is_dense else chunks_of(sizes),
             registry.shape_start,
             registry.shape_boxes,
             sight.reaches,

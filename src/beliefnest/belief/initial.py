@@ -97,13 +97,14 @@ def initial_forest(
             for place, block in belief.blocks.items()
             if context.container_name(context.number(block))
         )
-    table = NodeTable(context, PoseTable(), extra)
+    above = (path[:depth] for path in paths for depth in range(1, len(path) + 1))
+    wanted = dict.fromkeys(above)
+    table = NodeTable(context, PoseTable(), extra, room=1 + len(wanted))
     snapshot = beginning.snapshot
     holdings = HoldingsTable(table, RootFacts(seen_at=snapshot.tick))
     rows = () if table.pool is None else table.pool.add_grids(beginning.cut())
     holdings.add(_add_world(table, beginning, rows))
-    wanted = (path[:depth] for path in paths for depth in range(1, len(path) + 1))
-    for node in dict.fromkeys(wanted):
+    for node in wanted:
         holdings.add(_add_prior(table, node, beginning, rows, merged_belief(initial, node)))
     for each in rows:
         table.leave(each)
@@ -231,7 +232,11 @@ def forked_forest(
     nodes = tuple(dict.fromkeys((*chain, *further)))
     # To copy all nodes at once is much faster than one by one.
     is_whole = nodes == tuple(source.paths) and not extra
-    table = source.table.forked() if is_whole else NodeTable(source.context, PoseTable(), extra)
+    table = (
+        source.table.forked()
+        if is_whole
+        else NodeTable(source.context, PoseTable(), extra, room=len(nodes))
+    )
     holdings = HoldingsTable(table, RootFacts(vitals=vitals))
     for wanted in nodes:
         old, is_root = source.node(wanted), wanted == root

@@ -11,6 +11,7 @@ from beliefnest.belief.arrays import UNKNOWN, Nodes, Weighing
 from beliefnest.belief.chunk_pool import NOTHING, ChunkPool, cut_grids
 from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.grounds import Basis
+from beliefnest.belief.node_memory import check_room, columns_of, most_nodes
 from beliefnest.belief.poses import PoseDetails, PoseTable
 from beliefnest.perception.codes import code_grid
 from beliefnest.world.paths import BeliefPath
@@ -62,6 +63,15 @@ _SAVED = (
 class NodeTable:
     """Arrays of nodes; see `arrays.Nodes` for what each holds.
 
+    Args:
+        context: The part that all nodes of the nest share.
+        poses: The pose table.
+        extra: Further cells whose basis is to be tracked.
+        room: Number of nodes that will be added, if it is known.
+
+    Raises:
+        InputError: The memory of this process has no room for these nodes.
+
     Attributes:
         index: Number of each node by path; a node's number is above its parent's.
         count: Number of nodes.
@@ -72,7 +82,10 @@ class NodeTable:
             last perceived them.
     """
 
-    def __init__(self, context: BeliefContext, poses: PoseTable, extra: Sequence[int] = ()) -> None:
+    def __init__(
+        self, context: BeliefContext, poses: PoseTable, extra: Sequence[int] = (), room: int = 2
+    ) -> None:
+        check_room(context, room)
         self.context = context
         self.poses = poses
         self.edited_cells: set[tuple[int, int]] = set()
@@ -82,49 +95,12 @@ class NodeTable:
         known = set(context.tracked)
         others = [cell for cell in extra if cell not in known]
         tracked = self._tracked = np.array([*context.tracked, *others], dtype=np.int32)
-        agents, cells, spots = len(context.agents), context.cells, len(tracked)
         # Not initialized: `_grow` fills the row of each node that is added.
         self._rows: dict[str, Row] = {
-            "parent": np.empty(2, np.int32),
-            "agent": np.empty(2, np.int32),
-            "pose": np.empty((2, agents), np.int32),
-            "equipment": np.empty((2, agents), np.int32),
-            "seen_at": np.empty((2, agents), np.int32),
-            "current": np.empty((2, agents), np.bool_),
-            "geometry": np.empty(2, np.int32),
-            "versions": np.empty(2, np.int32),
-            "fresh": np.empty(2, np.bool_),
-            "eye": np.empty(2, np.int32),
-            "seen_geometry": np.empty(2, np.int32),
-            "tried": np.empty((2, agents), np.int32),
-            "sees": np.empty((2, agents), np.bool_),
-            "watched": np.empty((2, spots), np.bool_),
-            "basis_at": np.empty((2, spots), np.int32),
-            "basis_source": np.empty((2, spots), np.uint8),
-            "basis_current": np.empty((2, spots), np.bool_),
+            name: np.empty((room, *column.shape), column.kind)
+            for name, column in columns_of(context, len(tracked)).items()
         }
         self.pool = None if context.space.chunks is None else ChunkPool(context.box.shape)
-        if self.pool is None:
-            self._rows |= {
-                "rows": np.empty((2, 1), np.int32),
-                "blocks": np.empty((2, cells), np.int16),
-                "codes": np.empty((2, int(np.prod(context.space.sizes))), np.uint16),
-                "pending": np.empty((2, -(-cells // 64)), np.uint64),
-            }
-        else:
-            self._rows |= {
-                "rows": np.empty((2, self.pool.count), np.int32),
-                "pending": np.empty((2, -(-self.pool.count // 64)), np.uint64),
-            }
-        if context.weighs:
-            self._rows |= {
-                "counted": np.empty(2, np.int32),
-                "missed": np.empty((2, agents), np.int32),
-                "met": np.empty((2, agents), np.int32),
-                "meets": np.empty((2, agents), np.bool_),
-                "met_missed": np.empty((2, agents, agents), np.int32),
-                "watch_missed": np.empty((2, spots, agents), np.int32),
-            }
         self._child_at = np.zeros(1, dtype=np.int32)
         self._child = np.zeros(0, dtype=np.int32)
         self._nodes: Nodes | None = None
@@ -663,9 +639,11 @@ class NodeTable:
         node = self.count
         size = len(self._rows["parent"])
         if node == size:
+            check_room(self.context, node + 1)
             # The system gives memory to pages when they are written, so spare rows cost nothing.
+            room = min(8 * size, most_nodes(self.context) or 8 * size)
             for name, row in self._rows.items():
-                self._rows[name] = np.empty((8 * size, *row.shape[1:]), dtype=row.dtype)
+                self._rows[name] = np.empty((room, *row.shape[1:]), dtype=row.dtype)
                 self._rows[name][:size] = row
         for row in self._rows.values():
             row[node] = _filler(row)

@@ -8,13 +8,15 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
+from beliefnest.belief.context import BeliefContext
+from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.cli.console import folded
 from beliefnest.cli.terminal_text import printable
 from beliefnest.nest.explain.made_claims import MadeClaim
 from beliefnest.scenarios.naming import container_name, named_place
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.claims import Claim, ClaimKind
-from beliefnest.world.paths import parse_path, path_text, paths_below
+from beliefnest.world.paths import parse_path, path_text
 
 __all__ = ["claims_json", "claims_table", "paths_of_beliefs", "print_claims"]
 
@@ -105,19 +107,22 @@ def _by_verdict(told: MadeClaim, paths: Sequence[str]) -> Table:
     return table
 
 
-def paths_of_beliefs(claims: Sequence[MadeClaim], agents: Sequence[str], depth: int) -> list[str]:
+def paths_of_beliefs(claims: Sequence[MadeClaim], context: BeliefContext, depth: int) -> list[str]:
     """Return the paths of all beliefs below the world in which claims were made.
 
     Args:
         claims: The claims; not empty.
-        agents: Names of all agents.
+        context: The part that all simulators share.
         depth: Greatest number of names in a path below that world.
 
     Returns:
         The paths, shallow ones first.
+
+    Raises:
+        InputError: The depth is so great that memory has no room for the beliefs.
     """
-    world = parse_path(claims[0].made_in, agents)
-    return [path_text(path) for path in paths_below(world, depth, agents)[1:]]
+    world = parse_path(claims[0].made_in, context.agents)
+    return [path_text(path) for path in paths_with_room(context, world, depth)[1:]]
 
 
 def _begun() -> Table:

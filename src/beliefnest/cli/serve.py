@@ -11,6 +11,7 @@ from ipaddress import ip_address
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from beliefnest.belief import node_memory
 from beliefnest.cli.console import stdout
 from beliefnest.cli.editing import FileEditor
 from beliefnest.cli.folder import STORE, stores_in
@@ -18,6 +19,7 @@ from beliefnest.cli.options import ServeOptions
 from beliefnest.cli.page import about_run
 from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
+from beliefnest.nest.past.history import context_of
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.viewer.page.static import check_depth
@@ -133,7 +135,11 @@ def _running(options: ServeOptions) -> Iterator[Path]:
         stores_in(path)
         yield path
         return
-    name = Scenario.load_all(options.what)[0].name
+    scenarios = Scenario.load_all(options.what)
+    for scenario in scenarios:
+        # Refuse beliefs without room in memory here: the run itself may need fewer of them.
+        node_memory.check_depth(context_of(scenario.setting), (), options.depth)
+    name = scenarios[0].name
     for number in options.condition or ():
         # Refuse an unknown condition here: in the child it would leave an empty page.
         Scenario.load(options.what, number)

@@ -127,7 +127,8 @@ def _show_claims(options: ShowOptions, store: Path) -> None:
     with _opened(store) as (scenario, nest, _):
         simulator = _simulator(options, nest)
         claims = nest.at(simulator.tick).claims(options.path)
-        paths = paths_of_beliefs(claims, nest.agents, options.depth) if claims else []
+        context = nest.reader.history.context
+        paths = paths_of_beliefs(claims, context, options.depth) if claims else []
         if options.json:
             sys.stdout.write(json.dumps(claims_json(claims, paths), indent=2) + "\n")
         elif claims:

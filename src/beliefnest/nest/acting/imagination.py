@@ -16,6 +16,7 @@ from beliefnest.belief.columns import Columns
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent, Source
 from beliefnest.belief.initial import forked_forest
+from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.nest.past.embodiable import embodiable, with_chests
@@ -153,7 +154,7 @@ class Imagination:
             grounds: As for the class.
             speech_ticks: As for the class; None: the number in the options of perception.
         """
-        wanted = paths_below(root, depth, source.context.agents)
+        wanted = paths_with_room(source.context, root, depth)
         news = _News()
         forest = forked_forest(source, news, root, root, tick, further=wanted[1:])
         believed = NodeView(forest, root, tick)

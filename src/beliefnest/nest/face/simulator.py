@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, cast
 
+from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.errors import BranchError, InputError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.imagination import Imagination
@@ -13,7 +14,7 @@ from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
-from beliefnest.world.paths import BeliefPath, paths_below
+from beliefnest.world.paths import BeliefPath
 from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import is_well_formed
 from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
@@ -312,7 +313,7 @@ class Simulator(ShownSimulator):
             tick: A past tick; 0: the first; None: the latest.
 
         Raises:
-            InputError: The depth is below 0.
+            InputError: The depth is below 0, or so great that memory has no room for the beliefs.
             TickError: The tick is in the future or before the start.
         """
         if depth < 0:
@@ -322,7 +323,7 @@ class Simulator(ShownSimulator):
             first = recording.stretches(recording.moment(self._path))[0]
             tick = recording.journal.info(first.timeline).start
         moment = recording.moment(self._path, tick)
-        paths = paths_below(self._path, depth, recording.agents)
+        paths = paths_with_room(recording.context, self._path, depth)
         if tick is None:
             recording.history.expect(moment.timeline, paths)
             for path in paths:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.nest.face.reader import Reader
 from beliefnest.pictures.palette import MARKS, agent_looks
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
@@ -14,7 +15,7 @@ from beliefnest.viewer.page.track_rows import StandRows, TrackRows, fresh_rows
 from beliefnest.viewer.page.tracks import Onlooker, TrackRecorder
 from beliefnest.world.event_words import happens
 from beliefnest.world.frames import Frame
-from beliefnest.world.paths import BeliefPath, path_text, paths_below
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Position
 
 __all__ = ["About", "RunData"]
@@ -151,7 +152,8 @@ class RunData:
         book = PoseBook(len(self.reader.agents), info.start, base)
         own = info.key.path
         deep = max(1, self.depth - len(own))
-        paths = paths_below(own, deep if own else self.depth, self.reader.agents)
+        context = self.reader.history.context
+        paths = paths_with_room(context, own, deep if own else self.depth)
         asked = [path for path in self.about.paths if path[: len(own)] == own]
         paths += [path for path in dict.fromkeys(asked) if path not in paths]
         onlooker = None if self._onlookers is None else self._onlookers(info, paths)
