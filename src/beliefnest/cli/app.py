@@ -401,9 +401,18 @@ def bench(
     names: Annotated[
         list[str] | None, typer.Argument(help="Names of benches; default: all except minecraft.")
     ] = None,
+    curves: Annotated[
+        Path | None,
+        typer.Option(
+            help="With growth: measure curves over the box, agents, depth, ticks and branches "
+            "instead; write them into this folder as SVG and CSV."
+        ),
+    ] = None,
     json: Json = False,
 ) -> int:
     """Run benchmarks; print medians and ratios beside their targets."""
-    from beliefnest_benchmarks.command import run_benches
+    from beliefnest_benchmarks.command import draw_curves, run_benches
 
+    if curves is not None:
+        return draw_curves(tuple(names or ()), curves, as_json=json)
     return run_benches(tuple(names or ()), as_json=json)

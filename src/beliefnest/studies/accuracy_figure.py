@@ -9,9 +9,9 @@ from beliefnest.errors import MissingExtraError
 if TYPE_CHECKING:  # matplotlib is optional, and imported when something is plotted.
     from matplotlib.figure import Figure
 
-__all__ = ["plot_accuracy", "svg_of"]
+__all__ = ["COLOURS", "plot_accuracy", "svg_of"]
 
-_COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#000000")
+COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#000000")
 """Palette of Okabe and Ito, which colour-blind people can distinguish."""
 
 _LETTER = 0.085
@@ -59,7 +59,7 @@ def plot_accuracy(
         heights = [group["accuracy"] for group in own]
         below = [max(0.0, group["accuracy"] - group["low"]) for group in own]
         above = [max(0.0, group["high"] - group["accuracy"]) for group in own]
-        colour = _COLOURS[number % len(_COLOURS)]
+        colour = COLOURS[number % len(COLOURS)]
         axes.bar(middles, heights, width * 0.9, color=colour, label=name or None)
         axes.errorbar(middles, heights, [below, above], fmt="none", ecolor="#333333", capsize=3)
     axes.set_xticks(range(len(along)), along)
