@@ -2,10 +2,12 @@
 
 import math
 import struct
+from dataclasses import replace
 
 import msgspec
 import numpy as np
 import pytest
+import zstandard
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.profiles import at_night
@@ -13,6 +15,7 @@ from tests.profiles import at_night
 from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.journal import Edit
+from beliefnest.world import terrain
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import (
@@ -165,6 +168,107 @@ def test_numpy_numbers_are_stored_as_numbers():
     assert back.blocks == {(0, 0, 0): 7}
     assert back.agents["a"].position == (0.1, 0.1, 0.1)
     assert type(back.agents["a"].position[0]) is float
+
+
+CUT = (9, 7, 30)
+
+
+@pytest.fixture
+def in_chunks(monkeypatch):
+    monkeypatch.setattr(terrain, "DENSE", 0)
+
+
+def cut_snapshot(grid):
+    low = (-3, 5, 2)
+    box = Box(low, tuple(a + n - 1 for a, n in zip(low, grid.shape, strict=True)))
+    return Snapshot(4, box, Terrain.of(grid), {}, {"ann": AgentState((0.5, 6.0, 3.5))})
+
+
+def random_grid(seed):
+    chance = np.random.default_rng(seed)
+    grid = chance.choice([0, 0, -1, 7, 20_000], CUT).astype(np.int32)
+    grid[:, :, :17] = chance.integers(0, 3)
+    return grid
+
+
+@pytest.mark.usefixtures("in_chunks")
+@pytest.mark.parametrize("seed", range(at_night(50, 5)))
+def test_snapshots_in_chunks_round_trip(seed):
+    grid = random_grid(seed)
+    data = codec.encode_snapshot(cut_snapshot(grid))
+    back = codec.decode_snapshot(data)
+    assert not back.blocks.is_dense
+    assert np.array_equal(back.blocks.dense(), grid)
+    assert codec.encode_snapshot(back) == data
+
+
+@pytest.mark.usefixtures("in_chunks")
+def test_equal_snapshots_in_chunks_have_equal_bytes():
+    grid = random_grid(0)
+    draft = Terrain.full(CUT, 3).draft()
+    for index in np.ndindex(CUT):
+        draft[index] = int(grid[index])
+    one = cut_snapshot(grid)
+    assert codec.encode_snapshot(replace(one, blocks=draft.terrain())) == codec.encode_snapshot(one)
+
+
+def test_snapshots_of_large_boxes_are_small(monkeypatch):
+    shape = (400, 64, 400)
+    draft = Terrain.full(shape, 0).draft()
+    draft.fill((0, 0, 0), (400, 5, 400), 1)
+    box = Box((0, 0, 0), (399, 63, 399))
+    monkeypatch.setattr(Terrain, "dense", None)
+    data = codec.encode_snapshot(Snapshot(0, box, draft.terrain(), {}, {}))
+    assert len(data) < 10_000
+    assert codec.decode_snapshot(data).blocks == draft.terrain()
+
+
+def test_boxes_of_one_chunk_are_stored_as_before(monkeypatch):
+    grid = random_grid(1)
+    one = cut_snapshot(grid)
+    stored = msgspec.msgpack.decode(codec.encode_snapshot(one))
+    assert stored["blocks"] == grid.astype("<i4").tobytes()
+    assert "chunks" not in stored
+    # Versions that had no chunks stored larger boxes in the same way.
+    monkeypatch.setattr(terrain, "DENSE", 0)
+    back = codec.decode_snapshot(msgspec.msgpack.encode(stored))
+    assert not back.blocks.is_dense
+    assert np.array_equal(back.blocks.dense(), grid)
+
+
+def test_chunks_are_joined_if_the_box_has_become_one_chunk(monkeypatch):
+    grid = random_grid(2)
+    with monkeypatch.context() as patch:
+        patch.setattr(terrain, "DENSE", 0)
+        data = codec.encode_snapshot(cut_snapshot(grid))
+    back = codec.decode_snapshot(data)
+    assert back.blocks.is_dense
+    assert np.array_equal(back.blocks.dense(), grid)
+
+
+@pytest.mark.usefixtures("in_chunks")
+def test_damaged_chunks_are_refused():
+    good = msgspec.msgpack.decode(codec.encode_snapshot(cut_snapshot(random_grid(3))))
+    numbers = np.frombuffer(zstandard.decompress(good["blocks"]), dtype="<i4")
+
+    def packed(changed):
+        return zstandard.compress(changed.astype("<i4").tobytes())
+
+    beyond, below = numbers.copy(), numbers.copy()
+    beyond[0], below[1] = good["chunks"], -1
+    for fault, change in (
+        ("do not fill", {"chunks": good["chunks"] + 1}),
+        ("do not fill", {"chunks": -1}),
+        ("does not fill", {"chunks": 0}),
+        ("do not fill", {"blocks": good["blocks"][:-3]}),
+        ("do not fill", {"blocks": b"no zstandard"}),
+        ("do not fill", {"blocks": packed(numbers[:-1])}),
+        ("not stored", {"blocks": packed(beyond)}),
+        ("not stored", {"blocks": packed(below)}),
+        ("at most", {"high": (30_000_000, 30_000_000, 30_000_000)}),
+    ):
+        with pytest.raises(StoreError, match=fault):
+            codec.decode_snapshot(msgspec.msgpack.encode({**good, **change}))
 
 
 def test_a_grid_that_does_not_fill_its_box_is_refused():

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beliefnest.world import terrain
 from beliefnest.world.terrain import Draft, Terrain
 
 SMALL, LARGE = (20, 4, 20), (41, 50, 45)
@@ -40,7 +41,23 @@ def test_a_terrain_is_what_a_dense_array_is(shape, seed, edits):
     plain = made.mapped(lambda part: np.maximum(part, 0))
     assert np.array_equal(plain.dense(), np.maximum(wanted, 0))
     assert made == Terrain.of(wanted)
+    assert made.key == Terrain.of(wanted).key
+    assert (made.key == first.key) is np.array_equal(wanted, grid)
+    plain = made.canonical()
+    assert plain == made
+    assert plain.canonical().rows.tolist() == plain.rows.tolist()
     assert (made == first) is np.array_equal(wanted, grid)
+
+
+def test_keys_do_not_depend_on_what_lies_outside_the_box(monkeypatch):
+    monkeypatch.setattr(terrain, "DENSE", 0)
+    # Chunks of `full` are full of the state in the margin, too; those of `of` have zeros there.
+    for shape in ((4, 3, 5), (8, 8, 8), (7, 20, 14)):
+        filled, cut_up = Terrain.full(shape, 5), Terrain.of(np.full(shape, 5))
+        assert not filled.is_dense
+        assert filled.key == cut_up.key
+        assert filled.key != Terrain.full(shape, 6).key
+        assert filled == cut_up
 
 
 def cut(low, high):
@@ -48,11 +65,11 @@ def cut(low, high):
 
 
 def test_what_was_handed_out_cannot_be_changed():
-    terrain = Terrain.full(SMALL, 1)
-    draft = terrain.draft()
+    before = Terrain.full(SMALL, 1)
+    draft = before.draft()
     draft[0, 0, 0] = 2
     made = draft.terrain()
-    for each in (terrain, made):
+    for each in (before, made):
         with pytest.raises(ValueError, match="read-only"):
             each.dense()[0, 0, 0] = 3
 

@@ -5,17 +5,21 @@ details of events are decoded as tuples. Decoding is strict: a value of another 
 or misspelt kind, raises a StoreError that names the place inside the value.
 """
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal, TypeVar, cast
 
 import msgspec
 import numpy as np
+import numpy.typing as npt
+import zstandard
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import Edit, Entry
 from beliefnest.world.frames import Frame, Snapshot
-from beliefnest.world.terrain import Terrain
+from beliefnest.world.limits import MOST_HELD, box_fault
+from beliefnest.world.terrain import SIDE, VOLUME, Lattice, Terrain
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, Position
 
 __all__ = [
@@ -33,6 +37,9 @@ __all__ = [
 ]
 
 T = TypeVar("T")
+
+_COMPRESSION = 1
+"""Compression level of zstandard, as for the entries of timelines (see `timeline/chunks.py`)."""
 
 
 class _FrameEntry(msgspec.Struct, tag="frame", array_like=True):
@@ -55,6 +62,14 @@ _Tag = Literal["frame", "edit"]
 
 
 class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=True):
+    """Snapshot as it is stored.
+
+    A box of one chunk has the states of all cells in `blocks`, and `chunks` is 0. Otherwise
+    `chunks` is the number of different chunks (see `world.terrain`), and `blocks` has, compressed,
+    the number of the chunk at each place and then the states of each chunk. Files of older versions
+    have the states of all cells for every box.
+    """
+
     tick: int
     low: Position
     high: Position
@@ -64,6 +79,7 @@ class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=Tr
     items: Mapping[int, DroppedItem]
     signs: Mapping[Position, str] = {}
     sign_claims: Mapping[Position, tuple[Mapping[str, Any], ...]] = {}
+    chunks: int = 0
 
 
 def _plain(value: object) -> object:
@@ -137,7 +153,10 @@ def decode_ticks(encoded: Sequence[msgspec.Raw]) -> list[int]:
 
 
 def encode_snapshot(snapshot: Snapshot) -> bytes:
-    """Encode a snapshot; its grid becomes 32-bit little-endian integers, x slowest.
+    """Encode a snapshot; equal snapshots have equal bytes.
+
+    Block states become 32-bit little-endian integers, x slowest. Those of a box of several chunks
+    are compressed, each different chunk once.
 
     Raises:
         StoreError: The shapes of grid and box differ, or the snapshot holds a value that is not a
@@ -148,7 +167,7 @@ def encode_snapshot(snapshot: Snapshot) -> bytes:
             f"a grid of shape {snapshot.blocks.shape} does not fill {snapshot.box}, "
             f"which takes {snapshot.box.shape}"
         )
-    blocks = np.ascontiguousarray(snapshot.blocks.dense(), dtype="<i4").tobytes()
+    blocks, chunks = _blocks_to(snapshot.blocks)
     return encode(
         _SnapshotBody(
             snapshot.tick,
@@ -160,6 +179,7 @@ def encode_snapshot(snapshot: Snapshot) -> bytes:
             snapshot.items,
             dict(sorted(snapshot.signs.items())),
             dict(sorted(snapshot.sign_claims.items())),
+            chunks,
         )
     )
 
@@ -168,20 +188,56 @@ def decode_snapshot(data: bytes) -> Snapshot:
     """Decode a snapshot with a read-only grid; StoreError if the bytes hold none."""
     body = decode(data, _SnapshotBody)
     box = Box(body.low, body.high)
-    grid = np.frombuffer(body.blocks, dtype="<i4") if len(body.blocks) % 4 == 0 else None
-    if grid is None or min(box.shape) < 1 or grid.size != np.prod(box.shape):
-        raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}")
-    blocks = Terrain.of(grid.reshape(box.shape))
     return Snapshot(
         body.tick,
         box,
-        blocks,
+        _blocks_from(body, box),
         body.containers,
         body.agents,
         body.items,
         signs=body.signs,
         sign_claims={at: _frozen(claims) for at, claims in body.sign_claims.items()},
     )
+
+
+def _blocks_to(terrain: Terrain) -> tuple[bytes, int]:
+    """Return `blocks` and `chunks` of `_SnapshotBody`."""
+    if terrain.is_dense:
+        return terrain.dense().astype("<i4").tobytes(), 0
+    plain = terrain.canonical()
+    numbers = np.concatenate([plain.rows, *(chunk.ravel() for chunk in plain.chunks)])
+    packed = zstandard.ZstdCompressor(level=_COMPRESSION).compress(numbers.astype("<i4").tobytes())
+    return packed, len(plain.chunks)
+
+
+def _blocks_from(body: _SnapshotBody, box: Box) -> Terrain:
+    """Return the block states of a stored snapshot; StoreError if they do not fill the box."""
+    if min(box.shape) > 0 and not body.chunks and len(body.blocks) == 4 * math.prod(box.shape):
+        return Terrain.of(np.frombuffer(body.blocks, "<i4").reshape(box.shape))
+    if not body.chunks or (fault := box_fault(box, MOST_HELD)):
+        told = f": {fault}" if body.chunks else ""
+        raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}{told}")
+    places = math.prod(Lattice(box.shape, is_one=False).counts)
+    numbers = _unpacked(body.blocks, places + body.chunks * VOLUME)
+    if not 0 < body.chunks <= places or numbers is None:
+        raise StoreError(f"{body.chunks} stored chunks do not fill {box}")
+    rows, states = numbers[:places], numbers[places:]
+    if rows.min() < 0 or rows.max() >= body.chunks:
+        raise StoreError(f"stored blocks of {box} refer to chunks that are not stored")
+    found = Terrain(box.shape, rows, list(states.reshape(-1, SIDE, SIDE, SIDE)))
+    # The greatest size of a box of one chunk may have changed since.
+    return Terrain.of(found.dense()) if Lattice.of(box.shape).is_one else found
+
+
+def _unpacked(packed: bytes, size: int) -> npt.NDArray[np.int32] | None:
+    """Return compressed numbers; None if the bytes do not hold `size` of them."""
+    try:
+        if zstandard.frame_content_size(packed) != 4 * size:
+            return None
+        body = zstandard.ZstdDecompressor().decompress(packed)
+    except zstandard.ZstdError:
+        return None
+    return np.frombuffer(body, "<i4").astype(np.int32, copy=False)
 
 
 def _decoded(decoder: msgspec.msgpack.Decoder[T], data: bytes | msgspec.Raw, what: str) -> T:

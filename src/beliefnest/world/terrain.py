@@ -11,6 +11,7 @@ are block state ids; -1 is unknown.
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from hashlib import blake2b
 from itertools import product
 from typing import Any
 
@@ -145,7 +146,8 @@ class Terrain:
     ) -> None:
         self.shape = shape
         self.rows, self.chunks = rows, chunks
-        self.lattice = Lattice(shape, len(rows) == 1)
+        # A tiny box that is cut into chunks lies in one of them, which is larger.
+        self.lattice = Lattice(shape, len(rows) == 1 and chunks[0].shape == shape)
 
     @classmethod
     def full(cls, shape: tuple[int, int, int], state: int) -> "Terrain":
@@ -269,6 +271,67 @@ class Terrain:
             inside = [slice(*spans[axis][int(at[0])][1:]) for axis, at in enumerate((i, j, k))]
             chunk = self.chunks[rows[i[0], j[0], k[0]]]
             yield chunk, (i * ny + j) * nz + k, (inside[0], inside[1], inside[2])
+
+    def canonical(self) -> "Terrain":
+        """Return the equal terrain that depends on the states in the box alone.
+
+        Its chunks all differ, are in the order of their first places, and are 0 outside the box.
+        """
+        if self.is_dense:
+            return self
+        x, y, z = self.lattice.counts
+        kinds, insides = self._edge_kinds()
+        keys = (self.rows.reshape(x, y, z) * np.int64(len(insides)) + kinds).reshape(-1)
+        firsts = np.full(len(self.chunks) * len(insides), -1, dtype=np.int64)
+        # Of several values written to an element, the last one stays: that of the first place.
+        firsts[keys[::-1]] = np.arange(len(keys))[::-1]
+        found = np.flatnonzero(firsts >= 0)
+        numbers = np.zeros(len(firsts), dtype=np.int32)
+        known: dict[bytes, int] = {}
+        chunks: list[States] = []
+        for key in found[np.argsort(firsts[found])].tolist():
+            row, kind = divmod(key, len(insides))
+            chunk = np.zeros((SIDE, SIDE, SIDE), dtype=np.int32)
+            chunk[insides[kind]] = self.chunks[row][insides[kind]]
+            numbers[key] = known.setdefault(chunk.tobytes(), len(chunks))
+            if numbers[key] == len(chunks):
+                chunk.setflags(write=False)
+                chunks.append(chunk)
+        return Terrain(self.shape, numbers[keys], chunks)
+
+    def _edge_kinds(self) -> tuple[npt.NDArray[np.int64], list[tuple[slice, slice, slice]]]:
+        """Return for each place the kind of its cells in the box, and the cells of each kind.
+
+        The kinds are of the shape of `Lattice.counts`.
+        """
+        kinds = np.zeros((1, 1, 1), dtype=np.int64)
+        axes: list[list[tuple[int, int]]] = []
+        for axis, parts in enumerate(self.lattice.ranges((0, 0, 0), self.shape)):
+            # The last chunk along an axis may lie in the margin alone.
+            spans = [(0, 0)] * self.lattice.counts[axis]
+            for number, first, last in parts:
+                spans[number] = (first, last)
+            axes.append(sorted(set(spans)))
+            form = [1, 1, 1]
+            form[axis] = -1
+            codes = np.array([axes[axis].index(span) for span in spans], dtype=np.int64)
+            kinds = kinds * len(axes[axis]) + codes.reshape(form)
+        insides = [(slice(*a), slice(*b), slice(*c)) for a, b, c in product(*axes)]
+        return kinds, insides
+
+    @cached_property
+    def key(self) -> bytes:
+        """Bytes that are equal for equal terrains of one box, and differ for others.
+
+        They are the states of a terrain of one chunk, and otherwise a digest.
+        """
+        if self.is_dense:
+            return self.chunks[0].tobytes()
+        plain = self.canonical()
+        digest = blake2b(plain.rows.tobytes(), digest_size=32)
+        for chunk in plain.chunks:
+            digest.update(chunk.tobytes())
+        return digest.digest()
 
     def find(self, states: Collection[int]) -> npt.NDArray[np.intp]:
         """Return the indices (n, 3) of the cells with one of some states, in order."""

@@ -9,6 +9,7 @@ from beliefnest.errors import StoreError
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.setting_codec import decode_start, encode_start
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world import terrain
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
 
@@ -76,7 +77,18 @@ def test_priors_and_scripts_are_kept():
 
 def test_another_form_is_refused():
     fields = msgspec.msgpack.decode(encode_start(setting(), "scripted"), strict=False)
-    with pytest.raises(StoreError, match="form 2"):
-        decode_start(msgspec.msgpack.encode({**fields, "form": 2}))
+    with pytest.raises(StoreError, match="form 3"):
+        decode_start(msgspec.msgpack.encode({**fields, "form": 3}))
     with pytest.raises(StoreError):
         decode_start(b"no setting")
+
+
+def test_only_boxes_in_chunks_have_a_form_that_older_versions_refuse(monkeypatch):
+    def form(one):
+        return msgspec.msgpack.decode(encode_start(one, "scripted"), strict=False)["form"]
+
+    assert form(setting()) == 1
+    monkeypatch.setattr(terrain, "DENSE", 0)
+    one = setting()
+    assert form(one) == 2
+    check_kept(one)

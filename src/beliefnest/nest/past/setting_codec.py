@@ -14,7 +14,12 @@ from beliefnest.world.values import Position
 
 __all__ = ["decode_start", "encode_start"]
 
-_FORM = 1
+_FORM, _CUT_FORM = 1, 2
+"""Forms of stored settings: of a box of one chunk, and of a box of several (see `world.terrain`).
+
+Versions that cannot read boxes in chunks refuse the second form. They read the first, in which they
+also stored large boxes.
+"""
 
 
 class _Form(msgspec.Struct):
@@ -54,7 +59,7 @@ def encode_start(setting: Setting, world: str) -> bytes:
     """
     return codec.encode(
         _Start(
-            form=_FORM,
+            form=_FORM if setting.snapshot.blocks.is_dense else _CUT_FORM,
             world=world,
             name=setting.name,
             snapshot=codec.encode_snapshot(setting.snapshot),
@@ -79,10 +84,10 @@ def decode_start(data: bytes) -> tuple[Setting, str]:
         StoreError: The bytes are not those of a setting, or have the form of another version.
     """
     form = codec.decode(data, _Form).form
-    if form != _FORM:
+    if form not in (_FORM, _CUT_FORM):
         raise StoreError(
-            f"the run stores its setting in form {form}, and this version of beliefnest reads form "
-            f"{_FORM}; use the version that recorded it"
+            f"the run stores its setting in form {form}, and this version of beliefnest reads "
+            f"forms {_FORM} and {_CUT_FORM}; use the version that recorded it"
         )
     start = codec.decode(data, _Start)
     setting = Setting(
