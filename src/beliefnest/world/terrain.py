@@ -180,6 +180,12 @@ class Terrain:
                 rows.append(row)
         return cls(lattice.shape, np.array(rows, dtype=np.int32), chunks)
 
+    @classmethod
+    def of_one(cls, grid: States) -> "Terrain":
+        """Return the terrain of a dense grid as one chunk; the grid must not change any more."""
+        nx, ny, nz = grid.shape
+        return cls((nx, ny, nz), np.zeros(1, dtype=np.int32), [grid])
+
     @property
     def size(self) -> int:
         """Number of cells of the box."""

@@ -8,8 +8,11 @@ from random import Random
 import numpy as np
 import pytest
 
+from beliefnest.world import terrain
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
+from beliefnest.worlds.scripted import footing, footpaths
 from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach, Near
 
 STONE, AIR, UNKNOWN = "stone", "air", ""
@@ -204,3 +207,73 @@ def test_areas_behind_a_wall_are_out_of_reach() -> None:
     outside = (LOW[0] - 9, LOW[1], LOW[2])
     assert ground.way(outside, Near(at(0, 0), 0)) is None
     assert not ground.may_lead(outside, Near(at(0, 0), 0))
+
+
+def hills(random: Random) -> tuple[Box, np.ndarray]:
+    """Return hills with walls, gates and unknown blocks, in a box that has several chunks."""
+    registry = Registry.load()
+    texts = [AIR] * 60 + [STONE] * 6 + [ALONG_X, ALONG_Z, SHUT]
+    states = [registry.state_id(text) for text in texts] + [-1] * 3
+    shape = (random.randint(18, 40), random.randint(5, 20), random.randint(18, 40))
+    grid = np.zeros(shape, dtype=np.int32)
+    for i, k in np.ndindex(shape[0], shape[2]):
+        top = int(2 + 2 * math.sin(i / 5) * math.cos(k / 6)) + (random.random() < 0.1)
+        grid[i, : top + 1, k] = registry.state_id(STONE)
+        if top + 1 < shape[1]:
+            grid[i, top + 1, k] = random.choice(states)
+        if random.random() < 0.02:
+            grid[i, :, k] = registry.air
+    high = tuple(a + size - 1 for a, size in zip(LOW, shape, strict=True))
+    return Box(LOW, (high[0], high[1], high[2])), grid
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("most", [footpaths._MOST_CELLS, 60])
+def test_windows_of_a_large_box_have_the_paths_of_all_of_it(
+    monkeypatch: pytest.MonkeyPatch, seed: int, most: int
+) -> None:
+    random, registry = Random(seed), Registry.load()
+    box, grid = hills(random)
+    whole = Ground(registry, box, grid)
+    monkeypatch.setattr(terrain, "DENSE", 100)
+    monkeypatch.setattr(footing, "_HALF", random.choice((4, 7)))
+    monkeypatch.setattr(footpaths, "_MOST_CELLS", most)
+    widened = []
+    wider = footing.Footing.wider
+    monkeypatch.setattr(footing.Footing, "wider", lambda *given: widened.append(1) or wider(*given))
+    parts = Ground(registry, box, Terrain.of(grid))
+    around = [
+        (LOW[0] + i, LOW[1] + j, LOW[2] + k)
+        for i in range(-2, grid.shape[0] + 2)
+        for j in range(-3, grid.shape[1] + 3)
+        for k in range(-2, grid.shape[2] + 2)
+    ]
+    standing = [cell for cell in around if whole.stands(cell)]
+    assert standing == [cell for cell in around if parts.stands(cell)]
+    kinds = set()
+
+    def is_free(eye: tuple[float, float, float], block: Position) -> bool:
+        return int(eye[0] + eye[2] + block[0]) % 3 == 0
+
+    for _ in range(60):
+        start, block = random.choice(standing), random.choice(random.choice((standing, around)))
+        goal: Goal = random.choice(
+            (
+                Near(block, 0),
+                Near(block, 1.5),
+                InReach(block, 4.0),
+                InReach(block, 3.0, has_free_line=is_free),
+            )
+        )
+        avoided = frozenset(random.sample(standing, random.choice((0, 0, 9))))
+        opened = random.random() < 0.5
+        pair = [each.with_doors_opened if opened else each for each in (whole, parts)]
+        found, wanted = (each.way(start, goal, avoided) for each in pair)
+        assert found == wanted
+        kinds.add(found is None)
+        if found is not None:
+            assert pair[1].may_lead(start, goal)
+        elif most > len(standing):
+            assert pair[1].may_lead(start, goal) is pair[0].may_lead(start, goal)
+    assert kinds == {True, False}
+    assert len(widened) > 1

@@ -10,9 +10,10 @@ from beliefnest.adapters.pettingzoo.actions import Call
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import Senses
-from beliefnest.world.frames import BlockGrid, Frame
+from beliefnest.world.frames import Frame
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, EventKind, Position
 from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.hand import Doing, Hand
@@ -111,7 +112,7 @@ class SkillActing:
         self._timeout_ticks = timeout_ticks
         self._doing: dict[str, Doing] = {}
         self._spoken = False
-        self._grounds: dict[str, tuple[BlockGrid, Ground]] = {}
+        self._grounds: dict[str, tuple[Terrain, Ground]] = {}
         world.listen(self._hear)
 
     def act(self, actions: Mapping[str, Call | str]) -> JointStep:
@@ -163,17 +164,18 @@ class SkillActing:
     def _known_ground(self, agent: str) -> Ground:
         if self._senses == "world":
             return self._real_ground()
-        return self._ground(agent, self._nest[path_text((agent,))].state.blocks.grid)
+        grid = self._nest[path_text((agent,))].state.blocks.grid
+        return self._ground(agent, Terrain.of_one(grid))
 
     def _real_ground(self) -> Ground:
-        return self._ground("", self._world.blocks)
+        return self._ground("", self._world.terrain)
 
-    def _ground(self, whose: str, grid: BlockGrid) -> Ground:
-        """Return the ground of a grid, computed again only if the grid has changed."""
+    def _ground(self, whose: str, blocks: Terrain) -> Ground:
+        """Return the ground of a terrain, computed again only if the terrain has changed."""
         known = self._grounds.get(whose)
-        if known is None or not (known[0] is grid or np.array_equal(known[0], grid)):
-            ground = Ground(Registry.load(), self._world.box, grid)
-            known = self._grounds[whose] = (grid, ground)
+        if known is None or not _is_same(known[0], blocks):
+            ground = Ground(Registry.load(), self._world.box, blocks)
+            known = self._grounds[whose] = (blocks, ground)
         return known[1]
 
     def _others(self, agent: str) -> Mapping[str, AgentState]:
@@ -192,3 +194,11 @@ class SkillActing:
     def _hear(self, frame: Frame) -> None:
         if any(event.kind is EventKind.CHAT for event in frame.events):
             self._spoken = True
+
+
+def _is_same(known: Terrain, blocks: Terrain) -> bool:
+    """Return True if two terrains are the same; False if that would take long to find out."""
+    if known is blocks:
+        return True
+    both_small = known.is_dense and blocks.is_dense
+    return both_small and np.array_equal(known.dense(), blocks.dense())

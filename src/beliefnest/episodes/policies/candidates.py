@@ -53,9 +53,9 @@ def claims_of_mind(mind: Imagination, goals: Sequence[Goal], *, lies: bool) -> I
             for place, items in held:
                 if not items.get(item, 0):
                     yield Claim.located(item, place)
-    registry, box = Registry.load(), mind.world.box
+    registry = Registry.load()
     for place in _block_places(goals):
-        state = int(mind.world.blocks[box.index(place)])
+        state = mind.world.state_at(place)
         if not mind.is_unknown(place):
             name, properties = registry.name(state), registry.properties(state)
             if is_door(name):
@@ -201,9 +201,9 @@ def _building(mind: Imagination, agent: str, goals: Sequence[Goal]) -> Iterator[
 
 
 def _doors(mind: Imagination, goals: Sequence[Goal]) -> Iterator[Call]:
-    registry, box = Registry.load(), mind.world.box
+    registry = Registry.load()
     for place in _block_places(goals):
-        state = int(mind.world.blocks[box.index(place)])
+        state = mind.world.state_at(place)
         if is_door(registry.name(state)):
             skill = "closeDoor" if is_open(registry, state) else "openDoor"
             yield Call(skill, (place,))

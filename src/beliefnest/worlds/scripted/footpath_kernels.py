@@ -18,6 +18,7 @@ __all__ = [
     "ALONG_Z",
     "AVOIDED",
     "NOWHERE",
+    "WIDER",
     "Aim",
     "Cells",
     "Queue",
@@ -34,10 +35,12 @@ _DONE, AVOIDED = 1, 2
 """Marks of cells."""
 ALONG_X, ALONG_Z = 1, 2
 """Directions through doorways."""
+WIDER = -2
+"""Result of a search that needs a wider grid."""
 
 
 class Cells(NamedTuple):
-    """Cells of a ground.
+    """Cells of a ground, or of a part of it.
 
     Attributes:
         standing: 1 where an agent can stand.
@@ -45,12 +48,15 @@ class Cells(NamedTuple):
         doorways: `ALONG_X` or `ALONG_Z` for doors and gates that can be crossed, by the direction
             through them; else 0.
         sizes: Number of cells along x, y and z.
+        first, last: First and last cell along x, y and z from which each step stays in the part.
     """
 
     standing: Flags
     passing: Flags
     doorways: Flags
     sizes: tuple[int, int, int]
+    first: tuple[int, int, int]
+    last: tuple[int, int, int]
 
 
 class Aim(NamedTuple):
@@ -98,7 +104,7 @@ class Queue(NamedTuple):
         orders: Number of cells added before.
         cells: The cells.
         counts: Number of entries, of cells added, of cells left; and the cell that met the aim
-            last, or -1.
+            last or waits for a wider grid, or -1.
     """
 
     keys: npt.NDArray[np.float64]
@@ -211,9 +217,11 @@ def find(cells: Cells, aim: Aim, trail: Trail, queue: Queue, found: Ints, most: 
         most: Number of cells after which the search ends.
 
     Returns:
-        The cell; -1: there is none. If it does not do, call the function again.
+        The cell; -1: there is none; `WIDER`: steps from the cell `counts[3]` may leave the grid. If
+        it does not do, or in a wider grid, call the function again.
     """
     (came, costs, marks), counts, sizes = trail, queue.counts, cells.sizes
+    first, last = cells.first, cells.last
     cell = int(counts[3])
     counts[3] = -1
     while True:
@@ -228,9 +236,12 @@ def find(cells: Cells, aim: Aim, trail: Trail, queue: Queue, found: Ints, most: 
             if _is_met(aim, x, y, z):
                 counts[3] = cell
                 return cell
+        x, y, z = cell // (sizes[1] * sizes[2]), cell // sizes[2] % sizes[1], cell % sizes[2]
+        if not (first[0] <= x <= last[0] and first[1] <= y <= last[1] and first[2] <= z <= last[2]):
+            counts[3] = cell
+            return WIDER
         marks[cell] |= _DONE
         counts[2] += 1
-        x, y, z = cell // (sizes[1] * sizes[2]), cell // sizes[2] % sizes[1], cell % sizes[2]
         for number in range(_write_steps(cells, cell, found)):
             step = int(found[number])
             i, j, k = step // (sizes[1] * sizes[2]), step // sizes[2] % sizes[1], step % sizes[2]

@@ -5,24 +5,24 @@ from collections.abc import Callable, Iterable
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.world.doors import is_doorway, is_open, moves_by_hand, passage
-from beliefnest.world.frames import BlockGrid, places_of
+from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import is_sign
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, feet_in
+from beliefnest.worlds.scripted.footing import Footing, Window
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
-    from beliefnest.worlds.scripted.footpath_kernels import Aim, Cells
+    from beliefnest.worlds.scripted.footpath_kernels import Aim, Trail
 
 __all__ = ["Goal", "Ground", "InReach", "Near"]
 
 _MOST_CELLS = 100_000
-_MARGIN = 2
 _MOST_WAYS = 20_000
 """Largest number of paths that a ground caches."""
 _MOST_STEPS = 8
@@ -87,12 +87,13 @@ class Ground:
     """Cells in which agents can stand: two free cells above one another, with a solid one below.
 
     Unknown cells count as free to walk through and solid to stand on. Open doors and gates are
-    free, but can only be crossed straight. `footpath_kernels` has the rules of steps.
+    free, but can only be crossed straight. `footpath_kernels` has the rules of steps. In a large
+    box cells are prepared only where paths lead, with the same paths.
 
     Args:
         registry: Shapes of blocks.
         box: The known part of space.
-        blocks: Block state ids, -1 is unknown.
+        blocks: Block states, -1 is unknown; of a dense grid all cells are prepared.
         opens: True if doors and gates that can be opened by hand count as open.
 
     Attributes:
@@ -101,42 +102,23 @@ class Ground:
     """
 
     def __init__(
-        self, registry: Registry, box: Box, blocks: BlockGrid, *, opens: bool = False
+        self, registry: Registry, box: Box, blocks: Terrain | BlockGrid, *, opens: bool = False
     ) -> None:
-        self._registry, self._box, self._blocks, self._opens = registry, box, blocks, opens
-        # Counting is faster than sorting, as `np.unique` does.
-        states = np.flatnonzero(np.bincount(blocks.ravel() + 1)) - 1
-        doorways = [s for s in states.tolist() if s >= 0 and is_doorway(registry.name(s))]
-        ways = {s: passage(registry, s) for s in doorways if self._is_way(s)}
-        self.has_doors, self.has_doorways = bool(doorways), bool(ways)
-        self._has_shut_doors = any(
-            moves_by_hand(registry.name(s)) for s in doorways if s not in ways
-        )
-        is_free = np.zeros(int(states[-1]) + 2, dtype=np.bool_)
-        is_free[states + 1] = [s < 0 or s in ways or not registry.boxes(s) for s in states.tolist()]
-        free = is_free[blocks + 1]
-        # Add a margin, so that every neighbour of a cell has an index; above the box is air.
-        passing, holding = _widened(free), _widened((blocks < 0) | ~free)
-        passing[1:-1, _MARGIN + blocks.shape[1], 1:-1] = True
-        standing = np.zeros_like(passing)
-        standing[:, 1:-1] = holding[:, :-2] & passing[:, 1:-1] & passing[:, 2:]
-        self._passing, self._standing = passing, standing
-        self._stands = standing.tobytes()
-        self._count = int(np.count_nonzero(standing))
-        self._doors = places_of(np.isin(blocks, list(ways)), box) if ways else ()
-        self._directions = ways
-        self._corner = (box.low[0] - 1, box.low[1] - _MARGIN, box.low[2] - 1)
-        width, height, depth = passing.shape
-        self._shape = (int(width), int(height), int(depth))
+        self._registry, self._box = registry, box
+        if not isinstance(blocks, Terrain):
+            blocks = Terrain.of_one(blocks)
+        self._blocks = blocks
+        self._footing = Footing(registry, box, blocks, opens=opens)
+        self.has_doors = self._footing.has_doors
+        self.has_doorways = self._footing.has_doorways
         self._ways: dict[tuple[Position, Goal], tuple[Position, ...] | None] = {}
-        self._areas: list[npt.NDArray[np.bool_]] = []
+        self._areas: list[_Area] = []
         self._met: dict[tuple[int, Goal], bool] = {}
         self._leads: dict[tuple[Position, Goal], bool] = {}
 
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
-        index = self._index(cell)
-        return index is not None and self._stands[index] != 0
+        return self._footing.stands(cell)
 
     def may_hold(self, place: Position) -> bool:
         """Return True if a position has a container or is unknown."""
@@ -153,7 +135,7 @@ class Ground:
     @cached_property
     def with_doors_opened(self) -> "Ground":
         """Return the same ground for agents that open doors and gates by hand."""
-        if not self._has_shut_doors:
+        if not self._footing.has_shut_doors:
             return self
         return Ground(self._registry, self._box, self._blocks, opens=True)
 
@@ -185,7 +167,7 @@ class Ground:
                 self._ways[wanted] = None
             else:
                 self._ways[wanted] = found = self._found_way(start, goal)
-                if found is None and number is None:
+                if found is None and number is None and self._footing.window(start) is not None:
                     # Remember the area, so that the next search there need not explore all of it.
                     self._add_area(start)
         return self._ways[wanted]
@@ -207,136 +189,176 @@ class Ground:
     def _leads_there(self, start: Position, goal: Goal) -> bool:
         from beliefnest.worlds.scripted.footpath_kernels import holds_target
 
-        if self._index(start) is None:
+        if self._footing.window(start) is None:
             return goal.is_met(start)
         number = self._first_area(start)
         if number is None:
             number = self._add_area(start)
+        area = self._areas[number]
+        if not area.is_complete:
+            return True
         asked = (number, goal)
         if asked not in self._met:
-            self._met[asked] = holds_target(self._cells, self._aim(goal), self._areas[number])
+            aim = _aim(goal, area.window)
+            self._met[asked] = holds_target(area.window.cells, aim, area.cells)
         return self._met[asked]
-
-    @cached_property
-    def _cells(self) -> "Cells":
-        from beliefnest.worlds.scripted.footpath_kernels import ALONG_X, ALONG_Z, Cells
-
-        doorways = np.zeros(self._passing.size, dtype=np.uint8)
-        for place, at in self._doors:
-            direction = self._directions[int(self._blocks[at])]
-            doorways[self._index(place)] = ALONG_X if direction == (1, 0) else ALONG_Z
-        standing, passing = (
-            each.ravel().view(np.uint8) for each in (self._standing, self._passing)
-        )
-        return Cells(standing, passing, doorways, self._shape)
 
     def _found_way(
         self, start: Position, goal: Goal, avoiding: Iterable[Position] = ()
     ) -> tuple[Position, ...] | None:
         """Search for a path; see `way`."""
-        from beliefnest.worlds.scripted.footpath_kernels import AVOIDED
-
-        first = self._index(start)
-        if first is None:
+        window = self._footing.window(start)
+        if window is None:
             return () if goal.is_met(start) else None
-        search = _Search(self._cells, first, self._count)
-        for index in map(self._index, avoiding):
-            if index is not None:
-                search.trail.marks[index] = AVOIDED
+        search = _Search(self._footing, window, start, avoiding)
         has_free_line = isinstance(goal, InReach) and goal.has_free_line is not None
-        aim = self._aim(goal)
-        while (end := search.next(aim)) is not None:
-            if not has_free_line or goal.is_met(self._cell(end)):
-                return self._traced(search.trail.came, end)
+        while (end := search.next(goal)) is not None:
+            if not has_free_line or goal.is_met(search.window.cell(end)):
+                return search.way(end)
         return None
-
-    def _traced(self, came: npt.NDArray[np.int32], end: int) -> tuple[Position, ...]:
-        way, at = [], end
-        while (before := int(came[at])) > 0:
-            way.append(self._cell(at))
-            at = before - 1
-        return tuple(way[::-1])
-
-    def _aim(self, goal: Goal) -> "Aim":
-        from beliefnest.worlds.scripted.footpath_kernels import Aim
-
-        x, y, z = (a - b for a, b in zip(goal.block, self._corner, strict=True))
-        if isinstance(goal, Near):
-            return Aim(x, y, z, float(goal.within), False, False)
-        return Aim(x, y, z, float(goal.reach), True, goal.beside)
 
     def _first_area(self, start: Position) -> int | None:
         """Return the number of the first known area that contains a cell; None: there is none."""
-        index = self._index(start)
-        if index is None:
-            return None
-        return next((n for n, area in enumerate(self._areas) if area[index]), None)
+        for number, area in enumerate(self._areas):
+            index = area.window.index(start)
+            if index is not None and area.cells[index]:
+                return number
+        return None
 
     def _add_area(self, start: Position) -> int:
         """Add the area of all cells that can be reached from a cell; return its number."""
-        from beliefnest.worlds.scripted.footpath_kernels import NOWHERE
-
-        index = self._index(start)
-        if index is None:
-            self._areas.append(np.zeros(self._passing.size, dtype=np.bool_))
-        else:
-            search = _Search(self._cells, index, self._count)
-            search.next(NOWHERE)
-            self._areas.append(search.trail.came != 0)
+        window = self._footing.window(start)
+        assert window is not None  # other cells have no paths
+        search = _Search(self._footing, window, start)
+        search.next(None)
+        self._areas.append(_Area(search.window, search.found, search.is_complete))
         return len(self._areas) - 1
 
-    def _index(self, cell: Position) -> int | None:
-        """Return the flat index of a cell; None: it is outside the grid and its margin."""
-        x, y, z = cell[0] - self._corner[0], cell[1] - self._corner[1], cell[2] - self._corner[2]
-        width, height, depth = self._shape
-        inside = 0 <= x < width and 0 <= y < height and 0 <= z < depth
-        return (x * height + y) * depth + z if inside else None
 
-    def _cell(self, index: int) -> Position:
-        _, height, depth = self._shape
-        x, y, z = self._corner
-        return (x + index // (height * depth), y + index // depth % height, z + index % depth)
+@dataclass(frozen=True, eq=False)
+class _Area:
+    """Cells that can be reached from one cell.
 
-    def _is_way(self, state: int) -> bool:
-        """Return True if a door or gate can be crossed."""
-        by_hand = self._opens and moves_by_hand(self._registry.name(state))
-        return by_hand or is_open(self._registry, state) is True
+    Attributes:
+        window: Window that contains them.
+        cells: By index of the window, True for those of the area.
+        is_complete: False if there may be more.
+    """
+
+    window: Window
+    cells: npt.NDArray[np.bool_]
+    is_complete: bool
 
 
 class _Search:
     """A* from one cell, which finds one goal cell after the other.
 
     Args:
-        cells: Cells of the ground.
-        first: Flat index of the first cell.
-        count: Number of cells in which agents can stand.
+        footing: Cells of the ground.
+        window: Window of the first cell; the search widens it as needed.
+        start: The first cell.
+        avoiding: Cells that paths must not contain.
 
     Attributes:
-        trail: Cells found so far.
+        window: The window by now, to which indices refer.
     """
 
-    def __init__(self, cells: "Cells", first: int, count: int) -> None:
-        from beliefnest.worlds.scripted.footpath_kernels import Queue, Trail
+    def __init__(
+        self, footing: Footing, window: Window, start: Position, avoiding: Iterable[Position] = ()
+    ) -> None:
+        from beliefnest.worlds.scripted.footpath_kernels import Queue
 
-        size, room = len(cells.passing), _MOST_STEPS * min(count + 1, _MOST_CELLS) + 1
-        self._cells = cells
-        # Memory of `zeros` is not touched before it is needed.
-        came, marks = np.zeros(size, dtype=np.int32), np.zeros(size, dtype=np.uint8)
-        self.trail = Trail(came, np.empty(size), marks)
+        room = _MOST_STEPS * _MOST_CELLS + 1
+        if footing.is_whole:
+            room = _MOST_STEPS * min(window.count + 1, _MOST_CELLS) + 1
+        self._footing, self.window = footing, window
+        self._avoiding = tuple(avoiding)
+        self._trail = self._emptied(window)
+        # Memory of `empty` is not touched before it is needed.
         orders, waiting = np.empty((2, room), dtype=np.int32)
         self._queue = Queue(np.empty(room), orders, waiting, np.array([1, 0, 0, -1]))
         self._found = np.empty(_MOST_STEPS, dtype=np.int32)
-        came[first], self.trail.costs[first] = -1, 0.0
+        first = window.index(start)
+        assert first is not None  # windows of cells contain them
+        self._trail.came[first], self._trail.costs[first] = -1, 0.0
         self._queue.keys[0], orders[0], waiting[0] = 0.0, 0, first
 
-    def next(self, aim: "Aim") -> int | None:
-        """Return the next cell that meets an aim, the same in each call; None: there is none."""
-        from beliefnest.worlds.scripted.footpath_kernels import find
+    @property
+    def found(self) -> npt.NDArray[np.bool_]:
+        """By index, True for the cells found so far."""
+        found: npt.NDArray[np.bool_] = self._trail.came != 0
+        return found
 
-        end = find(self._cells, aim, self.trail, self._queue, self._found, _MOST_CELLS)
-        return None if end < 0 else end
+    @property
+    def is_complete(self) -> bool:
+        """True if no further cell can be found: the search did not end for its length."""
+        return bool(self._queue.counts[2] < _MOST_CELLS)
+
+    def next(self, goal: Goal | None) -> int | None:
+        """Return the index of the next cell that meets a goal; None: there is none.
+
+        Args:
+            goal: The goal, the same in each call; its free lines are not considered. None: no cell
+                meets it, so that the search finds the whole area.
+        """
+        from beliefnest.worlds.scripted.footpath_kernels import NOWHERE, WIDER, find
+
+        while True:
+            aim = NOWHERE if goal is None else _aim(goal, self.window)
+            end = find(self.window.cells, aim, self._trail, self._queue, self._found, _MOST_CELLS)
+            if end != WIDER:
+                return None if end < 0 else end
+            self._widen()
+
+    def way(self, end: int) -> tuple[Position, ...]:
+        """Return the cells after the first up to a found one, in order."""
+        way, at = [], end
+        while (before := int(self._trail.came[at])) > 0:
+            way.append(self.window.cell(at))
+            at = before - 1
+        return tuple(way[::-1])
+
+    def _emptied(self, window: Window) -> "Trail":
+        """Return a trail without found cells, with the cells to avoid."""
+        from beliefnest.worlds.scripted.footpath_kernels import AVOIDED, Trail
+
+        size = len(window.cells.passing)
+        # Memory of `zeros` is not touched before it is needed.
+        marks = np.zeros(size, dtype=np.uint8)
+        for index in map(window.index, self._avoiding):
+            if index is not None:
+                marks[index] = AVOIDED
+        return Trail(np.zeros(size, dtype=np.int32), np.empty(size), marks)
+
+    def _widen(self) -> None:
+        """Go on in a wider window, with room for steps from the cell that waits for them."""
+        before, counts = self.window, self._queue.counts
+        after = self._footing.wider(before, int(counts[3]))
+        shift = [a - b for a, b in zip(before.low, after.low, strict=True)]
+
+        def moved(indices: npt.NDArray[np.signedinteger[Any]]) -> npt.NDArray[np.intp]:
+            places = np.unravel_index(indices, before.shape)
+            return np.ravel_multi_index(
+                tuple(p + by for p, by in zip(places, shift, strict=True)), after.shape
+            )
+
+        old, new = self._trail, self._emptied(after)
+        found = np.flatnonzero(old.came)
+        here, came = moved(found), old.came[found]
+        is_start = came < 0
+        new.came[here] = np.where(is_start, -1, moved(np.where(is_start, 0, came - 1)) + 1)
+        new.costs[here] = old.costs[found]
+        new.marks[here] = old.marks[found]
+        waiting = self._queue.cells[: counts[0]]
+        waiting[:] = moved(waiting)
+        counts[3] = moved(counts[3:4])[0]
+        self.window, self._trail = after, new
 
 
-def _widened(flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    wide: npt.NDArray[np.bool_] = np.pad(flags, ((1, 1), (_MARGIN, _MARGIN), (1, 1)))
-    return wide
+def _aim(goal: Goal, window: Window) -> "Aim":
+    from beliefnest.worlds.scripted.footpath_kernels import Aim
+
+    x, y, z = (a - b for a, b in zip(goal.block, window.low, strict=True))
+    if isinstance(goal, Near):
+        return Aim(x, y, z, float(goal.within), False, False)
+    return Aim(x, y, z, float(goal.reach), True, goal.beside)

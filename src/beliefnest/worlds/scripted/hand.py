@@ -210,11 +210,11 @@ def _skipped(hand: Hand, steps: Sequence[Position]) -> int:
     stride = min(hand.stride(), len(steps))
     if stride < _SHORTEST_STRIDE:
         return 0
-    blocks, box, ground = hand.world.blocks, hand.world.box, hand.ground()
+    world, ground = hand.world, hand.ground()
     free = 0
     # Doors are opened one by one, and an unknown floor may turn out to be none.
     for cell in itertools.islice(steps, stride):
-        if cell not in box or int(blocks[box.index(cell)]) != AIR or not ground.stands(cell):
+        if cell not in world.box or world.state_at(cell) != AIR or not ground.stands(cell):
             break
         free += 1
     return max(0, free - 1)

@@ -62,12 +62,32 @@
   })
   const others = () => Object.entries(seen.agents).filter(([name]) => name !== username)
 
+  /**
+   * Number, in the palette, of the block in a cell of the box. The blocks are one list, x slowest; or chunks of equal
+   * sides: of `runs`, the first list has the numbers of chunks after each run, and the second the run's chunk.
+   */
+  function stateIn ([i, j, k]) {
+    const { shape, states, side, counts, margin, runs, chunks, first } = grid
+    if (states !== undefined) return states[(i * shape[1] + j) * shape[2] + k]
+    const cell = [i + margin[0], j + margin[1], k + margin[2]]
+    const [a, b, c] = cell.map(value => Math.floor(value / side))
+    const number = (a * counts[1] + b) * counts[2] + c
+    let [low, high] = [0, runs[0].length - 1]
+    while (low < high) {
+      const middle = (low + high) >> 1
+      if (runs[0][middle] > number) high = middle
+      else low = middle + 1
+    }
+    const [x, y, z] = cell.map(value => value % side)
+    return chunks[runs[1][low]].charCodeAt((x * side + y) * side + z) - first
+  }
+
   function blockAt (position) {
     grid ??= parse(blocks)
     const cell = [position.x, position.y, position.z].map(Math.floor)
     const at = cell.map((value, axis) => value - grid.low[axis])
     if (at.some((value, axis) => value < 0 || value >= grid.shape[axis])) return null
-    const text = grid.palette[grid.states[(at[0] * grid.shape[1] + at[1]) * grid.shape[2] + at[2]]]
+    const text = grid.palette[stateIn(at)]
     if (text === null) return null
     const [name, written] = text.split(/[[\]]/)
     const properties = Object.fromEntries((written ?? '').split(',').filter(Boolean).map(each => {
