@@ -48,11 +48,11 @@ WRONG = {
     "a date that is none": (BASE + "description: 2020-13-45", 6, "month"),
     "a tag that is none": (BASE + "description: !!int foo", 6, "foo"),
     "a box far away": (BASE.replace("[[0,", f"[[-{2**53},"), 2, "box[0][0]"),
-    "a large box": (BASE.replace("9, 3, 9", "2000, 3, 2000"), 2, "box: the box holds"),
+    "a large box": (BASE.replace("9, 3, 9", "4000, 99, 4000"), 2, "box: the box holds"),
     "a long box": (
         BASE.replace("9, 3, 9", "1999999, 0, 3"),
         2,
-        "box: the box is 2000000 blocks long",
+        "box: the box is 2,000,000 blocks long",
     ),
     "many items": (BASE.replace("2.5]}", "2.5], inventory: {dirt: 1000000000}}"), 4, "slots"),
     "items for 37 slots": (BASE.replace("2.5]}", "2.5], inventory: {bucket: 593}}"), 4, "38 slots"),

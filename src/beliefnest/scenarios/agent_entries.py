@@ -6,9 +6,9 @@ from itertools import combinations
 from beliefnest.scenarios.checks import check_items
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.format import AgentEntry, ScenarioFile
-from beliefnest.world.frames import BlockGrid
 from beliefnest.world.limits import AGENT_SLOTS, MOST_AGENTS, agent_name_fault
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, EYE_HEIGHT, AgentState, Box, Point, block_at
 
 __all__ = ["build_agents"]
@@ -26,7 +26,7 @@ _Bounds = tuple[Point, Point]
 
 
 def build_agents(
-    document: Document, file: ScenarioFile, grid: BlockGrid, box: Box, registry: Registry
+    document: Document, file: ScenarioFile, blocks: Terrain, box: Box, registry: Registry
 ) -> dict[str, AgentState]:
     """Return the agents by name, each at a free place of its own inside the box."""
     agents: dict[str, AgentState] = {}
@@ -38,7 +38,7 @@ def build_agents(
         if fault := agent_name_fault(name):
             raise document.fault(path, fault)
         agents[name] = _agent(document, name, entry, registry)
-        _check_place(document, name, agents[name].position, grid, box, registry)
+        _check_place(document, name, agents[name].position, blocks, box, registry)
     for first, second in combinations(agents, 2):
         if _overlap(_body(agents[first].position), _body(agents[second].position)):
             raise document.fault(
@@ -100,7 +100,7 @@ def _overlap(first: _Bounds, second: _Bounds) -> bool:
 
 
 def _check_place(
-    document: Document, name: str, feet: Point, grid: BlockGrid, box: Box, registry: Registry
+    document: Document, name: str, feet: Point, blocks: Terrain, box: Box, registry: Registry
 ) -> None:
     path = ("agents", name, "position")
     body = _body(feet)
@@ -114,7 +114,7 @@ def _check_place(
     for position in around.positions():
         if position not in box:
             continue
-        state = int(grid[box.index(position)])
+        state = blocks[box.index(position)]
         for x0, y0, z0, x1, y1, z1 in registry.boxes(state):
             shape = (
                 (position[0] + x0, position[1] + y0, position[2] + z0),

@@ -1,5 +1,6 @@
 """Construction of scenarios from checked documents: setting, probes, and expectations."""
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -20,6 +21,7 @@ from beliefnest.scenarios.expected_kinds import Infers, read_expected, read_infe
 from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.format import (
     BelievedSignEntry,
+    BlockEntry,
     InitialBeliefEntry,
     ProbeEntry,
     ScenarioFile,
@@ -29,19 +31,19 @@ from beliefnest.scenarios.inferring import build_inferring
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, rule_faults
 from beliefnest.scenarios.space import (
     UNKNOWN,
+    believed_fault,
+    build_blocks,
     build_box,
     build_containers,
-    build_grid,
     build_sign_claims,
     build_signs,
-    entry_mask,
+    parts_of,
 )
 from beliefnest.scenarios.yaml_reading import template_text
-from beliefnest.world.frames import Snapshot, places_of
+from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
-from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Block, Point, Position, block_at
 
 __all__ = ["build_scenario"]
@@ -104,12 +106,11 @@ class _Builder:
         self._file = file
         self._registry = registry
         box = build_box(document, file)
-        grid = build_grid(document, file, box, registry)
-        containers = build_containers(document, file.containers, grid, box, registry)
-        signs = build_signs(document, file, grid, box, registry)
+        blocks = build_blocks(document, file, box, registry)
+        containers = build_containers(document, file.containers, blocks, box, registry)
+        signs = build_signs(document, file, blocks, box, registry)
         claims = build_sign_claims(document, file, signs, box)
-        agents = build_agents(document, file, grid, box, registry)
-        blocks = Terrain.of(grid)
+        agents = build_agents(document, file, blocks, box, registry)
         self._snapshot = Snapshot(
             0, box, blocks, containers, agents, signs=signs, sign_claims=claims
         )
@@ -275,16 +276,7 @@ class _Builder:
             raise self._document.fault(
                 (*path, "path"), f"{entry.path!r} has initial beliefs already; put them into one"
             )
-        box = self._snapshot.box
-        blocks: dict[Position, Block] = {}
-        for index, block in enumerate(entry.blocks):
-            place = (*path, "blocks", index)
-            state = UNKNOWN
-            if block.block is not None:
-                with self._document.naming((*place, "block")):
-                    state = self._registry.state_id(block.block)
-            for at, _ in places_of(entry_mask(self._document, place, block, box), box):
-                blocks[at] = state
+        blocks = self._believed_blocks((*path, "blocks"), entry.blocks)
         for index, sign in enumerate(entry.signs):
             blocks[sign.at] = self._believed_sign((*path, "signs", index), sign, blocks)
         for index, container in enumerate(entry.containers):
@@ -297,6 +289,26 @@ class _Builder:
             blocks=blocks,
             agents=self._believed_places((*path, "agents"), entry.agents),
         )
+
+    def _believed_blocks(
+        self, path: KeyPath, entries: Sequence[BlockEntry]
+    ) -> dict[Position, Block]:
+        """Return believed blocks by position, those of each entry in order of position."""
+        blocks: dict[Position, Block] = {}
+        count = 0
+        for index, entry in enumerate(entries):
+            place = (*path, index)
+            state = UNKNOWN
+            if entry.block is not None:
+                with self._document.naming((*place, "block")):
+                    state = self._registry.state_id(entry.block)
+            parts = parts_of(self._document, place, entry, self._snapshot.box)
+            count += sum(math.prod(part.shape) for part in parts)
+            if fault := believed_fault(count):
+                raise self._document.fault(place, fault)
+            found = (at for part in parts for at in part.positions())
+            blocks |= dict.fromkeys(sorted(found) if len(parts) > 1 else found, state)
+        return blocks
 
     def _believed_places(
         self, path: KeyPath, written: Mapping[str, Point] | Sequence[str]

@@ -19,7 +19,7 @@ from beliefnest.scenarios.document import Document, KeyPath, YamlNode, wrapped
 from beliefnest.scenarios.document_form import check_written
 from beliefnest.scenarios.format import FloorEntry, LegendEntry, MapEntry, WrittenFile
 from beliefnest.world.frames import BlockGrid
-from beliefnest.world.limits import box_fault
+from beliefnest.world.limits import MOST_DENSE, box_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Position
 
@@ -233,7 +233,7 @@ class _Drawing:
                 low, high = min(low, floor.bottom - below), max(high, floor.bottom + above - 1)
         far = (x + len(first.rows[0]) - 1, high, z + len(first.rows) - 1)
         box = Box((x, low, z), far)
-        if fault := box_fault(box):
+        if fault := box_fault(box, MOST_DENSE):
             raise self._document.fault((_KEY,), fault)
         return box
 
@@ -339,7 +339,7 @@ class _Drawing:
 
     def _blocks(self, cells: Sequence[_Cell]) -> list[YamlNode]:
         """Return entries for all blocks, each a cuboid."""
-        box = self._whole
+        box = self._drawn_box
         grid: BlockGrid = np.zeros(box.shape, dtype=np.int32)
         states: list[YamlNode] = [YamlNode(_AIR)]
         numbers: dict[tuple[str, str], int] = {}
@@ -367,13 +367,6 @@ class _Drawing:
             for number, part in cuboids(grid, grid == 0)
             if number
         ]
-
-    @property
-    def _whole(self) -> Box:
-        """The smallest box that contains that of the scenario and that of the map."""
-        low = tuple(map(min, self._drawn_box.low, self._box.low))
-        high = tuple(map(max, self._drawn_box.high, self._box.high))
-        return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
     def _fill(self, state: YamlNode, part: Box, box: Box) -> YamlNode:
         corners = [

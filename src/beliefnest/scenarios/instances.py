@@ -30,7 +30,7 @@ from beliefnest.scenarios.parameters import (
     declared_in,
 )
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import EYE_HEIGHT, Box, Position
+from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
 from beliefnest.world.words import counted
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH
@@ -41,6 +41,8 @@ _KEY = "instances"
 _MOST_DRAWS = 2_000
 _STEP = 0.5
 """Height above the feet that is in the cell in which an agent stands, also on slabs."""
+_NEAR = 2
+"""Cells around a line of sight whose blocks may hide something on it."""
 
 
 def has_instances(document: Document) -> bool:
@@ -222,10 +224,9 @@ class _Scene:
         """Return True if an agent sees a cell."""
         state = self._place.agents[agent]
         x, y, z = state.position
-        seen = self._geometry.sees_blocks(
-            (x, y + EYE_HEIGHT, z), state.yaw, state.pitch, np.array([cell])
-        )
-        return bool(seen[0])
+        eye = (x, y + EYE_HEIGHT, z)
+        geometry = self._geometry(eye, cell)
+        return bool(geometry.sees_blocks(eye, state.yaw, state.pitch, np.array([cell]))[0])
 
     def reaches(self, agent: str, cell: Position) -> bool:
         """Return True if an agent can walk to where its hand reaches a cell, opening doors."""
@@ -233,20 +234,40 @@ class _Scene:
         start = (math.floor(x), math.floor(y + _STEP), math.floor(z))
         return self._ground.way(start, InReach(cell, REACH)) is not None
 
+    def _geometry(self, eye: Point, cell: Position) -> Geometry:
+        """Return the blocks that may hide a cell from an eye, prepared for looks."""
+        box, blocks = self._place.box, self._place.blocks
+        if blocks.is_dense:
+            return self._whole
+        # Outside of the box nothing hides anything. Shapes reach into the next cell at most.
+        low, high = (
+            tuple(
+                min(max(end(math.floor(a), b) + far, first), last)
+                for a, b, first, last in zip(eye, cell, box.low, box.high, strict=True)
+            )
+            for end, far in ((min, -_NEAR), (max, _NEAR))
+        )
+        first, last = (box.index((x, y, z)) for x, y, z in (low, high))
+        part = blocks.cut(first, (last[0] + 1, last[1] + 1, last[2] + 1))
+        return self._sight.geometry(part, (low[0], low[1], low[2]))
+
     @cached_property
-    def _geometry(self) -> Geometry:
+    def _whole(self) -> Geometry:
+        return self._sight.geometry(self._place.blocks.dense(), self._place.box.low)
+
+    @cached_property
+    def _sight(self) -> Sight:
         options = self._options
-        sight = Sight(
+        return Sight(
             self._registry,
             options.max_visible_distance,
             options.field_of_view,
             options.transparent_blocks,
         )
-        return sight.geometry(self._place.blocks.dense(), self._place.box.low)
 
     @cached_property
     def _ground(self) -> Ground:
-        return Ground(self._registry, self._place.box, self._place.blocks.dense()).with_doors_opened
+        return Ground(self._registry, self._place.box, self._place.blocks).with_doors_opened
 
 
 def _part_of(entry: Mapping[str, Any]) -> Box | None:

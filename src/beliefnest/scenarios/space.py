@@ -1,33 +1,37 @@
-"""Blocks, containers and signs of a scenario: from a file's entries to a grid of block states."""
+"""Blocks, containers and signs of a scenario: from a file's entries to block states of a box."""
 
 from collections.abc import Iterable, Mapping
 
 import msgspec
-import numpy as np
-import numpy.typing as npt
 
 from beliefnest.scenarios.checks import check_inside, check_items
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
 from beliefnest.world.claims import claims_from_plain
-from beliefnest.world.frames import BlockGrid, PlainClaims, places_of
+from beliefnest.world.frames import PlainClaims
 from beliefnest.world.limits import box_fault, container_slots
+from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Items, Position
 
 __all__ = [
     "UNKNOWN",
+    "believed_fault",
+    "build_blocks",
     "build_box",
     "build_containers",
-    "build_grid",
     "build_sign_claims",
     "build_signs",
-    "entry_mask",
+    "parts_of",
 ]
 
 UNKNOWN = -1
 """Block state id of unknown blocks."""
+
+_BELIEVED_BYTES = 300
+"""Bytes of a block that an initial belief gives."""
 
 
 def build_box(document: Document, file: ScenarioFile) -> Box:
@@ -38,16 +42,18 @@ def build_box(document: Document, file: ScenarioFile) -> Box:
     return box
 
 
-def build_grid(document: Document, file: ScenarioFile, box: Box, registry: Registry) -> BlockGrid:
+def build_blocks(document: Document, file: ScenarioFile, box: Box, registry: Registry) -> Terrain:
     """Return the block states of the box: air, then the entries in order, then containers."""
-    grid: BlockGrid = np.full(box.shape, registry.air, dtype=np.int32)
+    blocks = Terrain.full(box.shape, registry.air).draft()
     for number, entry in enumerate(file.blocks):
         path = ("blocks", number)
         if entry.block is None:
             raise document.fault((*path, "block"), "is null; in the real world no block is unknown")
         with document.naming((*path, "block")):
             state = registry.state_id(entry.block)
-        grid[entry_mask(document, path, entry, box)] = state
+        for part in parts_of(document, path, entry, box):
+            x, y, z = box.index(part.high)
+            blocks.fill(box.index(part.low), (x + 1, y + 1, z + 1), state)
     for number, container in enumerate(file.containers):
         path = ("containers", number)
         with document.naming((*path, "block")):
@@ -55,20 +61,20 @@ def build_grid(document: Document, file: ScenarioFile, box: Box, registry: Regis
         if not registry.is_container(registry.name(state)):
             raise document.fault((*path, "block"), f"{container.block!r} is no container")
         check_inside(document, (*path, "at"), container.at, box)
-        grid[box.index(container.at)] = state
+        blocks[box.index(container.at)] = state
     for number, sign in enumerate(file.signs):
         path = ("signs", number)
         with document.naming((*path, "block")):
             state = registry.state_id(sign.block)
         check_inside(document, (*path, "at"), sign.at, box)
-        grid[box.index(sign.at)] = state
-    return grid
+        blocks[box.index(sign.at)] = state
+    return blocks.terrain()
 
 
 def build_signs(
     document: Document,
     file: ScenarioFile,
-    grid: BlockGrid,
+    blocks: Terrain,
     box: Box,
     registry: Registry,
 ) -> dict[Position, str]:
@@ -87,7 +93,7 @@ def build_signs(
             raise document.fault((*path, "at"), f"{list(entry.at)} has a sign already")
         places.add(entry.at)
         with document.naming(path):
-            texts[entry.at] = text_of(written(registry, int(grid[box.index(entry.at)]), entry.text))
+            texts[entry.at] = text_of(written(registry, blocks[box.index(entry.at)], entry.text))
     return {place: text for place, text in sorted(texts.items()) if text}
 
 
@@ -111,11 +117,11 @@ def build_sign_claims(
 def build_containers(
     document: Document,
     entries: Iterable[ContainerEntry],
-    grid: BlockGrid,
+    blocks: Terrain,
     box: Box,
     registry: Registry,
 ) -> dict[Position, Items]:
-    """Return the contents of every container in the grid; containers without entry are empty."""
+    """Return the contents of every container in the box; containers without entry are empty."""
     found: dict[Position, Items] = {}
     for number, entry in enumerate(entries):
         path = ("containers", number)
@@ -125,17 +131,15 @@ def build_containers(
         slots = container_slots(name)
         check_items(document, (*path, "items"), entry.items, registry, slots, f"a {name}")
         found[entry.at] = dict(entry.items)
-    for state in np.unique(grid).tolist():
-        if registry.is_container(registry.name(state)):
-            for place, _ in places_of(grid == state, box):
-                found.setdefault(place, {})
+    empty = [state for state in blocks.states if registry.is_container(registry.name(state))]
+    x, y, z = box.low
+    for i, j, k in blocks.find(empty).tolist() if empty else ():
+        found.setdefault((x + i, y + j, z + k), {})
     return dict(sorted(found.items()))
 
 
-def entry_mask(
-    document: Document, path: KeyPath, entry: BlockEntry, box: Box
-) -> npt.NDArray[np.bool_]:
-    """Return a mask of the positions of an entry: bool of shape `box.shape`."""
+def parts_of(document: Document, path: KeyPath, entry: BlockEntry, box: Box) -> list[Box]:
+    """Return the cuboids that an entry fills; no two of them overlap."""
     given = [key for key in ("at", "fill", "walls") if getattr(entry, key) is not None]
     if len(given) != 1:
         found = " and ".join(given) or "none of them"
@@ -145,11 +149,26 @@ def entry_mask(
     assert corners is not None  # one of the three is given
     for corner in corners:
         check_inside(document, (*path, key), corner, box)
-    low = np.minimum(*corners) - box.low
-    high = np.maximum(*corners) - box.low
-    i, j, k = (slice(a, b + 1) for a, b in zip(low.tolist(), high.tolist(), strict=True))
-    mask = np.zeros(box.shape, dtype=np.bool_)
-    mask[i, j, k] = True
-    if key == "walls":
-        mask[low[0] + 1 : high[0], j, low[2] + 1 : high[2]] = False
-    return mask
+    whole = Box.between(*corners)
+    (x, y, z), (far, top, back) = whole.low, whole.high
+    if key != "walls" or far - x < 2 or back - z < 2:
+        return [whole]
+    return [
+        Box((x, y, z), (x, top, back)),
+        Box((far, y, z), (far, top, back)),
+        Box((x + 1, y, z), (far - 1, top, z)),
+        Box((x + 1, y, back), (far - 1, top, back)),
+    ]
+
+
+def believed_fault(count: int) -> str | None:
+    """Return the fault of an initial belief that gives a number of blocks, or None."""
+    limit = memory_limit()
+    if limit is None or count * _BELIEVED_BYTES <= limit.bytes:
+        return None
+    needed, most = (-(-size // MEGABYTE) for size in (count * _BELIEVED_BYTES, limit.bytes))
+    return (
+        f"gives {count:,} blocks with the entries before it, which need {needed:,} MB; this "
+        f"process may use {most:,} MB, {limit.source}: name blocks that everybody knows in "
+        "'static_blocks', or give a smaller part"
+    )

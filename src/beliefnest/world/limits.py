@@ -10,8 +10,10 @@ from collections.abc import Mapping, Sequence
 
 from beliefnest.errors import InputError
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import written
+from beliefnest.world.terrain import DENSE, VOLUME
 from beliefnest.world.values import Box, Position
 
 __all__ = [
@@ -19,6 +21,7 @@ __all__ = [
     "FARTHEST",
     "LATEST_TICK",
     "MOST_AGENTS",
+    "MOST_DENSE",
     "MOST_HELD",
     "WORN_SLOTS",
     "agent_name_fault",
@@ -43,13 +46,18 @@ AGENT_SLOTS = 36
 WORN_SLOTS = 5
 """Slots of worn items and the off hand."""
 
-_MOST_BLOCKS = 8_000_000
-"""Most blocks of a box of a scenario file or of Minecraft."""
+_MOST_BLOCKS = 2**30
+"""Most blocks of a box: with its margin, numbers of 32 bits count them."""
+
+MOST_DENSE = 8_000_000
+"""Most blocks of a part of space that is read or drawn block by block."""
 
 MOST_HELD = 2**25
-"""Most blocks of a box of a scripted world, and of traces and snapshots."""
+"""Most blocks of a box of a trace."""
 
 _LONGEST_SIDE = 4096
+_CHUNK_BYTES = 50
+"""Bytes that a nest needs at least for each chunk of its box, equal or not."""
 _AGENT_NAME = re.compile(r"[A-Za-z0-9_]{1,16}", re.ASCII)
 _FURNACES = frozenset({"furnace", "blast_furnace", "smoker"})
 _FURNACE_SLOTS = 3
@@ -66,7 +74,12 @@ def agent_name_fault(name: object) -> str | None:
 
 
 def box_fault(box: Box, most: int = _MOST_BLOCKS) -> str | None:
-    """Return the fault of a box, or None. It may hold `most` blocks."""
+    """Return the fault of a box, or None.
+
+    Args:
+        box: The box.
+        most: Greatest number of its blocks.
+    """
     for corner in (box.low, box.high):
         if fault := point_fault(corner):
             return fault
@@ -75,20 +88,29 @@ def box_fault(box: Box, most: int = _MOST_BLOCKS) -> str | None:
         return f"the box {box.low} to {box.high} is empty; give its lower corner first"
     volume = math.prod(sides)
     if volume > most:
-        return (
-            f"the box holds {volume} blocks, {_megabytes(volume)} MB for each copy of it; at most "
-            f"{most} are possible, {_megabytes(most)} MB: make it smaller"
-        )
+        return f"the box holds {volume:,} blocks; at most {most:,} are possible: make it smaller"
     if max(sides) > _LONGEST_SIDE:
         return (
-            f"the box is {max(sides)} blocks long; at most {_LONGEST_SIDE} are possible: "
+            f"the box is {max(sides):,} blocks long; at most {_LONGEST_SIDE:,} are possible: "
             "make it smaller"
         )
-    return None
+    return _memory_fault(volume)
 
 
-def _megabytes(blocks: int) -> int:
-    return -(-4 * blocks // 10**6)
+def _memory_fault(volume: int) -> str | None:
+    if volume <= DENSE:
+        return None
+    needed, limit = _CHUNK_BYTES * -(-volume // VOLUME), memory_limit()
+    if limit is None or needed <= limit.bytes:
+        return None
+    return (
+        f"the box holds {volume:,} blocks, which need at least {_megabytes(needed):,} MB; this "
+        f"process may use {_megabytes(limit.bytes):,} MB, {limit.source}: make the box smaller"
+    )
+
+
+def _megabytes(size: int) -> int:
+    return -(-size // MEGABYTE)
 
 
 def point_fault(point: Sequence[float]) -> str | None:
@@ -126,7 +148,7 @@ def items_fault(
 
 def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
     """Return the first fault of a snapshot, or None."""
-    faults = [box_fault(snapshot.box, MOST_HELD)]
+    faults = [box_fault(snapshot.box)]
     if not 0 <= snapshot.tick <= LATEST_TICK:
         faults.append(
             f"tick {_short(snapshot.tick)} is out of range; ticks go from 0 to {LATEST_TICK}"

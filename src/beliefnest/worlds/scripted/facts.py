@@ -8,7 +8,7 @@ import msgspec
 
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import PlainClaims
-from beliefnest.world.limits import MOST_HELD, agent_name_fault, box_fault
+from beliefnest.world.limits import agent_name_fault, box_fault
 from beliefnest.world.terrain import Draft
 from beliefnest.world.texts import fault_of
 from beliefnest.world.values import (
@@ -108,7 +108,7 @@ def checked_box(box: tuple[Position, Position]) -> Box:
             f"{box} is no box; give its lower and its upper corner, three numbers each"
         )
     made = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
-    if fault := box_fault(made, MOST_HELD):
+    if fault := box_fault(made):
         raise WorldError(fault)
     return made
 

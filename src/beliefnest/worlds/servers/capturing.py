@@ -9,7 +9,7 @@ import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.frames import BlockGrid, Snapshot
-from beliefnest.world.limits import box_fault
+from beliefnest.world.limits import MOST_DENSE, box_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign, sign_fault
 from beliefnest.world.terrain import Terrain
@@ -66,7 +66,7 @@ def capture_server(address: ServerAddress, box: Box) -> Captured:
         BodyError: The server cannot be read; the message says what to do.
         InputError: The box is too large, or outside the world.
     """
-    if fault := box_fault(box):
+    if fault := box_fault(box, MOST_DENSE):
         raise InputError(fault)
     channel, _ = joined(address, 0, ProcessLimits())
     told = _asked(channel, "capture", box=[box.low, box.high])
@@ -102,7 +102,7 @@ def capture_file(data: bytes, corner: Position) -> Captured:
     place = msgspec.convert(_asked(channel, "read_place", bytes=data), _Place)
     high = tuple(low + side - 1 for low, side in zip(corner, place.shape, strict=True))
     box = Box(corner, (high[0], high[1], high[2]))
-    if fault := box_fault(box):
+    if fault := box_fault(box, MOST_DENSE):
         raise InputError(f"the file has a bad box: {fault}")
     registry = Registry.load()
     states, unknown = _states(place.palette, registry)
