@@ -91,6 +91,23 @@ def test_what_a_prefix_comes_to(journal, make_history, step):
     assert journal.events_until(MAIN, len(entries)) == events
 
 
+def test_an_undone_call_leaves_names_and_descriptions_as_they_were(journal, make_history):
+    entries = make_history(10)
+    begin(journal, entries[:4])
+    journal.create(PLAN, ForkPoint(MAIN, 2, 2), 2)
+    before = journal.timelines()
+    with pytest.raises(ZeroDivisionError), journal.together():
+        journal.describe(PLAN, "far away")
+        with journal.together():
+            journal.append(MAIN, entries[4:], entries[-1].tick)
+            journal.rename(MAIN, "trunk")
+        assert journal.info(PLAN).base.timeline.branch == "trunk"
+        raise ZeroDivisionError
+    assert journal.timelines() == before
+    assert list(journal.entries(MAIN, 0, 100)) == entries[:4]
+    assert [journal.has(TimelineKey((), name)) for name in ("main", "trunk")] == [True, False]
+
+
 def test_what_is_undone_is_not_found(journal, make_history):
     entries = make_history(60)
     begin(journal, entries[:20])

@@ -70,6 +70,12 @@ class ChunkPool:
         made.shares, made.spare = self.shares[:used].copy(), self.spare[: used + 2].copy()
         return made
 
+    @property
+    def bytes(self) -> int:
+        """Memory of the chunks, without the room for more."""
+        chunk: int = self.blocks[0].nbytes + self.codes[0].nbytes
+        return int(self.spare[1]) * chunk
+
     def reserve(self, rows: int) -> bool:
         """Make room for some more rows; return True if the arrays are new ones then."""
         used, size = int(self.spare[1]), len(self.shares)

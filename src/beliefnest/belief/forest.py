@@ -29,6 +29,8 @@ from beliefnest.world.values import Event, Items, Point
 __all__ = ["EventHistory", "Forest", "ForestState", "NodeState"]
 
 _BATCH = 4096
+_OBJECTS = 40_000
+"""Bytes of a forest besides the arrays of its nodes, measured with few nodes."""
 
 
 class EventHistory(Protocol):
@@ -182,6 +184,11 @@ class Forest:
     def count_of_nodes(self) -> int:
         """The number of nodes."""
         return self.table.count
+
+    @property
+    def bytes(self) -> int:
+        """Memory of the nodes, estimated."""
+        return _OBJECTS + self.table.bytes
 
     @property
     def has_beliefs(self) -> bool:

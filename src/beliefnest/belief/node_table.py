@@ -540,6 +540,12 @@ class NodeTable:
             return flat
         return self.blocks(node).dense().astype(np.int16).ravel()
 
+    @property
+    def bytes(self) -> int:
+        """Memory of the arrays of nodes; of chunks, without the room for more."""
+        rows = sum(row.nbytes for row in self._rows.values())
+        return rows if self.pool is None else rows + self.pool.bytes
+
     def versions(self) -> npt.NDArray[np.int32]:
         """Return a number by node that grows with every change of its blocks."""
         versions: npt.NDArray[np.int32] = self._rows["versions"][: self.count]

@@ -200,6 +200,9 @@ class Journal(Protocol):
     def timelines(self) -> Sequence[TimelineInfo]:
         """Return the metadata of all timelines, in order of creation."""
 
+    def has(self, key: TimelineKey) -> bool:
+        """Return True if there is a timeline of that key."""
+
     def info(self, key: TimelineKey) -> TimelineInfo:
         """Return the metadata of a timeline; BranchError if there is none of that key."""
 

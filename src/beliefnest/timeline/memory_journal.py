@@ -43,6 +43,8 @@ _RECENT = 512
 class _Timeline:
     """A timeline with its newest entries.
 
+    It is copied before a change (`MemoryJournal._changing`), so that the old one can come back.
+
     Attributes:
         info: Key, base, head and other metadata.
         number: Number of the timeline in the temporary file; it is never used again.
@@ -60,11 +62,11 @@ class _Timeline:
         return self.recent[max(0, start - self.packed) : max(0, stop - self.packed)]
 
     def copy(self) -> "_Timeline":
-        """Return a copy that shares the entries; call `cut` on it if entries were added since."""
+        """Return a copy that shares the entries."""
         return replace(self)
 
     def cut(self) -> None:
-        """Drop the entries that were added since this copy was made."""
+        """Drop the entries that copies have added since."""
         del self.recent[self.info.entries - self.packed :]
 
 
@@ -92,6 +94,10 @@ class MemoryJournal:
         """Return all timelines, in order of creation."""
         return tuple(timeline.info for timeline in self._timelines.values())
 
+    def has(self, key: TimelineKey) -> bool:
+        """Return True if there is a timeline of that key."""
+        return key in self._timelines
+
     def info(self, key: TimelineKey) -> TimelineInfo:
         """Return one timeline; BranchError if there is none of that key."""
         # Hot path: reading states calls this twice for each node.
@@ -109,8 +115,8 @@ class MemoryJournal:
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
         """Add entries and move the head; StoreError if the disk is full."""
-        timeline = self._timeline(key)
-        check_append(timeline.info, entries, head)
+        check_append(self._timeline(key).info, entries, head)
+        timeline = self._changing(key)
         if len(timeline.recent) + len(entries) < _RECENT + CHUNK_ENTRIES:
             timeline.recent.extend(entries)
         else:
@@ -182,13 +188,16 @@ class MemoryJournal:
 
     def rename(self, key: TimelineKey, name: str) -> None:
         """Rename a timeline's branch; timelines based on it refer to the new name."""
-        renamed, new_key = self._timeline(key), TimelineKey(key.path, name)
+        self._timeline(key)
+        new_key = TimelineKey(key.path, name)
         if new_key in self._timelines:
             raise branch_taken(new_key)
+        based = [timeline.info for timeline in self._based_on(key)]
+        for info in based:
+            base = info.base and replace(info.base, timeline=new_key)
+            self._changing(info.key).info = replace(info, base=base)
+        renamed = self._changing(key)
         renamed.info = replace(renamed.info, key=new_key)
-        for timeline in self._based_on(key):
-            base = timeline.info.base
-            timeline.info = replace(timeline.info, base=base and replace(base, timeline=new_key))
         # The mapping is built again, so that timelines stay in order of creation.
         self._timelines = {each.info.key: each for each in self._timelines.values()}
         self.records.follow_rename(key.path, key.branch, name)
@@ -207,7 +216,7 @@ class MemoryJournal:
 
     def describe(self, key: TimelineKey, description: str) -> None:
         """Set a timeline's description."""
-        timeline = self._timeline(key)
+        timeline = self._changing(key)
         timeline.info = replace(timeline.info, description=description)
 
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
@@ -242,7 +251,7 @@ class MemoryJournal:
     @contextmanager
     def together(self) -> Iterator[None]:
         """Make the calls inside the block atomic: if the block raises, undo all of them."""
-        before = {key: timeline.copy() for key, timeline in self._timelines.items()}
+        before = dict(self._timelines)
         try:
             with self._database.transaction():
                 yield
@@ -272,6 +281,11 @@ class MemoryJournal:
         timeline = self._timelines.get(key)
         if timeline is None:
             raise self._missing(key)
+        return timeline
+
+    def _changing(self, key: TimelineKey) -> _Timeline:
+        """Return a copy of a timeline that takes its place and may be changed."""
+        timeline = self._timelines[key] = self._timeline(key).copy()
         return timeline
 
     def _gone(self, number: int, key: TimelineKey) -> BranchError | None:

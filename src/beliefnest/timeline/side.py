@@ -35,13 +35,17 @@ class SideJournal(MemoryJournal):
         """Return all timelines, those of the other journal first."""
         return (*self._other.timelines(), *super().timelines())
 
+    def has(self, key: TimelineKey) -> bool:
+        """Return True if either journal has a timeline of that key."""
+        return super().has(key) or self._other.has(key)
+
     def info(self, key: TimelineKey) -> TimelineInfo:
         """Return the metadata of a timeline of either journal; BranchError if there is none."""
         return super().info(key) if key in self._timelines else self._other.info(key)
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
         """Begin an empty timeline; BranchError if it exists or its base does not."""
-        if any(info.key == key for info in self._other.timelines()):
+        if self._other.has(key):
             raise branch_taken(key)
         super().create(key, base, start)
 

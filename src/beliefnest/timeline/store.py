@@ -136,6 +136,10 @@ class SqliteJournal:
             _info(row, None if row.base is None else rows[row.base]) for row in rows.values()
         )
 
+    def has(self, key: TimelineKey) -> bool:
+        """Return True if there is a timeline of that key."""
+        return self._found(key) is not None
+
     def info(self, key: TimelineKey) -> TimelineInfo:
         """Return one timeline; BranchError if there is none of that key."""
         row = self._row(key)

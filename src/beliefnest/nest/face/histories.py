@@ -278,7 +278,7 @@ class Imagined(Barred):
                     "this run is only read, so that no history can be kept in it; open it with "
                     "Nest.resume and imagine there"
                 )
-            if any(info.key == key for info in journal.timelines()):
+            if journal.has(key):
                 raise BranchError(
                     f"{path_text(self._path)} already has a branch {name!r}; choose another name"
                 )

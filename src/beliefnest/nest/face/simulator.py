@@ -90,7 +90,7 @@ class Simulator(ShownSimulator):
             self._engine.follow(self._path)
             return
         key = TimelineKey(self._path, name)
-        if all(info.key != key for info in self._recording.journal.timelines()):
+        if not self._recording.journal.has(key):
             self._engine.fork(self._path, name, None if at is None else tick_of(at))
         elif at is not None:
             raise BranchError(f"branch {name!r} exists; fork tick {at} under another name")

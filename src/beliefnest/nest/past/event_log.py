@@ -46,6 +46,10 @@ class EventLog:
             self._entries = stop
         return self._events
 
+    def has_before(self, path: BeliefPath) -> bool:
+        """Return True if `before` has been asked for a node."""
+        return path in self._before
+
     def before(self, path: BeliefPath) -> Sequence[PerceivedEvent]:
         """Return the events that a node perceived before the timeline began, oldest first."""
         if path not in self._before:

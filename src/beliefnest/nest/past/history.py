@@ -1,16 +1,17 @@
 """History of a nest: any node, at any entry of any timeline, computed from the journal alone.
 
 Follow-mode beliefs are pure functions of the control timelines (semantics, section 6). `History`
-keeps one forest at the head of every timeline, with the nodes that somebody has asked for. Every
-few thousand entries it saves this forest as a checkpoint. Forests of the past are folded from the
-last checkpoint before the wanted entry, or from the beginning of the timeline. All of these are
-caches: an answer does not depend on the forest that it comes from.
+keeps one forest at the head of every timeline, with the nodes that somebody has asked for; of many
+timelines, those used last. Every few thousand entries it saves this forest as a checkpoint. Forests
+of the past are folded from the last checkpoint before the wanted entry, or from the beginning of
+the timeline. All of these are caches: an answer does not depend on the forest that it comes from.
 """
 
 import functools
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 
 from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
@@ -21,6 +22,7 @@ from beliefnest.belief.initial import Beginning, forked_forest, initial_forest
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.claimed_blocks import ClaimedBlocks
 from beliefnest.nest.past.event_log import EventLog
+from beliefnest.nest.past.heads import Heads
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.perception.sight import Sight
@@ -34,6 +36,8 @@ __all__ = ["History", "context_of"]
 
 _PASTS = 4
 _STRETCHES = 8
+_CALLS = 8
+"""Number of forks, each the base of the next, that are folded by calls within calls."""
 
 
 def context_of(setting: Setting) -> BeliefContext:
@@ -123,7 +127,7 @@ class History:
         self._checkpoints = Checkpoints(journal, setting, self.context, self._pace)
         self._stretches: dict[tuple[TimelineKey, int], _Stretch] = {}
         self._logs: dict[TimelineKey, EventLog] = {}
-        self._heads: dict[TimelineKey, Forest] = {}
+        self._heads = Heads(self._checkpoints.keep_last)
         self._pasts: list[tuple[TimelineKey, Forest]] = []
         self.generation = 0
 
@@ -263,7 +267,7 @@ class History:
         if below and (head is None or not head.has_beliefs):
             head = self.walk(key, below)
         if head is not None:
-            self._heads[key] = head
+            self._heads.put(key, head)
             self._fold_into(key, head, [path for path in below if path not in head])
 
     def _fold_into(self, key: TimelineKey, head: Forest, missing: Sequence[BeliefPath]) -> None:
@@ -292,14 +296,14 @@ class History:
 
     def current_blocks(self, moment: ForkPoint, path: BeliefPath, cells: Iterable[int]) -> set[int]:
         """Return the cells whose block in a node is current."""
-        key, position = moment.timeline, moment.entries
-        base = self._journal.info(key).base
-        edited = None if base is None else self._edited_at_first(key, path, position)
-        if base is not None and edited is not None:
+        while (base := self._journal.info(moment.timeline).base) is not None:
+            edited = self._edited_at_first(moment.timeline, path, moment.entries)
+            if edited is None:
+                break
             # The timeline is unchanged since the fork, so beliefs are as there (section 6).
-            left = [cell for cell in cells if cell not in edited]
-            return self.current_blocks(base, path, left)
-        return self.shared(key, path, position).current_blocks(path, cells)
+            cells, moment = [cell for cell in cells if cell not in edited], base
+        forest = self.shared(moment.timeline, path, moment.entries)
+        return forest.current_blocks(path, cells)
 
     def _edited_at_first(
         self, key: TimelineKey, path: BeliefPath, position: int
@@ -327,7 +331,7 @@ class History:
         self.generation += 1
         self._stretches = {at: kept for at, kept in self._stretches.items() if at[0] != key}
         self._logs.pop(key, None)
-        self._heads.pop(key, None)
+        self._heads.pop(key)
         self._checkpoints.forget(key)
         self._claimed.forget(key)
         self._pasts = [(other, forest) for other, forest in self._pasts if other != key]
@@ -335,7 +339,8 @@ class History:
     def forget_all(self) -> None:
         """Drop everything cached for all timelines."""
         self.generation += 1
-        self._stretches, self._logs, self._heads, self._pasts = {}, {}, {}, []
+        self._stretches, self._logs, self._pasts = {}, {}, []
+        self._heads.clear()
         self._checkpoints.forget_all()
         self._claimed.forget_all()
 
@@ -373,7 +378,7 @@ class History:
             # added to a head later (below) is folded without any.
             head = self._begun(key, path)
         if head is not known:
-            self._heads[key] = head
+            self._heads.put(key, head)
         while head.position < count:
             far = count if not head.has_beliefs else head.position + self._pace.every
             self.advance(key, head, min(count, far))
@@ -411,12 +416,50 @@ class History:
         base = self._journal.info(key).base
         if base is None:
             return self._initial(key, (path,), extra)
-        source = (
-            self._folded(base.timeline, path, base.entries, extra)
-            if extra
-            else self.shared(base.timeline, path, base.entries)
-        )
-        return forked_forest(source, self._log(key), key.path, path, base.tick, extra)
+        if extra:
+            return self._begun_with(key, path, extra)
+        self._fold_bases(base, path)
+        source = self.shared(base.timeline, path, base.entries)
+        return forked_forest(source, self._log(key), key.path, path, base.tick)
+
+    def _begun_with(self, key: TimelineKey, path: BeliefPath, extra: Sequence[int]) -> Forest:
+        """Return a forest at a timeline's beginning that tracks further cells.
+
+        It is folded from where the real world begins.
+        """
+        bases = list(self._bases(self._journal.info(key).base))
+        for base in bases:
+            self._keep_up(base.timeline)
+        timelines = [key, *(base.timeline for base in bases)]
+        forest = self._initial(timelines[-1], (path,), extra)
+        for base, forked in zip(reversed(bases), timelines[-2::-1], strict=True):
+            self.advance(base.timeline, forest, base.entries)
+            log = self._log(forked)
+            forest = forked_forest(forest, log, forked.path, path, base.tick, extra)
+        return forest
+
+    def _bases(self, base: ForkPoint | None) -> Iterator[ForkPoint]:
+        """Yield a fork, and those that lead to it, the latest first."""
+        while base is not None:
+            yield base
+            base = self._journal.info(base.timeline).base
+
+    def _fold_bases(self, base: ForkPoint, path: BeliefPath) -> None:
+        """Fold a node at every few of the forks that lead to one, oldest first.
+
+        `shared` calls itself for the timeline below. Branches of branches may be more than Python
+        allows calls within calls.
+        """
+        missing = list(takewhile(lambda fork: not self._is_folded(fork, path), self._bases(base)))
+        for fork in reversed(missing[_CALLS::_CALLS]):
+            self.shared(fork.timeline, path, fork.entries)
+
+    def _is_folded(self, fork: ForkPoint, path: BeliefPath) -> bool:
+        """Return True if a forest with a node, at a fork or before it, is at hand."""
+        if fork.entries == self._journal.info(fork.timeline).entries:
+            head = self._heads.get(fork.timeline)
+            return head is not None and path in head
+        return self._past(fork.timeline, path, fork.entries) is not None
 
     def _initial(
         self, key: TimelineKey, paths: Sequence[BeliefPath], extra: Sequence[int] = ()
@@ -439,7 +482,14 @@ class History:
 
     def _before(self, base: ForkPoint | None, path: BeliefPath) -> Sequence[PerceivedEvent]:
         """Return the events that a node perceived before the fork from a base, oldest first."""
-        return () if base is None else self.state(base.timeline, path, base.entries).perceived
+        if base is None:
+            return ()
+        # Lists are kept, so that further ones need no more calls within calls; see `_fold_bases`.
+        logs = (self._log(fork.timeline) for fork in self._bases(base))
+        missing = list(takewhile(lambda log: not log.has_before(path), logs))
+        for log in reversed(missing[_CALLS::_CALLS]):
+            log.before(path)
+        return self.state(base.timeline, path, base.entries).perceived
 
     def _leap(self, key: TimelineKey, forest: Forest, position: int) -> None:
         """Fold a forest that has node 0 alone, without most entries on the way.
