@@ -134,7 +134,7 @@ class Nodes(NamedTuple):
         blocks: (N, C), numbers of believed blocks (`BeliefContext.number`); -1 unknown.
         codes: (N, cells with margin), geometry of the blocks, as codes of `perception.codes`.
         geometry: (N,), number of changes of the geometry so far.
-        versions: (N,), number of changes of blocks so far.
+        versions: (N,), number of changes of blocks, or of the rows that hold them, so far.
         pending: (N, words), bit set of cells where the parent knows another block.
         fresh: (N,), whether a bit of `pending` was set since the owner last looked for those cells.
         eye: (N,), id of the pose the owner last looked from; -1: it was not present.

@@ -116,6 +116,7 @@ def _own(grids: Grids, node: int, chunk: int) -> None:
     grids.shares[old] -= 1
     grids.shares[new] = 1
     grids.rows[node, chunk] = new
+    grids.versions[node] += 1
     for cell in range(VOLUME):
         grids.blocks[0, new * VOLUME + cell] = grids.blocks[0, old * VOLUME + cell]
         grids.codes[0, new * VOLUME + cell] = grids.codes[0, old * VOLUME + cell]
@@ -132,6 +133,7 @@ def share(grids: Grids, node: int, parent: int, chunk: int) -> None:
         ):
             return
     grids.rows[node, chunk] = other
+    grids.versions[node] += 1
     grids.shares[other] += 1
     grids.shares[own] -= 1
     if grids.shares[own] == 0:

@@ -63,6 +63,11 @@ class ChunkPool:
         self.shares: Ints = np.ones(1, dtype=np.int32)
         self.spare: Ints = np.array([0, 1, 0], dtype=np.int32)
 
+    @property
+    def used(self) -> int:
+        """Number of rows that are or were in use."""
+        return int(self.spare[1])
+
     def copy(self) -> "ChunkPool":
         """Return an independent copy, without room for more rows."""
         made, used = ChunkPool(self._shape), int(self.spare[1])
@@ -126,12 +131,22 @@ class ChunkPool:
 
     def terrain(self, rows: Ints) -> Terrain:
         """Return the numbers of the blocks of a grid, as they are now."""
+        used, numbers = self._used(rows)
+        chunks = self.blocks[used].astype(np.int32).reshape(-1, SIDE, SIDE, SIDE)
+        chunks.setflags(write=False)
+        return Terrain(self._shape, numbers, list(chunks))
+
+    def codes_of(self, rows: Ints) -> tuple[Codes, Ints]:
+        """Return the codes of a grid's chunks, as they are now, and for each place its chunk."""
+        used, numbers = self._used(rows)
+        return self.codes[used], numbers
+
+    def _used(self, rows: Ints) -> tuple[npt.NDArray[np.bool_], Ints]:
+        """Return a mask of the rows of a grid, and for each place its number among them."""
         is_used = np.zeros(len(self.shares), dtype=np.bool_)
         is_used[rows] = True
         numbers = (np.cumsum(is_used) - 1).astype(np.int32)
-        chunks = self.blocks[is_used].astype(np.int32).reshape(-1, SIDE, SIDE, SIDE)
-        chunks.setflags(write=False)
-        return Terrain(self._shape, numbers[rows], list(chunks))
+        return is_used, numbers[rows]
 
 
 def cut_grids(space: Space, grids: Sequence[Terrain]) -> CutGrids:

@@ -115,7 +115,7 @@ class NodeTable:
         if self._nodes is None:
             rows = {name: row[: self.count] for name, row in self._rows.items()}
             rows |= {"child_at": self._child_at, "child": self._child, "tracked": self._tracked}
-            rows["places"] = self._places(self._tracked).astype(np.int32)
+            rows["places"] = self.places(self._tracked).astype(np.int32)
             rows |= self._stored()
             self._nodes = Nodes(*(rows[name] for name in Nodes._fields))
             if self.context.weighs:
@@ -507,7 +507,7 @@ class NodeTable:
         self, nodes: int | npt.NDArray[np.int64], cells: int | npt.NDArray[np.integer[Any]]
     ) -> npt.NDArray[np.int16]:
         """Return the numbers of blocks of one or several nodes at one or several cells."""
-        places = self._places(np.asarray(cells))
+        places = self.places(np.asarray(cells))
         found: npt.NDArray[np.int16]
         if self.pool is None:
             found = self._rows["blocks"][nodes, places]
@@ -515,8 +515,8 @@ class NodeTable:
         found = self.pool.blocks[self._rows["rows"][nodes, places // VOLUME], places % VOLUME]
         return found
 
-    def _places(self, cells: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.integer[Any]]:
-        """Return the places of cells in `blocks`; see `perception.chunks`."""
+    def places(self, cells: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.integer[Any]]:
+        """Return the places of cells in the blocks of a node; see `perception.chunks`."""
         if self.pool is None:
             return cells
         (_, ny, nz), (_, high, deep) = self.context.box.shape, self.pool.chunks
@@ -533,12 +533,19 @@ class NodeTable:
             return self.pool.terrain(self._rows["rows"][node])
         return Terrain.of(self._rows["blocks"][node].reshape(self.context.box.shape))
 
-    def flat_blocks(self, node: int) -> npt.NDArray[np.int16]:
-        """Return the numbers of a node's blocks by cell; do not change the array."""
+    def codes(self, node: int) -> tuple[npt.NDArray[np.uint16], Row]:
+        """Return the geometry of a node of a box with a pool: its chunks, and one by place."""
         if self.pool is None:
-            flat: npt.NDArray[np.int16] = self._rows["blocks"][node]
-            return flat
-        return self.blocks(node).dense().astype(np.int16).ravel()
+            raise AssertionError("the box has no pool of chunks")
+        return self.pool.codes_of(self._rows["rows"][node])
+
+    def flat_blocks(self, node: int) -> npt.NDArray[np.int16]:
+        """Return the numbers of a node's blocks by cell, of a box without a pool of chunks.
+
+        Do not change the array.
+        """
+        flat: npt.NDArray[np.int16] = self._rows["blocks"][node]
+        return flat
 
     @property
     def bytes(self) -> int:
@@ -547,7 +554,7 @@ class NodeTable:
         return rows if self.pool is None else rows + self.pool.bytes
 
     def versions(self) -> npt.NDArray[np.int32]:
-        """Return a number by node that grows with every change of its blocks."""
+        """Return a number by node that grows with every change of its blocks or of its rows."""
         versions: npt.NDArray[np.int32] = self._rows["versions"][: self.count]
         return versions
 

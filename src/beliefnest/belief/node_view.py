@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.arrays import NOBODY, READ
+from beliefnest.belief.chunk_pool import cut_grids
 from beliefnest.belief.columns import place_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
-from beliefnest.perception.sight import Geometry
+from beliefnest.perception.sight import ChunkGeometry, Geometry, SightLines
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
@@ -70,11 +71,13 @@ class NodeView:
         self._forest = forest
         self._node = forest.node(path)
         self.count_of_events = forest.count_of_events
+        self._is_left = False
         forest.read_by(self)
 
     def keep(self) -> None:
         """Read all parts that the forest will overwrite; called before it folds further."""
         self.numbers, self.agents, self.containers, self.items  # noqa: B018 - kept when read
+        self._is_left = True
 
     @property
     def owner(self) -> str | None:
@@ -113,8 +116,20 @@ class NodeView:
         return {place: self.texts.get(place, "") for place in places}
 
     @Part
-    def geometry(self) -> Geometry:
+    def geometry(self) -> SightLines:
         """The believed blocks prepared for lines of sight."""
+        forest = self._forest
+        if forest.table.pool is None:
+            return self._dense_geometry
+        if self._is_left:
+            cut = cut_grids(forest.context.space, (self.numbers,))
+            codes, rows = cut.codes, cut.rows[0]
+        else:
+            codes, rows = forest.table.codes(self._node)
+        return ChunkGeometry(forest.context.sight, self.box.low, self.box.shape, codes, rows)
+
+    @Part
+    def _dense_geometry(self) -> Geometry:
         return self._forest.context.sight.geometry(self.grid, self.box.low)
 
     @Part
@@ -182,7 +197,7 @@ class NodeView:
         if viewer.position is None:
             return np.zeros(self.box.shape, dtype=np.bool_)
         x, y, z = viewer.position
-        return self.geometry.visible_blocks((x, y + EYE_HEIGHT, z), viewer.yaw, viewer.pitch)
+        return self._dense_geometry.visible_blocks((x, y + EYE_HEIGHT, z), viewer.yaw, viewer.pitch)
 
     def snapshot(self) -> Snapshot:
         """Return the snapshot with which a body of this state is filled.

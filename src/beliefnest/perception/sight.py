@@ -14,6 +14,7 @@ angle are inclusive, with a tolerance of 1e-9. The kernels are compiled on first
 
 import functools
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -26,13 +27,14 @@ from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, CodeGrid,
 from beliefnest.perception.options import sight_limits
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import chunks_of
 from beliefnest.world.values import Point, Position
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Eye
     from beliefnest.perception.rays import Scene
 
-__all__ = ["Geometry", "Sight"]
+__all__ = ["ChunkGeometry", "Geometry", "Sight", "SightLines"]
 
 BoolArray = npt.NDArray[np.bool_]
 Points = npt.NDArray[np.float64]
@@ -116,8 +118,8 @@ class Sight:
 
 
 @dataclass(frozen=True, eq=False)
-class Geometry:
-    """A grid of blocks prepared for looks; made by `Sight.geometry`.
+class SightLines(ABC):
+    """Blocks prepared for single looks.
 
     Positions and points are scenario coordinates. An eye is a point. Yaw and pitch are in
     Mineflayer's radians (yaw 0 looks along -z, pi/2 along -x, positive pitch up); they
@@ -125,53 +127,11 @@ class Geometry:
 
     Attributes:
         sight: Options of sight.
-        origin: Position of the low corner of the grid.
-        codes: Shape code of each cell (see the module `codes`), read-only.
+        origin: Position of the low corner of the blocks.
     """
 
     sight: Sight
     origin: Position
-    codes: CodeGrid
-
-    def with_blocks(self, changes: Mapping[Position, int]) -> "Geometry":
-        """Return the geometry with other block states (-1: unknown) at some positions of the grid.
-
-        Raises:
-            InputError: A position lies outside the grid.
-            UnknownNameError: A value is neither a block state id nor -1.
-        """
-        from beliefnest.perception.eyes import change_code
-
-        codes = self.codes.copy()
-        states = self.sight.registry.states
-        for position, state in changes.items():
-            cell = tuple(p - o for p, o in zip(position, self.origin, strict=True))
-            if not all(0 <= c < size - 2 for c, size in zip(cell, codes.shape, strict=True)):
-                raise InputError(f"position {position} lies outside the grid at {self.origin}")
-            _check_states(state, state, states)
-            i, j, k = cell
-            code = int(self.sight.state_codes[state])
-            place = (i + 1, j + 1, k + 1)
-            change_code(codes.reshape(-1), self._scene.sizes, self.sight.reaches, place, code)
-        return Geometry(self.sight, self.origin, codes)
-
-    def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
-        """Return a mask of the visible blocks of the grid: bool (nx, ny, nz).
-
-        Both ways give the same result. Where light does not get far it is faster to test the few
-        cells that it reaches than to cast the shadows of all blocks.
-        """
-        from beliefnest.perception import eye_loops, shadows
-
-        seer = self._eye(eye, yaw, pitch)
-        lit = self._lit(seer[0])
-        if lit is not None:
-            seen = np.zeros(self.codes.shape, dtype=np.bool_)
-            seen[lit] = eye_loops.seen_blocks(self._scene, seer, np.argwhere(lit))
-        else:
-            noted = shadows.cast_shadows(self._scene, self.sight.reaches, seer[0])
-            seen = eye_loops.seen_grid(self._scene, seer, noted)
-        return seen[1:-1, 1:-1, 1:-1]
 
     def sees_blocks(
         self, eye: Point, yaw: float, pitch: float, positions: npt.ArrayLike
@@ -228,17 +188,88 @@ class Geometry:
         places = self._local(_rows(feet).astype(np.float64))
         return eye_loops.seen_agents(self._scene, self._eye(eye, yaw, pitch), places)
 
-    def blocker(self, eye: Point, point: Point) -> Position | None:
-        """Return the position of the first block whose shape the ray from eye to point enters."""
+    def blocker(self, eye: Point, point: Point, target: Position | None = None) -> Position | None:
+        """Return the position of the first block whose shape the ray from eye to point enters.
+
+        The block at `target`, if given, hides nothing.
+        """
         from beliefnest.perception import rays
 
         start, end = self._local(np.array([eye, point], dtype=np.float64)).tolist()
         d = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
-        i, j, k = rays.blocker(self._scene, rays.NOWHERE, (start[0], start[1], start[2]), d)
-        if i < 0:
-            return None
         x, y, z = self.origin
-        return (x + i - 1, y + j - 1, z + k - 1)
+        but = rays.NOWHERE
+        if target is not None:
+            but = (target[0] - x + 1, target[1] - y + 1, target[2] - z + 1)
+        i, j, k = rays.blocker(self._scene, but, (start[0], start[1], start[2]), d)
+        return None if i < 0 else (x + i - 1, y + j - 1, z + k - 1)
+
+    @property
+    @abstractmethod
+    def _scene(self) -> "Scene":
+        """Codes of the blocks and their shapes, as kernels take them."""
+
+    def _local(self, points: Points) -> Points:
+        """Return points in the coordinates of the code grid, which has a margin of one cell."""
+        return points + (1.0 - np.array(self.origin))
+
+    def _eye(self, eye: Point, yaw: float, pitch: float) -> "Eye":
+        from beliefnest.perception import beams
+
+        x, y, z = (float(e) + (1 - o) for e, o in zip(eye, self.origin, strict=True))
+        far, cos_half = sight_limits(self.sight.max_visible_distance, self.sight.field_of_view)
+        return beams.eye_of((x, y, z), yaw, pitch, cos_half, far)
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry(SightLines):
+    """A dense grid of blocks prepared for looks; made by `Sight.geometry`.
+
+    Attributes:
+        codes: Shape code of each cell (see the module `codes`), read-only.
+    """
+
+    codes: CodeGrid
+
+    def with_blocks(self, changes: Mapping[Position, int]) -> "Geometry":
+        """Return the geometry with other block states (-1: unknown) at some positions of the grid.
+
+        Raises:
+            InputError: A position lies outside the grid.
+            UnknownNameError: A value is neither a block state id nor -1.
+        """
+        from beliefnest.perception.eyes import change_code
+
+        codes = self.codes.copy()
+        states = self.sight.registry.states
+        for position, state in changes.items():
+            cell = tuple(p - o for p, o in zip(position, self.origin, strict=True))
+            if not all(0 <= c < size - 2 for c, size in zip(cell, codes.shape, strict=True)):
+                raise InputError(f"position {position} lies outside the grid at {self.origin}")
+            _check_states(state, state, states)
+            i, j, k = cell
+            code = int(self.sight.state_codes[state])
+            place = (i + 1, j + 1, k + 1)
+            change_code(codes.reshape(-1), self._scene.sizes, self.sight.reaches, place, code)
+        return Geometry(self.sight, self.origin, codes)
+
+    def visible_blocks(self, eye: Point, yaw: float, pitch: float) -> BoolArray:
+        """Return a mask of the visible blocks of the grid: bool (nx, ny, nz).
+
+        Both ways give the same result. Where light does not get far it is faster to test the few
+        cells that it reaches than to cast the shadows of all blocks.
+        """
+        from beliefnest.perception import eye_loops, shadows
+
+        seer = self._eye(eye, yaw, pitch)
+        lit = self._lit(seer[0])
+        if lit is not None:
+            seen = np.zeros(self.codes.shape, dtype=np.bool_)
+            seen[lit] = eye_loops.seen_blocks(self._scene, seer, np.argwhere(lit))
+        else:
+            noted = shadows.cast_shadows(self._scene, self.sight.reaches, seer[0])
+            seen = eye_loops.seen_grid(self._scene, seer, noted)
+        return seen[1:-1, 1:-1, 1:-1]
 
     @functools.cached_property
     def _scene(self) -> "Scene":
@@ -267,16 +298,35 @@ class Geometry:
             return None
         return light.lit_cells(self._scene, eye, max(shape))
 
-    def _local(self, points: Points) -> Points:
-        """Return points in the coordinates of the code grid, which has a margin of one cell."""
-        return points + (1.0 - np.array(self.origin))
 
-    def _eye(self, eye: Point, yaw: float, pitch: float) -> "Eye":
-        from beliefnest.perception import beams
+@dataclass(frozen=True, eq=False)
+class ChunkGeometry(SightLines):
+    """Chunks of blocks prepared for single looks; the module `chunks` describes them.
 
-        x, y, z = (float(e) + (1 - o) for e, o in zip(eye, self.origin, strict=True))
-        far, cos_half = sight_limits(self.sight.max_visible_distance, self.sight.field_of_view)
-        return beams.eye_of((x, y, z), yaw, pitch, cos_half, far)
+    Attributes:
+        shape: Shape of the box.
+        codes: Shape codes of the chunks, uint16 (n, VOLUME), read-only.
+        rows: By chunk of the box, its row in `codes`.
+    """
+
+    shape: tuple[int, int, int]
+    codes: CodeGrid
+    rows: npt.NDArray[np.int32]
+
+    @functools.cached_property
+    def _scene(self) -> "Scene":
+        from beliefnest.perception.rays import Scene
+
+        x, y, z = (size + 2 for size in self.shape)
+        registry = self.sight.registry
+        return Scene(
+            self.codes.reshape(-1),
+            (x, y, z),
+            registry.shape_start,
+            registry.shape_boxes,
+            self.rows,
+            chunks_of((x, y, z)),
+        )
 
 
 def _share_of_cubes(codes: CodeGrid) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from beliefnest.belief.grounds import AgentBelief
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Sighting, View
-from beliefnest.perception.sight import Geometry
+from beliefnest.perception.sight import SightLines
 from beliefnest.world.values import (
     AGENT_SAMPLE_HEIGHTS,
     BODY_CENTRE_HEIGHT,
@@ -21,7 +21,7 @@ from beliefnest.world.values import (
 
 __all__ = ["sighting_of_agent", "sighting_of_block"]
 
-_Sees = Callable[[Geometry], bool]
+_Sees = Callable[[SightLines], bool]
 
 
 def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position) -> Sighting:
@@ -29,7 +29,7 @@ def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position)
     here = reading.agents[viewer]
     cells = np.array([place])
 
-    def sees(geometry: Geometry) -> bool:
+    def sees(geometry: SightLines) -> bool:
         return bool(geometry.sees_blocks(_eye(here), here.yaw, here.pitch, cells)[0])
 
     name = _block_name(reading, box, place)
@@ -38,8 +38,7 @@ def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position)
     view = _view(reading.geometry, sees)
     look = Sighting(name or "block", place, view, math.dist(_eye(here), centre))
     # The block that is looked at does not block its own rays.
-    without = reading.geometry.with_blocks({place: reading.geometry.sight.registry.air})
-    return _with_blocker(look, reading, box, without, _eye(here), [centre])
+    return _with_blocker(look, reading, box, _eye(here), [centre], place)
 
 
 def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> Sighting:
@@ -49,7 +48,7 @@ def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> S
         return Sighting(other, None, View.PLACE_UNKNOWN)
     feet = np.array([seen.position])
 
-    def sees(geometry: Geometry) -> bool:
+    def sees(geometry: SightLines) -> bool:
         return bool(geometry.sees_agents(_eye(here), here.yaw, here.pitch, feet)[0])
 
     x, y, z = seen.position
@@ -57,10 +56,10 @@ def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> S
     samples = [centre, *((x, y + height, z) for height in AGENT_SAMPLE_HEIGHTS)]
     view = _view(reading.geometry, sees)
     look = Sighting(other, seen.position, view, math.dist(_eye(here), centre))
-    return _with_blocker(look, reading, box, reading.geometry, _eye(here), samples)
+    return _with_blocker(look, reading, box, _eye(here), samples)
 
 
-def _view(geometry: Geometry, sees: _Sees) -> View:
+def _view(geometry: SightLines, sees: _Sees) -> View:
     """Return the result of a look, found by lifting limits one after the other.
 
     The look is `OUTSIDE_VIEW` if it succeeds in all directions, `TOO_FAR` if it succeeds without a
@@ -80,14 +79,14 @@ def _with_blocker(
     look: Sighting,
     reading: NodeView,
     box: Box,
-    geometry: Geometry,
     eye: Point,
     samples: list[Point],
+    target: Position | None = None,
 ) -> Sighting:
     if look.view is not View.BLOCKED:
         return look
     for sample in samples:
-        place = geometry.blocker(eye, sample)
+        place = reading.geometry.blocker(eye, sample, target)
         if place is not None:
             return replace(look, blocker=place, blocker_name=_block_name(reading, box, place))
     return look
@@ -101,5 +100,5 @@ def _eye(agent: AgentBelief) -> Point:
 
 
 def _block_name(reading: NodeView, box: Box, place: Position) -> str | None:
-    state = int(reading.grid[box.index(place)])
+    state = reading.terrain[box.index(place)]
     return None if state < 0 else reading.geometry.sight.registry.name(state)

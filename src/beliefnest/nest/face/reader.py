@@ -7,6 +7,7 @@ from beliefnest.nest.explain.parts import Sighting
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.views import VisiblePart, visible_part
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import BeliefPath
@@ -91,3 +92,14 @@ class Reader:
             if isinstance(target, str):
                 return sighting_of_agent(reading, box, viewer, target)
             return sighting_of_block(reading, box, viewer, target)
+
+    def visible_part(
+        self, key: TimelineKey, path: BeliefPath, tick: int, viewer: str
+    ) -> VisiblePart | None:
+        """Return the blocks that an agent sees in a simulator.
+
+        None: its position is unknown there, or it sees nothing of the box.
+        """
+        with self._recording.turn:
+            reading = self._recording.on(key).state(path, tick)
+            return visible_part(reading, self.history.context.sight, viewer)

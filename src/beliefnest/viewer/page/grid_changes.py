@@ -1,12 +1,13 @@
 """Changes of the blocks of nodes from entry to entry."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.chunk_pool import NOTHING, ChunkPool
+from beliefnest.belief.chunk_pool import ChunkPool
 from beliefnest.belief.node_table import NodeTable
+from beliefnest.viewer.page.runs import Runs, grid_runs, joined
 from beliefnest.world.terrain import SIDE, VOLUME
 
 __all__ = ["Cells", "GridChanges", "States"]
@@ -23,7 +24,7 @@ class GridChanges:
 
     Args:
         table: Table of the nodes.
-        numbers: Numbers of the nodes.
+        numbers: Numbers of the nodes, node 0 among them.
     """
 
     def __init__(self, table: NodeTable, numbers: Iterable[int]) -> None:
@@ -36,9 +37,16 @@ class GridChanges:
         else:
             self._held = _Chunks(table, table.pool, self._numbers)
 
-    def grid(self, number: int) -> States:
-        """Return all blocks of a node now, flat. Do not change them."""
-        return self._table.flat_blocks(number)
+    def beginnings(self, numbers: Sequence[int]) -> Iterator[tuple[Runs, Cells]]:
+        """Yield the runs of each node, and the cells of its false blocks, before any change.
+
+        The runs of node 0 are all of its blocks, those of others its blocks that differ from it.
+        """
+        return self._held.beginnings(numbers)
+
+    def first_states(self, cells: Cells) -> States:
+        """Return the blocks that node 0 had at some cells before any change."""
+        return self._held.first_states(cells)
 
     def states(self, number: int, cells: Cells) -> States:
         """Return the blocks of a node at some cells now."""
@@ -59,6 +67,18 @@ class _Grids:
     def __init__(self, table: NodeTable, numbers: Iterable[int]) -> None:
         self._table = table
         self._held = {number: table.flat_blocks(number).copy() for number in numbers}
+        self._first = self._held[0].copy()
+
+    def beginnings(self, numbers: Sequence[int]) -> Iterator[tuple[Runs, Cells]]:
+        """Yield what `GridChanges.beginnings` does."""
+        for number in numbers:
+            held = self._held[number]
+            runs = grid_runs(held, None if number == 0 else self._first)
+            yield runs, np.flatnonzero(_are_false(held, self._first))
+
+    def first_states(self, cells: Cells) -> States:
+        """Return the blocks that node 0 had at some cells at first."""
+        return self._first[cells]
 
     def changed(self, numbers: Iterable[int]) -> Mapping[int, Cells]:
         """Return the cells of some nodes that changed since the last call."""
@@ -75,40 +95,96 @@ class _Chunks:
 
     def __init__(self, table: NodeTable, pool: ChunkPool, numbers: Iterable[int]) -> None:
         self._table, self._pool = table, pool
-        self._blocks = pool.blocks.copy()
+        self._blocks = pool.blocks[: pool.used].copy()
         rows = table.nodes().rows
         self._rows = {number: rows[number].copy() for number in numbers}
+        self._first = self._rows[0]
+        used, places = np.unique(self._first, return_inverse=True)
+        self._first_blocks, self._first_places = self._blocks[used], places
+
+    def beginnings(self, numbers: Sequence[int]) -> Iterator[tuple[Runs, Cells]]:
+        """Yield what `GridChanges.beginnings` does.
+
+        A slice of chunks with the same rows in several nodes is looked at once.
+        """
+        known: dict[tuple[bool, bytes], list[tuple[Runs, Cells]]] = {}
+        slices: dict[tuple[bool, int, bytes], tuple[Runs, Cells]] = {}
+        across = self._pool.chunks[0]
+        for number in numbers:
+            rows = self._rows[number].reshape(across, -1)
+            key = number == 0, rows.tobytes()
+            if key not in known:
+                parts = []
+                for at in range(across):
+                    mark = number == 0, at, rows[at].tobytes()
+                    if mark not in slices:
+                        slices[mark] = self._slice(at, rows[at], is_own=number == 0)
+                    parts.append(slices[mark])
+                runs, cells = zip(*parts, strict=True)
+                known[key] = [(joined(runs), np.concatenate(cells))]
+            yield from known[key]
+
+    def _slice(self, at: int, rows: npt.NDArray[np.int32], *, is_own: bool) -> tuple[Runs, Cells]:
+        """Return the runs and the false cells of one layer of chunks along x."""
+        across = self._pool.chunks[0]
+        first = self._first.reshape(across, -1)[at]
+        if not is_own and np.array_equal(rows, first):
+            return _NO_RUNS, _NO_CELLS
+        begin, held = self._flat(at, rows)
+        if not len(held):
+            return _NO_RUNS, _NO_CELLS
+        if is_own:
+            return grid_runs(held, None, begin), _NO_CELLS
+        _, real = self._flat(at, first)
+        false = np.flatnonzero(_are_false(held, real)) + begin
+        return grid_runs(held, real, begin), false
+
+    def _flat(self, at: int, rows: npt.NDArray[np.int32]) -> tuple[int, States]:
+        """Return the first cell of a layer of chunks along x, and the blocks of its cells."""
+        (width, height, depth), (_, high, deep) = self._table.context.box.shape, self._pool.chunks
+        cubes = self._blocks[rows].reshape(high, deep, SIDE, SIDE, SIDE)
+        cells = cubes.transpose(2, 0, 3, 1, 4).reshape(SIDE, high * SIDE, deep * SIDE)
+        # Chunks begin one cell before the box.
+        begin, end = max(at * SIDE - 1, 0), min(at * SIDE + SIDE - 1, width)
+        inside = cells[begin + 1 - at * SIDE : end + 1 - at * SIDE, 1 : height + 1, 1 : depth + 1]
+        return begin * height * depth, inside.reshape(-1)
+
+    def first_states(self, cells: Cells) -> States:
+        """Return the blocks that node 0 had at some cells at first."""
+        places = self._table.places(cells)
+        row = self._first_places[places // VOLUME]
+        states: States = self._first_blocks[row, places % VOLUME]
+        return states
 
     def changed(self, numbers: Iterable[int]) -> Mapping[int, Cells]:
         """Return the cells of some nodes that changed since the last call."""
-        rows, blocks = self._table.nodes().rows, self._pool.blocks
-        found, used = {}, []
+        found: dict[int, Cells] = {}
+        blocks = self._pool.blocks[: self._pool.used]
+        is_changed = np.ones(len(blocks), dtype=np.bool_)
+        # Several blocks are compared at once, to find the few rows that differ.
+        is_changed[: len(self._blocks)] = (
+            _words(blocks[: len(self._blocks)]) != _words(self._blocks)
+        ).any(axis=1)
+        rows = self._table.nodes().rows
         for number in numbers:
             before, now = self._rows[number], rows[number].copy()
-            chunks = np.flatnonzero((before != NOTHING) | (now != NOTHING))
-            # Several blocks are compared at once, to find the few chunks that differ.
-            apart = (_words(self._blocks[before[chunks]]) != _words(blocks[now[chunks]])).any(
-                axis=1
-            )
-            chunks = chunks[apart]
-            at = np.flatnonzero(self._blocks[before[chunks]] != blocks[now[chunks]])
+            chunks = np.flatnonzero((before != now) | is_changed[now])
+            held, holds = before[chunks], now[chunks]
+            apart = (_words(self._blocks[held]) != _words(blocks[holds])).any(axis=1)
+            chunks, held, holds = chunks[apart], held[apart], holds[apart]
+            at = np.flatnonzero(self._blocks[held] != blocks[holds])
             found[number] = np.sort(self._cells(chunks[at // VOLUME], at % VOLUME))
             self._rows[number] = now
-            used.append(now)
-        if used:
-            is_used = np.zeros(len(blocks), dtype=np.bool_)
-            is_used[np.concatenate(used)] = True
-            self._keep(np.flatnonzero(is_used))
+        self._keep(blocks, is_changed)
         return found
 
-    def _keep(self, rows: npt.NDArray[np.int64]) -> None:
-        """Copy some rows of the pool."""
-        blocks = self._pool.blocks
+    def _keep(self, blocks: States, is_changed: npt.NDArray[np.bool_]) -> None:
+        """Copy the changed rows of the pool."""
         if len(blocks) > len(self._blocks):
             longer = np.empty_like(blocks)
             longer[: len(self._blocks)] = self._blocks
             self._blocks = longer
-        self._blocks[rows] = blocks[rows]
+        self._blocks[is_changed] = blocks[is_changed]
 
     def _cells(self, chunks: npt.NDArray[np.int64], within: npt.NDArray[np.int64]) -> Cells:
         """Return the cells at some places in chunks, as `NodeTable` numbers them."""
@@ -118,6 +194,16 @@ class _Chunks:
         z = chunks % deep * SIDE + within % SIDE - 1
         cells: Cells = (x * ny + y) * nz + z
         return cells
+
+
+_NO_CELLS: Cells = np.empty(0, dtype=np.int64)
+_NO_RUNS = Runs(_NO_CELLS, _NO_CELLS, np.empty(0, dtype=np.int16))
+
+
+def _are_false(held: States, real: States) -> npt.NDArray[np.bool_]:
+    """Return True where blocks are known and differ from the real ones."""
+    are_false: npt.NDArray[np.bool_] = (held >= 0) & (held != real)
+    return are_false
 
 
 def _words(blocks: States) -> npt.NDArray[np.int64]:

@@ -1,11 +1,11 @@
 """Explanations and lines of sight: single ones on request, or many in advance for a file."""
 
+import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from beliefnest.belief.columns import place_of
 from beliefnest.belief.forest import Forest
@@ -14,14 +14,15 @@ from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.parts import Sighting
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.face.reader import Reader
-from beliefnest.nest.past.views import visible_from
+from beliefnest.nest.past.views import VisiblePart, visible_part
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.viewer.page.runs import numbers_text
 from beliefnest.viewer.page.tracks import Onlooker
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, path_text
-from beliefnest.world.values import Position
+from beliefnest.world.terrain import Terrain
+from beliefnest.world.values import Box, Position
 
 __all__ = ["ahead", "explanation_of", "look_of", "name_of", "sight_of"]
 
@@ -104,7 +105,7 @@ def sight_of(
     reader: Reader, key: TimelineKey, path: BeliefPath, tick: int, viewer: str
 ) -> list[int]:
     """Return an agent's view in a node as lengths of runs of cells: unseen, seen, unseen, ..."""
-    return _runs(reader.simulator(key, path, tick).visible_blocks(viewer).ravel())
+    return _runs(reader.visible_part(key, path, tick, viewer), reader.setting.snapshot.box)
 
 
 def ahead(reader: Reader, about: About, depth: int) -> dict[str, Any]:
@@ -156,7 +157,7 @@ class _Views:
 
     def _look_around(self, info: TimelineInfo, tick: int, reading: NodeView) -> None:
         agents = self._reader.agents
-        grid = hash(reading.grid.tobytes())
+        grid = _fingerprint(reading.terrain)
         cells = sorted(self._reader.history.context.tracked)
         for number, viewer in enumerate(agents):
             name = f"{name_of(info.key, reading.path)} agent-{number}"
@@ -191,7 +192,7 @@ class _Views:
             return self._number("")
         if mark not in self._known:
             sight = self._reader.history.context.sight
-            runs = _runs(visible_from(reading, sight, viewer).ravel())
+            runs = _runs(visible_part(reading, sight, viewer), self._reader.setting.snapshot.box)
             self._known[mark] = self._number(numbers_text(runs))
         number: int = self._known[mark]
         return number
@@ -238,12 +239,14 @@ def _explanations(
     for kind in ("container", "agent"):
         for info, path in wanted:
             for thing in _things(reader, kind) if path else ():
-                rows = []
-                for tick in deeds.get(info.key, [])[: max(0, left)]:
-                    rows.append(explanation_of(reader, info.key, path, tick, thing))
-                    left -= 1
+                ticks = deeds.get(info.key, [])[: max(0, left)]
+                left -= len(ticks)
+                # In order of time, a forest is folded further from tick to tick.
+                rows = [
+                    explanation_of(reader, info.key, path, tick, thing) for tick in reversed(ticks)
+                ]
                 if rows:
-                    found[f"{name_of(info.key, path)} {thing}"] = rows
+                    found[f"{name_of(info.key, path)} {thing}"] = rows[::-1]
     return found
 
 
@@ -270,11 +273,24 @@ def _some(ticks: range, count: int) -> list[int]:
     return [*ticks[:-1:step], ticks[-1]]
 
 
-def _runs(flags: npt.NDArray[np.bool_]) -> list[int]:
-    """Return lengths of runs of equal flags, beginning with a run of false ones."""
-    edges = np.flatnonzero(np.diff(flags, prepend=False, append=not flags[-1]))
+def _runs(part: VisiblePart | None, box: Box) -> list[int]:
+    """Return a view as lengths of runs of cells of the box: unseen, seen, unseen, ..."""
+    cells = math.prod(box.shape)
+    if part is None or not part.seen.any():
+        return [cells]
+    index = np.stack(np.nonzero(part.seen)) + np.array(part.low)[:, None]
+    seen = np.ravel_multi_index(tuple(index), box.shape)
+    firsts = np.flatnonzero(np.diff(seen, prepend=-2) != 1)
+    begins, ends = seen[firsts], seen[np.append(firsts[1:], len(seen)) - 1] + 1
+    edges = np.stack([begins, ends], axis=1).reshape(-1)
     lengths: list[int] = np.diff(edges, prepend=0).tolist()
-    return lengths
+    return lengths if edges[-1] == cells else [*lengths, cells - int(edges[-1])]
+
+
+def _fingerprint(terrain: Terrain) -> int:
+    """Return a number that is the same for equal blocks."""
+    chunks = np.array([hash(chunk.tobytes()) for chunk in terrain.chunks], dtype=np.int64)
+    return hash(chunks[terrain.rows].tobytes())
 
 
 def name_of(key: TimelineKey, path: BeliefPath) -> str:

@@ -7,6 +7,7 @@ in `web/src/runs.js`.
 """
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,10 @@ __all__ = [
     "AS_FIRST",
     "FIRST_STATE",
     "UNKNOWN",
+    "Runs",
+    "grid_runs",
     "grid_text",
+    "joined",
     "numbers_text",
     "runs_text",
     "text_numbers",
@@ -91,25 +95,60 @@ def runs_text(
     return _text(cells[starts], lengths, states[starts], same[starts], number_of)
 
 
-def grid_text(
-    states: npt.NDArray[np.int16],
-    first: npt.NDArray[np.int16] | None,
-    number_of: Callable[[int], int],
-) -> str:
-    """Return the blocks of all cells as `runs_text` does, without those that reality had at first.
+class Runs(NamedTuple):
+    """Runs of equal blocks of a grid, in order.
+
+    Attributes:
+        starts: First cell of each.
+        lengths: Number of cells of each.
+        states: Block of each; -1 unknown.
+    """
+
+    starts: npt.NDArray[np.int64]
+    lengths: npt.NDArray[np.int64]
+    states: npt.NDArray[np.int16]
+
+
+def grid_runs(
+    states: npt.NDArray[np.int16], first: npt.NDArray[np.int16] | None, begin: int = 0
+) -> Runs:
+    """Return the runs of a part of a grid, without cells that have their first block.
 
     Args:
         states: The block of each cell; -1 unknown.
-        first: As for `runs_text`; None: all blocks are written.
-        number_of: As for `runs_text`.
+        first: The blocks that reality had there at first; None: all cells count.
+        begin: Number of the first cell.
     """
     apart = states if first is None else np.where(states == first, _SAME, states)
     starts = np.append(0, np.flatnonzero(apart[1:] != apart[:-1]) + 1)
     lengths = np.diff(starts, append=len(states))
     told = apart[starts] != _SAME
     starts, lengths = starts[told], lengths[told]
-    same = np.zeros(len(starts), dtype=np.bool_)
-    return _text(starts, lengths, states[starts], same, number_of)
+    return Runs(starts + begin, lengths, states[starts])
+
+
+def joined(parts: Sequence[Runs]) -> Runs:
+    """Return the runs of a grid from those of its parts, in order."""
+    starts, lengths, states = (
+        np.concatenate([each[at] for each in parts]) for at in range(len(Runs._fields))
+    )
+    begins = np.ones(len(starts), dtype=np.bool_)
+    begins[1:] = (starts[1:] != starts[:-1] + lengths[:-1]) | (states[1:] != states[:-1])
+    first = np.flatnonzero(begins)
+    if len(first) == len(starts):
+        return Runs(starts, lengths, states)
+    return Runs(starts[first], np.add.reduceat(lengths, first), states[first])
+
+
+def grid_text(runs: Runs, number_of: Callable[[int], int]) -> str:
+    """Return the runs of a grid as `runs_text` does.
+
+    Args:
+        runs: The runs.
+        number_of: As for `runs_text`.
+    """
+    same = np.zeros(len(runs.starts), dtype=np.bool_)
+    return _text(*runs, same, number_of)
 
 
 def _text(

@@ -123,11 +123,11 @@ class TrackRecorder:
         agents = len(reader.agents)
         self._palette = palette
         self._grids = GridChanges(self._forest.table, (0, *self._numbers))
-        self._first = self._grids.grid(0).copy()
-        self.tracks = [
-            Track(path, self._beginning(number), _empty(agents), _empty(agents), _empty(agents))
-            for path, number in zip(paths, self._numbers, strict=True)
-        ]
+        self.tracks, false = [], []
+        for path, (runs, cells) in zip(paths, self._grids.beginnings(self._numbers), strict=True):
+            text = grid_text(runs, palette.number)
+            self.tracks.append(Track(path, text, _empty(agents), _empty(agents), _empty(agents)))
+            false.append(cells)
         count = len(paths)
         self._last = _Last(
             code=np.full((count, agents), -1, dtype=np.int8),
@@ -138,7 +138,7 @@ class TrackRecorder:
             items=[{} for _ in range(count)],
             wrong=[() for _ in range(count)],
         )
-        self._wrong = WrongThings(self._forest, self._numbers, self._grids)
+        self._wrong = WrongThings(self._forest, self._numbers, self._grids, false)
         self._events = 0
         self._note()
 
@@ -211,17 +211,14 @@ class TrackRecorder:
                 pose = (*poses.position(pose_id), *poses.angles(pose_id))
             self._book.add(agent, tick, pose)
 
-    def _beginning(self, number: int) -> str:
-        """Return the blocks of a node at the beginning, as `Track.grid`."""
-        first = None if number == 0 else self._first
-        return grid_text(self._grids.grid(number), first, self._palette.number)
-
     def _note_blocks(self, tick: int, changed: Mapping[int, Cells]) -> None:
         for track, number in zip(self.tracks, self._numbers, strict=True):
             if number in changed:
                 cells = changed[number]
                 states = self._grids.states(number, cells)
-                text = runs_text(cells, states, self._first[cells], self._palette.number)
+                text = runs_text(
+                    cells, states, self._grids.first_states(cells), self._palette.number
+                )
                 track.blocks.append([tick, text])
 
     def _note_agents(self, tick: int) -> None:

@@ -25,12 +25,19 @@ class WrongThings:
         forest: The forest.
         numbers: Numbers of the judged nodes.
         grids: Blocks of these nodes and of node 0.
+        false: Cells of the false blocks of each node at the beginning.
     """
 
-    def __init__(self, forest: Forest, numbers: Sequence[int], grids: GridChanges) -> None:
+    def __init__(
+        self,
+        forest: Forest,
+        numbers: Sequence[int],
+        grids: GridChanges,
+        false: Sequence[Cells],
+    ) -> None:
         self._forest, self._numbers = forest, list(numbers)
         self._grids = grids
-        self._wrong_cells = [self._false_at_first(number) for number in numbers]
+        self._wrong_cells = [set(cells.tolist()) for cells in false]
         self._block_things = [_things_at(cells) for cells in self._wrong_cells]
         self._held: list[Any] = [None for _ in numbers]
         self._content_things: list[Things] = [() for _ in numbers]
@@ -51,10 +58,6 @@ class WrongThings:
                 self._owner_things[at] = self._inventories(number)
         parts = (self._block_things, self._content_things, self._poses(), self._owner_things)
         return [sum(each, ()) for each in zip(*parts, strict=True)]
-
-    def _false_at_first(self, number: int) -> set[int]:
-        held, real = self._grids.grid(number), self._grids.grid(0)
-        return set(np.flatnonzero((held >= 0) & (held != real)).tolist())
 
     def _judge_blocks(self, changed: Mapping[int, Cells]) -> None:
         for at, number in enumerate(self._numbers):
