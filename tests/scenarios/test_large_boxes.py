@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beliefnest.errors import ScenarioError
+from beliefnest.errors import ScenarioError, WorldError
 from beliefnest.scenarios import instances, space
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import read_document
 from beliefnest.world import limits, terrain
 from beliefnest.world.memory import MemoryLimit
 from beliefnest.world.registry import Registry
+from beliefnest.worlds.scripted.world import ScriptedWorld
 
 LOW, SHAPE = (-5, 60, 3), (34, 20, 30)
 STATES = ["stone", "glass", "air", "oak_fence", "lever"]
@@ -200,3 +201,16 @@ initial_beliefs:
         "need 7 MB; this process may use 5 MB, a test's limit: name blocks that everybody knows "
         "in 'static_blocks', or give a smaller part"
     )
+
+
+def test_agents_beyond_the_limit_are_refused_with_file_and_line(tmp_path: Any) -> None:
+    crowd = "".join(f"  a{n}: {{position: [{n + 0.5}, 1, 30.5]}}\n" for n in range(200))
+    assert refused(BIG + crowd, tmp_path) == (
+        ":15: agents: there are 201 agents; at most 200 are possible, because time and memory grow "
+        "with the square of their number: each has a belief about each other. Take some out"
+    )
+    agents = {f"a{n}": (n % 15 + 0.5, 1.0, n // 15 + 0.5) for n in range(201)}
+    with pytest.raises(WorldError, match="there are 201 agents; at most 200 are possible"):
+        ScriptedWorld(((0, 0, 0), (15, 3, 15)), agents=agents)
+    del agents["a7"]
+    assert len(ScriptedWorld(((0, 0, 0), (15, 3, 15)), agents=agents).agents) == 200

@@ -6,7 +6,7 @@ from itertools import combinations
 from beliefnest.scenarios.checks import check_items
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.format import AgentEntry, ScenarioFile
-from beliefnest.world.limits import AGENT_SLOTS, MOST_AGENTS, agent_name_fault
+from beliefnest.world.limits import AGENT_SLOTS, agent_name_fault, agents_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, EYE_HEIGHT, AgentState, Box, Point, block_at
@@ -30,9 +30,8 @@ def build_agents(
 ) -> dict[str, AgentState]:
     """Return the agents by name, each at a free place of its own inside the box."""
     agents: dict[str, AgentState] = {}
-    if len(file.agents) > MOST_AGENTS:
-        found = len(file.agents)
-        raise document.fault(("agents",), f"are {found}; at most {MOST_AGENTS} are possible")
+    if fault := agents_fault(len(file.agents)):
+        raise document.fault(("agents",), fault)
     for name, entry in file.agents.items():
         path = ("agents", name)
         if fault := agent_name_fault(name):

@@ -25,6 +25,7 @@ __all__ = [
     "MOST_HELD",
     "WORN_SLOTS",
     "agent_name_fault",
+    "agents_fault",
     "box_fault",
     "container_slots",
     "items_fault",
@@ -39,6 +40,7 @@ LATEST_TICK = 2**53
 """Latest tick. JavaScript and Python both represent whole numbers up to it exactly."""
 
 MOST_AGENTS = 200
+"""Most agents: that many were tried, with beliefs about beliefs of all of them."""
 
 AGENT_SLOTS = 36
 """Slots of an inventory, without worn items and the off hand."""
@@ -71,6 +73,16 @@ def agent_name_fault(name: object) -> str | None:
     if name == "__proto__":
         return f"{name!r} cannot be the name of an agent: it means something else in JavaScript"
     return None
+
+
+def agents_fault(count: int) -> str | None:
+    """Return the fault of a number of agents, or None."""
+    if count <= MOST_AGENTS:
+        return None
+    return (
+        f"there are {count:,} agents; at most {MOST_AGENTS} are possible, because time and memory "
+        "grow with the square of their number: each has a belief about each other. Take some out"
+    )
 
 
 def box_fault(box: Box, most: int = _MOST_BLOCKS) -> str | None:
@@ -153,10 +165,7 @@ def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
         faults.append(
             f"tick {_short(snapshot.tick)} is out of range; ticks go from 0 to {LATEST_TICK}"
         )
-    if len(snapshot.agents) > MOST_AGENTS:
-        faults.append(
-            f"there are {len(snapshot.agents)} agents; at most {MOST_AGENTS} are possible"
-        )
+    faults.append(agents_fault(len(snapshot.agents)))
     if snapshot.blocks.shape != snapshot.box.shape:
         faults.append(f"blocks of shape {snapshot.blocks.shape} do not fill {snapshot.box.shape}")
     elif not (snapshot.blocks.span[0] >= -1 and snapshot.blocks.span[1] < registry.states):

@@ -11,7 +11,10 @@ import pytest
 from pettingzoo.test import parallel_api_test, parallel_seed_test
 
 import beliefnest as bn
+from beliefnest.belief import context
 from beliefnest.env import parallel_env
+from beliefnest.scenarios.scenario import Scenario
+from beliefnest.world.memory import MemoryLimit
 
 LEFT, RIGHT = (-2, -51, -4), (2, -51, -4)
 
@@ -223,6 +226,39 @@ def test_options_that_make_no_sense_are_refused():
         make(nested=["/anne"])
     with pytest.raises(bn.PathError, match="no agent 'bob' at the start"):
         make(agents=["bob"])
+
+
+def test_what_memory_has_no_room_for_is_refused_before_it_is_made(monkeypatch):
+    most = MemoryLimit(300_000_000, "a test's limit")
+    monkeypatch.setattr(context, "memory_limit", lambda: most)
+    with pytest.raises(
+        bn.InputError, match=r"simulators below /anne to depth .* use 300 MB, a test"
+    ):
+        make(nested=40)
+    make(nested=3).close()
+    agents = {name: {"position": [at + 0.5, 1, 0.5]} for at, name in enumerate(("ann", "bob"))}
+    hall = {"name": "hall", "box": [[0, 0, 0], [999, 99, 999]], "agents": agents}
+    with pytest.raises(bn.InputError) as fault:
+        parallel_env(Scenario.from_mapping(hall))
+    assert str(fault.value) == (
+        "observations as arrays need at least 2,401 MB, 401 MB for each of 2 agents and 0 nested "
+        "beliefs, in a box of 1000 x 100 x 1000 blocks. This process may use 300 MB, a test's "
+        "limit: choose observations='dict', or take fewer agents or a smaller box"
+    )
+    env = parallel_env(Scenario.from_mapping(hall), observations="dict", max_steps=2)
+    env.reset(seed=1)
+    _, *_, infos = env.step({"ann": env.action("goToPosition", position=(30, 1, 20))})
+    assert infos["ann"]["error"].startswith("could not reach")
+    env.close()
+
+
+def test_nested_beliefs_are_those_down_to_a_depth():
+    env = make(nested=3, agents=["sally"])
+    others = [name for name in env.layout.agents if name != "sally"]
+    paths = [("sally", other) for other in others]
+    paths += [(*path, name) for path in paths for name in env.layout.agents if name != path[-1]]
+    assert env._nested == tuple(sorted(paths, key=lambda path: (-len(path), path)))
+    assert make(nested=1)._nested == make(nested=0)._nested == ()
 
 
 def test_without_the_library_it_says_what_to_install():

@@ -1,7 +1,6 @@
 """Scenario as a multi-agent environment with PettingZoo's parallel interface."""
 
 import functools
-import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, cast
@@ -14,16 +13,18 @@ from beliefnest.adapters.pettingzoo.acting import Acting, Deed, ProgramActing, S
 from beliefnest.adapters.pettingzoo.actions import MOST_ITEMS, Call, Calls
 from beliefnest.adapters.pettingzoo.layout import ObservationLayout, Phrases
 from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
+from beliefnest.adapters.pettingzoo.room import check_arrays, check_nested
 from beliefnest.belief.plain import belief_json
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.history import context_of
 from beliefnest.nest.past.setting import Senses
 from beliefnest.owned import Owned
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
+from beliefnest.world.paths import BeliefPath, parse_path, path_text, paths_below
 from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.names import check_world
@@ -158,7 +159,12 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             if name not in scenario.setting.snapshot.agents:
                 there = ", ".join(sorted(scenario.setting.snapshot.agents))
                 raise PathError(f"no agent {name!r} at the start; agents are {there}")
+        context = context_of(scenario.setting)
+        if isinstance(options.nested, int):
+            check_nested(context, self.possible_agents, options.nested)
         self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
+        if options.observations == "arrays":
+            check_arrays(context, self.layout, len(self.possible_agents), len(self._nested))
         self.agents: list[str] = []
         self._seed = options.seed - 1
         self._own = Owned()
@@ -429,11 +435,9 @@ def _nested(
     """Return the paths of the beliefs for the infos, the deepest first."""
     if isinstance(nested, int):
         found = {
-            (first, *rest)
-            for first in acting
-            for depth in range(1, nested)
-            for rest in itertools.product(agents, repeat=depth)
-            if normalised((first, *rest)) == (first, *rest)
+            path
+            for agent in acting
+            for path in paths_below((agent,), max(0, nested - 1), agents)[1:]
         }
     else:
         found = {parse_path(path, agents) for path in nested}

@@ -12,7 +12,6 @@ from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.claims import Claim
 from beliefnest.world.doors import is_door, is_switch
-from beliefnest.world.frames import places_of
 from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Box, Position
@@ -225,6 +224,4 @@ def _power(state: State, place: Position) -> int:
 
 def _places(setting: Setting, states: Sequence[int]) -> list[Position]:
     """Return the positions of blocks with one of some states, in order."""
-    snapshot = setting.snapshot
-    found = np.isin(snapshot.blocks, states)
-    return [place for place, _ in places_of(found, snapshot.box)]
+    return setting.snapshot.places(states)

@@ -1,0 +1,61 @@
+"""Refusal of environments for which memory has no room, before anything is made."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from beliefnest.adapters.pettingzoo.layout import ObservationLayout
+from beliefnest.belief.context import BeliefContext
+from beliefnest.belief.node_memory import check_depth, check_room
+from beliefnest.errors import InputError
+from beliefnest.world.memory import MEGABYTE
+
+__all__ = ["check_arrays", "check_nested"]
+
+_BOUNDS = 2
+"""Arrays of bounds that a space has: the least and the greatest value of each number."""
+
+
+def check_nested(context: BeliefContext, acting: Sequence[str], depth: int) -> None:
+    """Raise InputError if memory has no room for the beliefs of acting agents down to a depth.
+
+    Args:
+        context: The part that all nodes of the nest share.
+        acting: Names of the agents that act.
+        depth: Number of names in the longest paths of beliefs.
+    """
+    for agent in acting:
+        check_depth(context, (agent,), depth - 1)
+    others = len(context.agents) - 1
+    count = 1 + len(acting) * sum(others**deep for deep in range(depth))
+    check_room(context, count, f" to depth {depth}", "choose a smaller depth of nested beliefs")
+
+
+def check_arrays(
+    context: BeliefContext, layout: ObservationLayout, acting: int, nested: int
+) -> None:
+    """Raise InputError if memory has no room for observations as arrays, and for their spaces.
+
+    Args:
+        context: The part that all nodes of the nest share.
+        layout: Layout of the arrays.
+        acting: Number of agents that act.
+        nested: Number of further beliefs in infos.
+    """
+    shapes = layout.shapes().values()
+    each = sum(math.prod(shape) * np.dtype(kind).itemsize for shape, kind, _, _ in shapes)
+    limit, needed = context.memory, each * (acting * (1 + _BOUNDS) + nested)
+    if limit is None or needed <= limit.bytes:
+        return
+    sides = " x ".join(map(str, layout.box.shape))
+    raise InputError(
+        f"observations as arrays need at least {_megabytes(needed)}, {_megabytes(each)} for each "
+        f"of {acting} agents and {nested} nested beliefs, in a box of {sides} blocks. This process "
+        f"may use {_megabytes(limit.bytes)}, {limit.source}: choose observations='dict', or take "
+        "fewer agents or a smaller box"
+    )
+
+
+def _megabytes(size: int) -> str:
+    return f"{-(-size // MEGABYTE):,} MB"
