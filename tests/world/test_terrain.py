@@ -43,6 +43,16 @@ def test_a_terrain_is_what_a_dense_array_is(shape, seed, edits):
     assert made == Terrain.of(wanted)
     assert made.key == Terrain.of(wanted).key
     assert (made.key == first.key) is np.array_equal(wanted, grid)
+    numbers = chance.integers(0, wanted.size, 50)
+    assert np.array_equal(made.at(numbers), wanted.reshape(-1)[numbers])
+    assert made.at(numbers[:0]).tolist() == []
+    parts = list(made.slabs())
+    assert [start for start, _ in parts] == [
+        sum(len(part) for _, part in parts[:number]) for number in range(len(parts))
+    ]
+    assert np.array_equal(np.concatenate([part for _, part in parts]), wanted)
+    both = made.joined(first, lambda a, b: np.where(a == 7, b, a + 1))
+    assert np.array_equal(both.dense(), np.where(wanted == 7, grid, wanted + 1))
     plain = made.canonical()
     assert plain == made
     assert plain.canonical().rows.tolist() == plain.rows.tolist()

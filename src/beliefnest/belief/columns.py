@@ -13,7 +13,7 @@ from beliefnest.world.event_kinds import Sense
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Box, Event, Position, Sign
 
-__all__ = ["Columns", "cell_of", "place_of"]
+__all__ = ["Columns", "cell_of", "cells_between", "place_of"]
 
 
 def cell_of(box: Box, place: Position) -> int:
@@ -28,6 +28,21 @@ def place_of(box: Box, cell: int) -> Position:
     _, ny, nz = box.shape
     x, y, z = box.low
     return (x + cell // (ny * nz), y + cell // nz % ny, z + cell % nz)
+
+
+def cells_between(box: Box, low: Position, high: Position) -> list[int]:
+    """Return the flat cells of a box between two corners, which may lie outside, in order."""
+    i, j, k = np.meshgrid(
+        *(
+            np.arange(max(a, start), min(b, end) + 1) - start
+            for a, b, start, end in zip(low, high, box.low, box.high, strict=True)
+        ),
+        indexing="ij",
+        sparse=True,
+    )
+    _, ny, nz = box.shape
+    found: list[int] = ((i * ny + j) * nz + k).ravel().tolist()
+    return found
 
 
 class Columns:

@@ -7,6 +7,7 @@ from typing import Protocol
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, DroppedItem, Position
 
 __all__ = ["BlockView", "FixedState", "State"]
@@ -31,6 +32,13 @@ class BlockView(Protocol):
     @property
     def grid(self) -> BlockGrid:
         """The block state ids, shape of the box, -1 where unknown. Do not write to it."""
+
+    @property
+    def terrain(self) -> Terrain:
+        """The block state ids, -1 where unknown; in large boxes it takes less memory than `grid`.
+
+        Its indices are those of `grid`.
+        """
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Return known blocks whose name is one of `names`, in order of position."""

@@ -11,7 +11,13 @@ from beliefnest.belief.view import State
 from beliefnest.prompts import event_rows, text
 from beliefnest.prompts.filterset import FilterSet, filter
 from beliefnest.prompts.memory_filters import FILTERS
-from beliefnest.prompts.simulator_view import BranchView, belief_of, believed_agent, owner_of
+from beliefnest.prompts.simulator_view import (
+    BranchView,
+    belief_of,
+    believed_agent,
+    blocks_where,
+    owner_of,
+)
 from beliefnest.prompts.story_filters import FILTERS as STORY_FILTERS
 from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.values import EQUIPMENT_SLOTS, Position
@@ -302,10 +308,8 @@ def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[P
     """Return positions of known blocks by name, sorted; requested names may have none."""
     if names is None:
         grouped: dict[str, list[Position]] = {}
-        for at in state.blocks:
-            block = state.blocks[at]
-            if block is not None and block_name(block) not in _AIRS:
-                grouped.setdefault(block_name(block), []).append(at)
+        for at, block in blocks_where(state, lambda block: block_name(block) not in _AIRS):
+            grouped.setdefault(block_name(block), []).append(at)
         return {name: sorted(grouped[name]) for name in sorted(grouped)}
     wanted = [name.removeprefix("minecraft:") for name in _strings(names)]
     grouped = {name: [] for name in wanted}

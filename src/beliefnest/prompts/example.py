@@ -18,6 +18,7 @@ from beliefnest.prompts.observations import Found, Happened, Observation, Outset
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, EventKind, Position
 
 __all__ = ["ExampleBlocks", "ExampleBranch", "example_branch"]
@@ -77,6 +78,11 @@ class ExampleBlocks:
         for at, block in self.known.items():
             grid[self.box.index(at)] = Registry.load().state_id(block)
         return grid
+
+    @property
+    def terrain(self) -> Terrain:
+        """Block state ids, -1 where unknown."""
+        return Terrain.of(self.grid)
 
     def current(self, position: Position) -> bool:
         """Return True if the block is seen at this tick."""

@@ -4,7 +4,7 @@ from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, Perce
 from beliefnest.belief.view import State
 from beliefnest.prompts import text
 from beliefnest.prompts.filterset import filter
-from beliefnest.prompts.simulator_view import BranchView
+from beliefnest.prompts.simulator_view import BranchView, blocks_where
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.event_words import skill_of
 from beliefnest.world.registry import block_name, parse_state
@@ -79,15 +79,11 @@ def mechanisms(branch: BranchView) -> str:
     """
     state = branch.state
     lines = []
-    for at in state.blocks:
-        block = state.blocks[at]
-        stands = None if block is None else _stands(block)
-        if block is not None and stands is not None:
-            basis = state.blocks.basis(at)
-            came = "" if basis is None else f"; {_memory_of_block(state, at, basis)}"
-            lines.append(
-                f"{text.position(at)} {block_name(block)}: {stands}{came}{_use(state, at)}"
-            )
+    for at, block in blocks_where(state, lambda block: _stands(block) is not None):
+        basis = state.blocks.basis(at)
+        came = "" if basis is None else f"; {_memory_of_block(state, at, basis)}"
+        stands = _stands(block)
+        lines.append(f"{text.position(at)} {block_name(block)}: {stands}{came}{_use(state, at)}")
     return "\n".join(lines) or text.NOT_OBSERVED
 
 

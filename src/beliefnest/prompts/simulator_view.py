@@ -1,6 +1,6 @@
 """Read-only view of simulators for prompts: states, and beliefs of agents."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Protocol
 
 from beliefnest.belief.grounds import AgentBelief
@@ -8,9 +8,10 @@ from beliefnest.belief.view import State
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.prompts.observations import Observation
 from beliefnest.prompts.text import nearest
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["BranchView", "belief_of", "believed_agent", "owner_of"]
+__all__ = ["BranchView", "belief_of", "believed_agent", "blocks_where", "owner_of"]
 
 
 class BranchView(Protocol):
@@ -38,6 +39,16 @@ class BranchView(Protocol):
 
     def child(self, agent: str) -> "BranchView":
         """Return the simulator of an agent's belief; for the owner, this simulator itself."""
+
+
+def blocks_where(state: State, accepts: Callable[[str], bool]) -> Iterator[tuple[Position, str]]:
+    """Yield the known blocks whose text a function accepts, in order of position."""
+    registry, terrain = Registry.load(), state.blocks.terrain
+    texts = {number: registry.text(number) for number in terrain.states if number >= 0}
+    wanted = [number for number, text in texts.items() if accepts(text)]
+    x, y, z = state.box.low
+    for i, j, k in terrain.find(wanted).tolist():
+        yield (x + i, y + j, z + k), texts[terrain[i, j, k]]
 
 
 def owner_of(state: State) -> str:

@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
+import numpy as np
+
 from beliefnest.timeline.journal import Edit, Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.claims import Claim, claims_from_plain, claims_written
-from beliefnest.world.frames import Frame, Snapshot, places_of
+from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state
@@ -230,13 +232,24 @@ def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) 
 def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
     """Yield the rows of a timeline's first state; air has no rows."""
     place = _place(key, FIRST_ENTRY, snapshot.tick)
-    solid = places_of(snapshot.blocks.dense() != registry.air, snapshot.box)
-    cells = ((place, snapshot.block(place)) for place, _ in solid)
     claims = {at: claims_from_plain(plain) for at, plain in snapshot.sign_claims.items()}
-    yield from _block_rows(place, cells, claims, registry, None)
+    yield from _block_rows(place, _solid(snapshot, registry), claims, registry, None)
     yield from _container_rows(place, snapshot.containers.items(), None)
     yield from _agent_rows(place, snapshot.agents.items())
     yield from _item_rows(place, snapshot.items.items())
+
+
+def _solid(snapshot: Snapshot, registry: Registry) -> Iterator[tuple[Position, Block]]:
+    """Yield the blocks of a snapshot other than air, in order of position."""
+    x, y, z = snapshot.box.low
+    for first, states in snapshot.blocks.slabs():
+        solid = states != registry.air
+        for (i, j, k), state in zip(
+            np.argwhere(solid).tolist(), states[solid].tolist(), strict=True
+        ):
+            place = (x + first + i, y + j, z + k)
+            is_written = place in snapshot.signs
+            yield place, Sign(state, snapshot.signs[place]) if is_written else state
 
 
 def run_row(run: RunRecord, versions: Sequence[Mapping[str, str]]) -> Row:

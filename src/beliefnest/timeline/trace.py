@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 import msgspec
-import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import decode_json, open_regular
@@ -235,15 +234,14 @@ class _Reader:
             registry.item_stack(name)
         self.unique = frozenset(name.removeprefix("minecraft:") for name in line.unique)
         self._tick = line.tick
-        blocks = np.zeros(self._box.shape, dtype=np.int32)
+        self._grid = Terrain.full(self._box.shape, registry.air).draft()
         for low, high, text in line.fills:
             (x0, y0, z0), (x1, y1, z1) = (self._index(low), self._index(high))
             if min(Box(low, high).shape) < 1:
                 raise InputError(f"fill {low} to {high} is empty; give its lower corner first")
-            blocks[x0 : x1 + 1, y0 : y1 + 1, z0 : z1 + 1] = registry.state_id(text)
+            self._grid.fill((x0, y0, z0), (x1 + 1, y1 + 1, z1 + 1), registry.state_id(text))
         for place, state in self._blocks(line.blocks).items():
-            blocks[self._box.index(place)] = state
-        self._grid = blocks.copy()
+            self._grid[self._box.index(place)] = state
         signs = self._signs(((at.x, at.y, at.z, at.text) for at in line.signs), {})
         containers = self._containers(line.containers, {})
         self._agents: dict[str, AgentState | None] = {}
@@ -251,7 +249,7 @@ class _Reader:
         self.first = Snapshot(
             line.tick,
             self._box,
-            Terrain.of(blocks),
+            self._grid.terrain(),
             {place: items for place, items in containers.items() if items is not None},
             {name: agent for name, agent in self._agents.items() if agent is not None},
             {n: item for n, item in self._entities(line.items).items() if item is not None},
@@ -302,7 +300,7 @@ class _Reader:
         signs = {}
         for x, y, z, text in lines:
             place = (x, y, z)
-            state = changed.get(place, int(self._grid[self._index(place)]))
+            state = changed.get(place, self._grid[self._index(place)])
             try:
                 signs[place] = written(self._registry, state, text)
             except InputError as fault:
@@ -331,7 +329,7 @@ class _Reader:
         contents: dict[Position, Items | None] = {}
         for x, y, z, items in lines:
             place = (x, y, z)
-            state = changed.get(place, int(self._grid[self._index(place)]))
+            state = changed.get(place, self._grid[self._index(place)])
             name = self._registry.name(state)
             if items is not None and not self._registry.is_container(name):
                 raise InputError(f"the block at {place} is {name}, which holds no items")
@@ -409,7 +407,7 @@ class _Reader:
     def _check_place(
         self, kind: EventKind, place: Position, changed: Mapping[Position, int]
     ) -> None:
-        before = int(self._grid[self._index(place)])
+        before = self._grid[self._index(place)]
         states = (before, changed.get(place, before))
         names = [self._registry.name(state) for state in states]
         if kind in AT_CONTAINERS and not any(map(self._registry.is_container, names)):

@@ -22,6 +22,7 @@ __all__ = [
     "DENSE",
     "SIDE",
     "VOLUME",
+    "Change",
     "Chunks",
     "Counts",
     "Draft",
@@ -49,6 +50,7 @@ States = npt.NDArray[np.int32]
 """Block state ids along x, y, z."""
 
 Counts = Callable[[States, States], npt.NDArray[np.bool_]]
+Change = Callable[[States, States], npt.NDArray[np.signedinteger[Any]]]
 
 _MARGIN = 1
 _SPARE = 256
@@ -220,6 +222,32 @@ class Terrain:
         found.setflags(write=False)
         return found
 
+    def at(self, cells: npt.NDArray[np.integer[Any]]) -> States:
+        """Return the states of the cells with some numbers (n,), counted as in a dense array."""
+        found: States
+        if self.is_dense:
+            found = self.chunks[0].reshape(-1)[cells]
+            return found
+        (_, ny, nz), (_, high, deep) = self.shape, self.lattice.counts
+        i, j, k = (
+            part.astype(np.int64) + _MARGIN
+            for part in (cells // (ny * nz), cells // nz % ny, cells % nz)
+        )
+        rows = self.rows[(i // SIDE * high + j // SIDE) * deep + k // SIDE]
+        used, places = np.unique(rows, return_inverse=True)
+        chunks = np.array([self.chunks[row] for row in used.tolist()], dtype=np.int32)
+        found = chunks.reshape(-1, SIDE, SIDE, SIDE)[
+            places.reshape(-1), i % SIDE, j % SIDE, k % SIDE
+        ]
+        return found
+
+    def slabs(self) -> Iterator[tuple[int, States]]:
+        """Yield the box in parts along x: number of the first layer, and states of the layers."""
+        _, y, z = self.shape
+        for number, first, last in self.lattice.ranges((0, 0, 0), self.shape)[0]:
+            start = 0 if self.is_dense else number * SIDE - _MARGIN
+            yield start + first, self.cut((start + first, 0, 0), (start + last, y, z))
+
     def dense(self) -> States:
         """Return the states of all cells, read-only; takes 4 bytes for each cell of the box."""
         return self.chunks[0] if self.is_dense else self.cut((0, 0, 0), self.shape)
@@ -341,6 +369,8 @@ class Terrain:
 
     def find(self, states: Collection[int]) -> npt.NDArray[np.intp]:
         """Return the indices (n, 3) of the cells with one of some states, in order."""
+        if self.is_dense:
+            return np.argwhere(np.isin(self.chunks[0], list(states)))
         masks: npt.NDArray[np.bool_] = np.isin(np.stack(self.chunks), list(states))
         found = [np.empty((0, 3), dtype=np.intp)]
         has = masks.reshape(len(masks), -1).any(axis=1)
@@ -383,6 +413,22 @@ class Terrain:
             changed.setflags(write=False)
             chunks.append(changed)
         return Terrain(self.shape, self.rows, chunks)
+
+    def joined(self, other: "Terrain", change: Change) -> "Terrain":
+        """Return the terrain with states that depend on those of the cell here and in another."""
+        if self.is_dense is not other.is_dense:
+            raise AssertionError("the terrains are cut differently")
+        count = len(other.chunks)
+        pairs = self.rows.astype(np.int64) * count + other.rows
+        # Many places have the same pair of chunks, which are joined once.
+        each, places = np.unique(pairs, return_inverse=True)
+        chunks = []
+        for pair in each.tolist():
+            made = change(self.chunks[pair // count], other.chunks[pair % count])
+            made = made.astype(np.int32, copy=False)
+            made.setflags(write=False)
+            chunks.append(made)
+        return Terrain(self.shape, places.reshape(-1).astype(np.int32), chunks)
 
     def draft(self) -> "Draft":
         """Return a copy that can be changed."""

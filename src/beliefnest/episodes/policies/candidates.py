@@ -85,7 +85,7 @@ def is_news(
             if known is None or not known.items.get(claim.item, 0):
                 return True
         elif claim.state is not None:
-            state = int(view.grid[box.index(claim.cell)])
+            state = view.terrain[box.index(claim.cell)]
             if state < 0 or not agrees(registry.text(state), claim.state):
                 return True
     return False

@@ -62,11 +62,11 @@ class BeliefFacts(ViewFacts):
     def __init__(self, mind: Imagination, path: BeliefPath) -> None:
         view = mind.view(path)
         super().__init__(view)
-        self._box, self._blocks = mind.world.box, view.grid
+        self._box, self._blocks = mind.world.box, view.terrain
 
     def block(self, place: Position) -> str | None:
         """Return the text of a block state; None: unknown."""
-        state = int(self._blocks[self._box.index(place)])
+        state = self._blocks[self._box.index(place)]
         return None if state < 0 else Registry.load().text(state)
 
 

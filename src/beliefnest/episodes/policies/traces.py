@@ -14,8 +14,8 @@ from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
 from beliefnest.episodes.policies.course_planner import Bounds, Planner
 from beliefnest.nest.acting.imagination import Imagination, Performer
-from beliefnest.world.frames import BlockGrid, places_of
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position
 
 __all__ = ["likelihoods_of_traces"]
@@ -31,7 +31,7 @@ class _Moment:
     """World from a tick on."""
 
     tick: int
-    blocks: BlockGrid
+    blocks: Terrain
     containers: Mapping[Position, Items]
 
 
@@ -76,8 +76,8 @@ class _Found:
     def __init__(self, state: State, start: Imagination) -> None:
         self._state, known = state, start.view()
         self._known = known.containers
-        self.first = _Moment(start.tick, known.grid, _items(known.containers))
-        self.now = _Moment(state.tick, state.blocks.grid, _items(state.containers))
+        self.first = _Moment(start.tick, known.terrain, _items(known.containers))
+        self.now = _Moment(state.tick, state.blocks.terrain, _items(state.containers))
         self._watched = {
             event.detail.get("position")
             for event in state.events
@@ -86,12 +86,13 @@ class _Found:
 
     def changed(self, moment: _Moment) -> set[Position]:
         """Return the places at which a moment differs from the agent's first belief."""
-        differ = (self.first.blocks >= 0) & (moment.blocks != self.first.blocks)
+        first, (x, y, z) = self.first.blocks, self._state.box.low
+        differ = first.differing(moment.blocks, lambda held, _: held >= 0)
         blocks = {
-            place
-            for place, index in places_of(differ, self._state.box)
+            (x + i, y + j, z + k)
+            for i, j, k in differ.tolist()
             # The upper half of a door moves with the lower one.
-            if _half(int(self.first.blocks[index])) != "upper"
+            if _half(first[i, j, k]) != "upper"
         }
         held = moment.containers
         return blocks | {at for at, items in self.first.containers.items() if held.get(at) != items}
@@ -109,7 +110,7 @@ class _Found:
         if basis is None or basis.source not in _PERCEIVED or self.first.blocks[index] < 0:
             return False
         then = _at(course, basis.observed_at).blocks[index]
-        return bool(then != self.now.blocks[index])
+        return then != self.now.blocks[index]
 
     def _content_differs(self, course: Sequence[_Moment], place: Position) -> bool:
         found, known = self._state.containers.get(place), self._known.get(place)
@@ -151,7 +152,7 @@ def _course(
 
 def _moment(mind: Imagination, tick: int) -> _Moment:
     held = {place: dict(items) for place, items in mind.world.containers.items()}
-    return _Moment(tick, mind.world.blocks, held)
+    return _Moment(tick, mind.world.terrain, held)
 
 
 def _at(course: Sequence[_Moment], tick: int) -> _Moment:

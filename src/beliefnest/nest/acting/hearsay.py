@@ -8,15 +8,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Protocol
 
-import numpy as np
-
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.doors import is_door, is_switch
-from beliefnest.world.frames import Frame, places_of
+from beliefnest.world.frames import Frame
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import block_name
@@ -125,11 +123,14 @@ def _nameable(setting: Setting, history: History, seen: NodeView) -> Nameable:
 
 def _fittings(history: History, seen: NodeView) -> dict[Position, int]:
     """Return the containers, doors and switches of a simulator, as block states."""
-    registry, blocks = history.context.registry, seen.grid
+    registry, box = history.context.registry, history.context.box
     states = []
-    for state in np.unique(blocks):
-        name = registry.name(int(state)) if state >= 0 else ""
+    for state in seen.terrain.states:
+        name = registry.name(state) if state >= 0 else ""
         if name and (registry.is_container(name) or is_door(name) or is_switch(name)):
             states.append(state)
-    found = places_of(np.isin(blocks, states), history.context.box)
-    return {place: int(blocks[index]) for place, index in found}
+    x, y, z = box.low
+    return {
+        (x + i, y + j, z + k): seen.terrain[i, j, k]
+        for i, j, k in seen.terrain.find(states).tolist()
+    }

@@ -24,8 +24,8 @@ from beliefnest.perception.sight import Geometry, Sight
 from beliefnest.skills.calls import OPEN_CONTAINER, Call
 from beliefnest.world.frames import BlockGrid, Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
-from beliefnest.world.registry import Registry
-from beliefnest.world.terrain import Terrain
+from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.terrain import States, Terrain
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position, block_at
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
@@ -86,8 +86,8 @@ class Imagination:
         forest: The nodes, the believer's own first, used by this imagination alone. None: beliefs
             in this world are not followed.
         root: Path of the believer.
-        unknown: bool in the box's shape: blocks unknown to the believer. Agents can be in them and
-            stand on them.
+        believed: Block states that the believer believes at the start, -1 unknown. Agents can be in
+            unknown blocks and stand on them.
         world: The world with the believed state.
         grounds: Cache of walkable ground by blocks, shared by forks.
         news: Events for the forest.
@@ -106,7 +106,7 @@ class Imagination:
         self,
         forest: Forest | None,
         root: BeliefPath,
-        unknown: "np.ndarray[tuple[int, int, int], np.dtype[np.bool_]]",
+        believed: Terrain,
         world: ScriptedWorld,
         grounds: dict[bytes, Ground],
         news: _News,
@@ -118,9 +118,9 @@ class Imagination:
         self.world = world
         self.happened: list[tuple[int, Event]] = []
         self._forest = forest
-        self._unknown = unknown
+        self._believed = believed
         self._grounds = grounds
-        self._ground: tuple[BlockGrid, Ground] | None = None
+        self._ground: tuple[Terrain, Ground] | None = None
         self._geometry: tuple[BlockGrid, Geometry] | None = None
         self._switches: tuple[Terrain, Sequence[Position]] | None = None
         self._news = news
@@ -167,7 +167,7 @@ class Imagination:
         sight = source.context.sight
         unseen = frozenset(name for name, each in believed.agents.items() if not each.current)
         start = (unseen, {name: state.position for name, state in world.agents.items()})
-        return cls(forest, root, believed.grid < 0, world, known, news, sight, start, speech)
+        return cls(forest, root, believed.terrain, world, known, news, sight, start, speech)
 
     @property
     def tick(self) -> int:
@@ -177,7 +177,7 @@ class Imagination:
     def is_unknown(self, place: Position) -> bool:
         """Return True if the believer does not know the block at a position of the box."""
         index = self.world.box.index(place)
-        return bool(self._unknown[index]) and int(self.world.blocks[index]) == 0
+        return self._believed[index] < 0 and self.world.terrain[index] == 0
 
     def may_reach(self, agent: str, place: Position) -> bool:
         """Return False if an agent certainly cannot get within reach of a block.
@@ -272,7 +272,7 @@ class Imagination:
         made = Imagination(
             forest,
             self.root,
-            self._unknown,
+            self._believed,
             self.world.again(),
             self._grounds,
             news,
@@ -387,16 +387,14 @@ class Imagination:
                 del performer.calls[0]
 
     def _standing(self) -> Ground:
-        blocks = self.world.blocks
+        blocks = self.world.terrain
         if self._ground is None or self._ground[0] is not blocks:
-            unknown = self._unknown & (blocks == 0)
-            grid = np.where(unknown, -1, blocks)
-            key = grid.tobytes()
-            if key not in self._grounds:
+            known = blocks.joined(self._believed, _where_unknown)
+            if known.key not in self._grounds:
                 if len(self._grounds) >= _MOST_GROUNDS:
                     self._grounds.clear()
-                self._grounds[key] = Ground(Registry.load(), self.world.box, grid)
-            self._ground = (blocks, self._grounds[key])
+                self._grounds[known.key] = Ground(Registry.load(), self.world.box, known)
+            self._ground = (blocks, self._grounds[known.key])
         return self._ground[1]
 
     def _is_lost(self, name: str) -> bool:
@@ -443,6 +441,11 @@ class Imagination:
         return forest
 
 
+def _where_unknown(blocks: States, believed: States) -> States:
+    """Return the blocks of a world, -1 where the believer knows none and the world has air."""
+    return np.where((believed < 0) & (blocks == AIR), np.int32(-1), blocks)
+
+
 @cache
 def _in_reach(place: Position) -> InReach:
     return InReach(place, REACH)
@@ -457,7 +460,7 @@ def _print(view: NodeView) -> tuple[object, ...]:
         (name, each.position, each.yaw, each.pitch, each.current, *sorted(each.inventory.items()))
         for name, each in view.agents.items()
     ]
-    return (view.numbers.dense().tobytes(), tuple(contents), tuple(agents))
+    return (view.numbers.key, tuple(contents), tuple(agents))
 
 
 def _skipped(performers: Mapping[str, Performer]) -> int:

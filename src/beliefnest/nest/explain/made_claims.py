@@ -247,7 +247,7 @@ def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool
 
 
 def _block(held: NodeView, context: BeliefContext, place: Position) -> str | None:
-    state = int(held.grid[context.box.index(place)])
+    state = held.terrain[context.box.index(place)]
     return None if state < 0 else context.registry.text(state)
 
 

@@ -4,8 +4,6 @@ import warnings
 from collections.abc import Sequence
 from random import Random
 
-import numpy as np
-
 from beliefnest.belief.columns import cell_of
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.course_agreement import Agreement, Tolerance, Witness
@@ -21,8 +19,8 @@ from beliefnest.nest.past.percepts import Percept, percepts_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.timeline.side import SideJournal
-from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Block, Position
 from beliefnest.world.words import counted
 
@@ -93,21 +91,18 @@ def imagine_in(
 
 
 def _filled(
-    recording: Recording, believed: BlockGrid, percepts: Sequence[tuple[Percept, BlockGrid]]
+    recording: Recording, believed: Terrain, percepts: Sequence[tuple[Percept, Terrain]]
 ) -> dict[Position, Block]:
     """Return blocks that were unknown at first, as they were when they were seen first."""
-    unknown = believed < 0
-    if not unknown.any():
+    if believed.span[0] >= 0:
         return {}
     filled: dict[Position, Block] = {}
-    box = recording.box
+    x, y, z = recording.box.low
+    known = believed.draft()
     for _, blocks in percepts[1:]:
-        new = np.argwhere(unknown & (blocks >= 0))
-        for index in new.tolist():
-            i, j, k = index
-            x, y, z = box.low
-            filled[x + i, y + j, z + k] = int(blocks[i, j, k])
-        unknown &= blocks < 0
+        new = blocks.differing(known.terrain(), lambda held, before: (before < 0) & (held >= 0))
+        for i, j, k in new.tolist():
+            known[i, j, k] = filled[x + i, y + j, z + k] = blocks[i, j, k]
     return filled
 
 

@@ -256,8 +256,8 @@ class Simulator(ShownSimulator):
             for position, text in (blocks or {}).items()
         }
         for position, text in (signs or {}).items():
-            held = self._recording.state(self._path).grid[box.index(position)]
-            state = plain_state(states.get(position, int(held)))
+            held = self._recording.state(self._path).terrain[box.index(position)]
+            state = plain_state(states.get(position, held))
             states[position] = written(registry, state, text)
         for items in (containers or {}).values():
             for name, count in items.items():

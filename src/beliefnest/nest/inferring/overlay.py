@@ -9,8 +9,6 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from beliefnest.belief.grounds import AgentBelief, ContainerBelief, PerceivedEvent
 from beliefnest.belief.holdings import changed_items
 from beliefnest.belief.node_view import NodeView
@@ -193,7 +191,7 @@ class Overlay:
 
     def digest(self, view: NodeView) -> bytes:
         """Return a digest of everything on which `worlds` and the node's items depend."""
-        digest = hashlib.blake2b(np.ascontiguousarray(view.grid).tobytes())
+        digest = hashlib.blake2b(view.terrain.key)
         parts = (
             self._box,
             list(self._blocks.items()),
@@ -216,7 +214,7 @@ class Overlay:
     def _read(self, view: NodeView) -> _Held:
         agents = view.agents
         return _Held(
-            {place: int(view.grid[self._box.index(place)]) for place in self._blocks},
+            {place: view.terrain[self._box.index(place)] for place in self._blocks},
             {place: view.containers.get(place) for place in self._contents},
             {name: (pose_of(agents[name]), agents[name].current) for name in self._feet},
         )

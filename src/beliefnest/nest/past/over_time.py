@@ -3,14 +3,12 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from beliefnest.belief.view import State
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
-from beliefnest.world.frames import BlockGrid, places_of
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
 __all__ = ["Moment", "each_tick", "over_time"]
@@ -45,12 +43,11 @@ def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
     for info in recording.journal.timelines():
         if path[: len(info.key.path)] != info.key.path:
             continue
-        before = np.full(box.shape, -1, dtype=np.int32)
+        before = Terrain.full(box.shape, -1)
         for tick, entries in _places(recording.journal, info).items():
             state = recording.history.state(info.key, path, entries, tick)
-            grid = state.grid.copy()
-            yield Moment(info.key, tick, state, _changed(before, grid, box, registry))
-            before = grid
+            yield Moment(info.key, tick, state, _changed(before, state.terrain, box, registry))
+            before = state.terrain
 
 
 def each_tick(
@@ -88,9 +85,11 @@ def _places(journal: Journal, info: TimelineInfo) -> dict[int, int]:
 
 
 def _changed(
-    before: BlockGrid, after: BlockGrid, box: Box, registry: Registry
+    before: Terrain, after: Terrain, box: Box, registry: Registry
 ) -> dict[Position, str | None]:
+    x, y, z = box.low
+    found = ((index, after[index]) for index in map(tuple, after.differing(before).tolist()))
     return {
-        place: None if after[index] < 0 else registry.text(int(after[index]))
-        for place, index in places_of(before != after, box)
+        (x + i, y + j, z + k): None if state < 0 else registry.text(state)
+        for (i, j, k), state in found
     }

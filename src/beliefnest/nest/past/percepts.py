@@ -5,24 +5,25 @@ dropped items, and agents with their cells. If nothing changed for the owner at 
 percept before still holds.
 """
 
+import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.columns import cell_of
+from beliefnest.belief.columns import cell_of, cells_between
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.event_kinds import AT_CONTAINERS
-from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import EventKind, Items, Point, Position, block_at
+from beliefnest.world.terrain import Terrain
+from beliefnest.world.values import EYE_HEIGHT, EventKind, Items, Point, Position, block_at
 
 __all__ = ["Deed", "Percept", "deed_of", "percepts_of"]
 
@@ -77,7 +78,7 @@ def deed_of(kind: EventKind, actor: str, detail: Mapping[str, Any]) -> Deed:
 
 def percepts_of(
     recording: Recording, path: BeliefPath, start: ForkPoint, until: ForkPoint
-) -> list[tuple[Percept, BlockGrid]]:
+) -> list[tuple[Percept, Terrain]]:
     """Return the percepts of a node's owner, each with the blocks that it believed.
 
     Args:
@@ -86,7 +87,7 @@ def percepts_of(
         start: The moment of the first percept.
         until: The moment of the last percept.
     """
-    found: list[tuple[Percept, BlockGrid]] = []
+    found: list[tuple[Percept, Terrain]] = []
     for percept, blocks in _read(recording, path, start, until):
         if not found or percept.is_new_after(found[-1][0]):
             found.append((percept, blocks))
@@ -95,7 +96,7 @@ def percepts_of(
 
 def _read(
     recording: Recording, path: BeliefPath, start: ForkPoint, until: ForkPoint
-) -> Iterator[tuple[Percept, BlockGrid]]:
+) -> Iterator[tuple[Percept, Terrain]]:
     journal, history = recording.journal, recording.history
     stretches = recording.stretches(until)
     first = next(n for n, each in enumerate(stretches) if each.timeline == start.timeline)
@@ -116,13 +117,12 @@ def _read(
                 events = forest.count_of_events
 
 
-def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[Percept, BlockGrid]:
+def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[Percept, Terrain]:
     view, context = NodeView(forest, path), forest.context
     owner = path[-1] if path else None
     agents = view.agents
-    blocks = view.grid.reshape(-1)
     present = owner is None or agents[owner].current
-    seen = forest.current_blocks(path, range(len(blocks))) if present else set()
+    seen = forest.current_blocks(path, _in_reach(forest, path)) if present else set()
     cells = np.array(sorted(seen), dtype=np.int64)
     contents = {
         place: dict(held.items)
@@ -145,14 +145,27 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
         tick,
         present,
         cells,
-        blocks[cells],
+        view.terrain.at(cells),
         contents,
         {name: _pose(agent) for name, agent in agents.items() if agent.current},
         lying,
         tuple(sorted(deeds)),
         events,
     )
-    return percept, view.grid
+    return percept, view.terrain
+
+
+def _in_reach(forest: Forest, path: BeliefPath) -> Iterable[int]:
+    """Return cells among which are all whose block is current in a node; its owner is present."""
+    context, far = forest.context, forest.context.options.max_visible_distance
+    feet = forest.feet(path[:-1], path[-1]) if path else None
+    if context.is_dense or far is None or feet is None:
+        return range(context.cells)
+    eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])
+    x, y, z = (math.floor(at) for at in eye)
+    reach = math.ceil(far) + 1
+    low, high = (x - reach, y - reach, z - reach), (x + reach, y + reach, z + reach)
+    return cells_between(context.box, low, high)
 
 
 def _pose(agent: AgentBelief) -> tuple[Point, float, float]:

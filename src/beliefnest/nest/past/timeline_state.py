@@ -4,25 +4,25 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-import numpy as np
-
-from beliefnest.belief.columns import cell_of
+from beliefnest.belief.columns import cell_of, cells_between, place_of
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis
 from beliefnest.belief.node_view import NodeView, Part
 from beliefnest.pictures.words import state_words
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
-from beliefnest.world.frames import BlockGrid, places_of
+from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Position
 
 __all__ = ["GroundsSource", "TimelineState"]
 
 # After this many questions about single blocks, or in a box of at most this many cells, all blocks
-# are computed at once.
+# are computed at once. In a box whose nodes hold chunks it is those of a cube with this edge.
 _FEW = 4
 _SMALL = 1024
+_AROUND = 32
 
 _PARTS = (
     *("path", "tick", "box", "blocks", "signs", "containers", "agents", "items"),
@@ -52,10 +52,10 @@ class _Grounds:
     """Grounds of a node's blocks, computed on demand."""
 
     def __init__(
-        self, source: GroundsSource, moment: ForkPoint, path: BeliefPath, cells: int
+        self, source: GroundsSource, moment: ForkPoint, path: BeliefPath, context: BeliefContext
     ) -> None:
         self._source, self._of = source, (moment, path)
-        self._cells = cells
+        self._context = context
         self._bases: dict[int, Basis | None] = {}
         self._currents: dict[int, bool] = {}
 
@@ -80,10 +80,17 @@ class _Grounds:
         """Return the cells to compute together with one.
 
         A caller that asked for a few will probably ask for all, and in a small box all of them cost
-        little more than one.
+        little more than one. In a box whose nodes hold chunks they are all around that cell.
         """
-        is_all = len(known) >= _FEW or self._cells <= _SMALL
-        return range(self._cells) if is_all else [cell]
+        context = self._context
+        if len(known) < _FEW and context.cells > _SMALL:
+            return [cell]
+        if context.is_dense:
+            return range(context.cells)
+        x, y, z = (part - part % _AROUND for part in place_of(context.box, cell))
+        return cells_between(
+            context.box, (x, y, z), (x + _AROUND - 1, y + _AROUND - 1, z + _AROUND - 1)
+        )
 
 
 class _Blocks:
@@ -97,33 +104,37 @@ class _Blocks:
         """The block state ids, shape of the box, -1 unknown."""
         return self._view.grid
 
+    @property
+    def terrain(self) -> Terrain:
+        """The block state ids, -1 unknown."""
+        return self._view.terrain
+
     def __getitem__(self, position: Position) -> str | None:
-        state = int(self.grid[self._index(position)])
+        state = self.terrain[self._index(position)]
         return None if state < 0 else self._context.registry.text(state)
 
     def __iter__(self) -> Iterator[Position]:
         return self._context.box.positions()
 
     def __len__(self) -> int:
-        return int(self.grid.size)
+        return self._context.cells
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, _Blocks):
             return NotImplemented
-        return bool(np.array_equal(self.grid, other.grid))
+        return self.terrain == other.terrain
 
     __hash__ = None  # type: ignore[assignment]  # compared by value, and values are large
 
     def named(self, names: frozenset[str]) -> dict[Position, str]:
         """Return known blocks of some names."""
-        registry, grid = self._context.registry, self.grid
-        # One place more at the end, which -1 (unknown) indexes.
-        wanted = np.zeros(registry.states + 1, dtype=np.bool_)
-        for name in names:
-            ids = registry.state_ids(name)
-            wanted[ids.start : ids.stop] = True
-        found = places_of(wanted[grid], self._context.box)
-        return {place: registry.text(int(grid[index])) for place, index in found}
+        registry, terrain = self._context.registry, self.terrain
+        x, y, z = self._context.box.low
+        wanted = [state for name in names for state in registry.state_ids(name)]
+        return {
+            (x + i, y + j, z + k): registry.text(terrain[i, j, k])
+            for i, j, k in terrain.find(wanted).tolist()
+        }
 
     def current(self, position: Position) -> bool:
         """Return True if the block is backed by a perception in this tick."""
@@ -176,7 +187,7 @@ class TimelineState(NodeView):
     @Part
     def _grounds(self) -> _Grounds:
         moment = ForkPoint(self._key, self._position, self.tick)
-        return _Grounds(self._source, moment, self.path, self._context.cells)
+        return _Grounds(self._source, moment, self.path, self._context)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TimelineState):
