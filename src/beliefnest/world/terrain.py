@@ -394,24 +394,36 @@ class Terrain:
             for each in (self, other)
         )
         found = [np.empty((0, 3), dtype=np.intp)]
-        apart: dict[tuple[int, int], npt.NDArray[np.intp]] = {}
-        for number in np.flatnonzero(mine != theirs).tolist():
-            pair = int(self.rows[number]), int(other.rows[number])
-            if pair not in apart:
-                held, its = self.chunks[pair[0]], other.chunks[pair[1]]
-                mask = held != its
-                apart[pair] = np.argwhere(mask if counts is None else mask & counts(held, its))
-            if len(apart[pair]):
-                found.append(apart[pair] + np.array(self.lattice.start(number)))
+        numbers = np.flatnonzero(mine != theirs)
+        pairs = self.rows[numbers].astype(np.int64) * len(other.chunks) + other.rows[numbers]
+        # Many places have the same pair of chunks, which are compared once.
+        each, places = np.unique(pairs, return_inverse=True)
+        apart = []
+        for pair in each.tolist():
+            held, its = (
+                self.chunks[pair // len(other.chunks)],
+                other.chunks[pair % len(other.chunks)],
+            )
+            mask = held != its
+            apart.append(np.argwhere(mask if counts is None else mask & counts(held, its)))
+        differs = np.array([len(cells) > 0 for cells in apart], dtype=np.bool_)
+        for at in np.flatnonzero(differs[places]).tolist():
+            start = self.lattice.start(int(numbers[at]))
+            found.append(apart[places[at]] + np.array(start))
         return self.lattice.clipped(np.concatenate(found))
 
     def mapped(self, change: Callable[[States], npt.NDArray[np.signedinteger[Any]]]) -> "Terrain":
-        """Return the terrain after a change of each cell that depends on its state alone."""
+        """Return the terrain after a change of each cell that depends on its state alone.
+
+        The two share the chunks that stay as they are.
+        """
         chunks = []
         for chunk in self.chunks:
             changed = change(chunk).astype(np.int32, copy=False)
             changed.setflags(write=False)
-            chunks.append(changed)
+            chunks.append(chunk if np.array_equal(changed, chunk) else changed)
+        if all(a is b for a, b in zip(chunks, self.chunks, strict=True)):
+            return self
         return Terrain(self.shape, self.rows, chunks)
 
     def joined(self, other: "Terrain", change: Change) -> "Terrain":

@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import (
     AgentState,
     DroppedItem,
@@ -246,7 +247,7 @@ class Sensed:
             None if nothing is ever hidden.
     """
 
-    blocks: BlockGrid
+    blocks: Terrain
     agents: Mapping[str, AgentState]
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
     heard: tuple[tuple[str, str, str | None], ...] = ()

@@ -13,6 +13,7 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.nest.acting.placement import BodySpace, placed, unknown_floors
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box
 from beliefnest.worlds.by_name import Worlds
 
@@ -57,7 +58,7 @@ def space(blocks, unknown=()):
         grid[box.index(place)] = REGISTRY.state_id(text)
     for place in unknown:
         grid[box.index(place)] = -1
-    return BodySpace(REGISTRY, box, grid)
+    return BodySpace(REGISTRY, box, Terrain.of(grid))
 
 
 def door(facing="north", z=4):

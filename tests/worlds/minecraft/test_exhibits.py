@@ -4,10 +4,10 @@ import re
 from dataclasses import replace
 from itertools import pairwise
 
-import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box
 from beliefnest.worlds.minecraft.exhibits import Shown, display_names, origin_of
 
@@ -56,10 +56,10 @@ def test_exhibits_stand_out_of_sight_of_each_other_and_inside_the_world(ends, at
 def test_only_what_differs_is_told():
     agent = AgentState((0.5, 1, 0.5))
     chest = (0, 1, 0)
-    before = Shown(np.zeros((2, 2, 2), np.int32), {chest: ({}, False)}, {}, {"sally_1": agent})
-    blocks = before.blocks.copy()
+    before = Shown(Terrain.full((2, 2, 2), 0), {chest: ({}, False)}, {}, {"sally_1": agent})
+    blocks = before.blocks.draft()
     blocks[1, 0, 1] = 7
-    after = Shown(blocks, {chest: ({"diamond": 1}, False)}, {}, {"sally_1": agent})
+    after = Shown(blocks.terrain(), {chest: ({"diamond": 1}, False)}, {}, {"sally_1": agent})
     assert before.changes(before, (0, 0, 0)) is None
     told = after.changes(before, (-5, 0, 3))
     assert told == {

@@ -159,7 +159,7 @@ class Embodying:
         If no agent's position is known, it is the one nearest to the middle of the box.
         """
         box = self._recording.box
-        space = BodySpace(self._recording.context.registry, box, reading.grid)
+        space = BodySpace(self._recording.context.registry, box, reading.terrain)
         places = [each.position for each in reading.agents.values() if each.position is not None]
         taken = {block_at(place) for place in places}
         middle = np.array(places or [box.low, box.high], dtype=float).mean(axis=0)
@@ -175,7 +175,7 @@ class Embodying:
         """Return the contents of a simulator's exhibit, and the tick of its latest change."""
         reading, registry = self._recording.state(path), self._recording.context.registry
         contents = {place: held.items for place, held in reading.containers.items()}
-        blocks = with_chests(registry, self._recording.box, reading.grid, contents)
+        blocks = with_chests(registry, self._recording.box, reading.terrain, contents)
         agents = {
             standing.names[name]: AgentState(
                 position=agent.position,
@@ -188,7 +188,7 @@ class Embodying:
             if agent.position is not None
         }
         shown = Shown(
-            np.where(blocks < 0, np.int32(standing.unknown), blocks),
+            blocks.mapped(lambda part: np.where(part < 0, np.int32(standing.unknown), part)),
             {p: (dict(held.items), held.complete) for p, held in reading.containers.items()},
             {place: text for place, text in reading.texts.items() if place not in contents},
             agents,

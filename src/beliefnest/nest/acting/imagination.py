@@ -159,7 +159,7 @@ class Imagination:
         forest = forked_forest(source, news, root, root, tick, further=wanted[1:])
         believed = NodeView(forest, root, tick)
         snapshot, registry = believed.snapshot(), source.context.registry
-        blocks = with_chests(registry, snapshot.box, believed.grid, snapshot.containers)
+        blocks = with_chests(registry, snapshot.box, believed.terrain, snapshot.containers)
         possible = embodiable(registry, snapshot, blocks)
         world = ScriptedWorld.from_snapshot(replace(possible, tick=tick))
         known = {} if grounds is None else grounds

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 from beliefnest.world.doors import is_open
-from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import BoxBounds, Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import HALF_WIDTH, AgentState, Box, Point, Position, block_at
 
 __all__ = ["FARTHEST", "BodySpace", "Placed", "moved_agents", "placed", "unknown_floors"]
@@ -44,11 +44,11 @@ class BodySpace:
 
     registry: Registry
     box: Box
-    blocks: BlockGrid
+    blocks: Terrain
 
     def state(self, cell: Position) -> int:
         """Return the block state at a cell; -1 where it is unknown, air outside the box."""
-        return int(self.blocks[self.box.index(cell)]) if cell in self.box else self.registry.air
+        return self.blocks[self.box.index(cell)] if cell in self.box else self.registry.air
 
     def boxes_at(self, cell: Position) -> Iterator[BoxBounds]:
         """Yield the collision boxes of the block at a cell, in the coordinates of the box.

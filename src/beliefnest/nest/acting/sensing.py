@@ -6,8 +6,8 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.embodiable import chest_places, with_chests_at
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, EventKind, Point, Position
 from beliefnest.worlds.protocol import Sensed
 
@@ -63,27 +63,27 @@ class Sensing:
         believer = believer_of(self._key.path, self._agent)
         return self._history.state(self._key, believer, entries)
 
-    def _blocks(self, seen: NodeView, entries: int) -> BlockGrid:
+    def _blocks(self, seen: NodeView, entries: int) -> Terrain:
         """Return the blocks that the agent knows.
 
         If it believes contents that its believed block cannot hold, it reads the chest that the
         body has put there. Otherwise its program could not open it.
         """
         if not self._key.path or not seen.containers:
-            return seen.grid
+            return seen.terrain
         context = self._history.context
         acted_in = self._history.state(self._key, self._key.path, entries)
         put, missing = (
             chest_places(
                 context.registry,
                 context.box,
-                each.grid,
+                each.terrain,
                 {place: held.items for place, held in each.containers.items()},
             )
             for each in (acted_in, seen)
         )
         places = [place for place in missing if place in put]
-        return with_chests_at(context.registry, context.box, seen.grid, places)
+        return with_chests_at(context.registry, context.box, seen.terrain, places)
 
     def _sensed(self, seen: NodeView, entries: int) -> Sensed:
         agents = {

@@ -11,8 +11,9 @@ from beliefnest.nest.past.embodiable import embodiable, with_chests
 from beliefnest.nest.past.history import History
 from beliefnest.nest.past.placing import fork_of_belief
 from beliefnest.timeline.journal import ForkPoint, Journal
-from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Position
 
 __all__ = ["BodyStart", "start_of"]
@@ -62,7 +63,7 @@ def start_of(
         return BodyStart(snapshot)
     # A body keeps the floors that it was given at its fork, while the blocks there are unknown.
     # They are computed again from the state at the fork, so they need not be recorded.
-    if not (blocks < 0).any():
+    if blocks.span[0] >= 0:
         return BodyStart(snapshot)
     _, base = fork
     believed = history.state(base.timeline, path, base.entries, base.tick)
@@ -72,9 +73,9 @@ def start_of(
     return BodyStart(_floored(snapshot, blocks, unknown_floors(space, begun), history))
 
 
-def _filled(reading: NodeView, history: History) -> tuple[Snapshot, BlockGrid]:
+def _filled(reading: NodeView, history: History) -> tuple[Snapshot, Terrain]:
     """Return the snapshot with which a body can be filled, and its blocks, -1 unknown."""
-    snapshot, blocks = reading.snapshot(), reading.grid
+    snapshot, blocks = reading.snapshot(), reading.terrain
     if not reading.path:
         return snapshot, blocks
     registry = history.context.registry
@@ -82,9 +83,7 @@ def _filled(reading: NodeView, history: History) -> tuple[Snapshot, BlockGrid]:
     return embodiable(registry, snapshot, known), known
 
 
-def _begun(
-    snapshot: Snapshot, blocks: BlockGrid, believed: NodeView, history: History
-) -> BodyStart:
+def _begun(snapshot: Snapshot, blocks: Terrain, believed: NodeView, history: History) -> BodyStart:
     """Return the start of a body of a belief, with agents moved and unknown floors made solid."""
     space = BodySpace(history.context.registry, snapshot.box, blocks)
     seen_at = {}
@@ -101,7 +100,7 @@ def _begun(
 
 
 def _floored(
-    snapshot: Snapshot, known: BlockGrid, floors: Iterable[Position], history: History
+    snapshot: Snapshot, known: Terrain, floors: Iterable[Position], history: History
 ) -> Snapshot:
     cells = [snapshot.box.index(floor) for floor in floors]
     cells = [cell for cell in cells if known[cell] < 0]

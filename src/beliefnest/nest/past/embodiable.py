@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beliefnest.world.frames import BlockGrid, Snapshot
+from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import AGENT_SLOTS, container_slots, items_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
@@ -27,7 +27,7 @@ _WORN = frozenset(EQUIPMENT_SLOTS) - frozenset(_HANDS)
 
 
 def chest_places(
-    registry: Registry, box: Box, blocks: BlockGrid, contents: Mapping[Position, Items]
+    registry: Registry, box: Box, blocks: Terrain, contents: Mapping[Position, Items]
 ) -> list[Position]:
     """Return the positions of contents whose believed block is unknown or cannot hold them.
 
@@ -40,31 +40,31 @@ def chest_places(
     return [
         place
         for place, items in contents.items()
-        if not _holds(registry, int(blocks[box.index(place)]), items)
+        if not _holds(registry, blocks[box.index(place)], items)
     ]
 
 
 def with_chests(
-    registry: Registry, box: Box, blocks: BlockGrid, contents: Mapping[Position, Items]
-) -> BlockGrid:
+    registry: Registry, box: Box, blocks: Terrain, contents: Mapping[Position, Items]
+) -> Terrain:
     """Return believed blocks, -1 unknown, with chests at the positions of `chest_places`."""
     return with_chests_at(registry, box, blocks, chest_places(registry, box, blocks, contents))
 
 
 def with_chests_at(
-    registry: Registry, box: Box, blocks: BlockGrid, places: Iterable[Position]
-) -> BlockGrid:
-    """Return believed blocks with chests at some positions; the same array if there are none."""
+    registry: Registry, box: Box, blocks: Terrain, places: Iterable[Position]
+) -> Terrain:
+    """Return believed blocks with chests at some positions; the same terrain if there are none."""
     cells = [box.index(place) for place in places]
     if not cells:
         return blocks
-    filled = np.array(blocks)
+    filled = blocks.draft()
     for cell in cells:
         filled[cell] = registry.state_id(CHEST)
-    return filled
+    return filled.terrain()
 
 
-def embodiable(registry: Registry, snapshot: Snapshot, blocks: BlockGrid) -> Snapshot:
+def embodiable(registry: Registry, snapshot: Snapshot, blocks: Terrain) -> Snapshot:
     """Return a believed snapshot changed so that a body can be filled with it.
 
     Items that do not fit into a chest or an inventory are left out, the last names first. An agent
@@ -81,7 +81,7 @@ def embodiable(registry: Registry, snapshot: Snapshot, blocks: BlockGrid) -> Sna
     }
     return replace(
         snapshot,
-        blocks=Terrain.of(np.maximum(blocks, 0)),
+        blocks=blocks.mapped(lambda part: np.maximum(part, 0)),
         containers=held,
         agents={
             name: _laden(registry, _inside(snapshot.box, agent))
@@ -102,8 +102,8 @@ def _holds(registry: Registry, state: int, items: Items) -> bool:
     return slots == container_slots(CHEST) or items_fault(items, registry, slots, name) is None
 
 
-def _name(registry: Registry, blocks: BlockGrid, snapshot: Snapshot, place: Position) -> str:
-    return registry.name(int(blocks[snapshot.box.index(place)]))
+def _name(registry: Registry, blocks: Terrain, snapshot: Snapshot, place: Position) -> str:
+    return registry.name(blocks[snapshot.box.index(place)])
 
 
 def _fitting(registry: Registry, items: Items, slots: int) -> Items:

@@ -74,7 +74,7 @@ def _chests(recording: Recording, path: BeliefPath, tick: int | None) -> Placeme
     registry = recording.context.registry
     contents = {place: held.items for place, held in reading.containers.items()}
     chests: dict[str | Position, tuple[str | None, str]] = {}
-    for place in chest_places(registry, box, reading.grid, contents):
-        state = int(reading.grid[box.index(place)])
+    for place in chest_places(registry, box, reading.terrain, contents):
+        state = reading.terrain[box.index(place)]
         chests[place] = (None if state < 0 else registry.text(state), CHEST)
     return chests

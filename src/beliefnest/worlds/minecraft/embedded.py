@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Self
 
 import msgspec
+import numpy as np
 
 from beliefnest.errors import BodyError, WorldError
 from beliefnest.owned import Owned
@@ -28,7 +29,7 @@ class _Telling:
 
     def whole(self) -> dict[str, Any]:
         """Return the agent's whole knowledge as a message."""
-        return node_messages.percepts_message(self._told)
+        return node_messages.percepts_message(self._told, self._box.low)
 
     def changes(self) -> dict[str, Any]:
         """Return the changes since the last message."""
@@ -54,6 +55,8 @@ class EmbeddedBody:
         self._channel = channel
         self._region = region
         self._box: Box = snapshot.box
+        # Node builds unknown blocks as air.
+        self._blocks = snapshot.blocks.mapped(lambda part: np.maximum(part, 0))
         self.tick, self.internal_state = snapshot.tick, snapshot.internal_state
         self._agents = frozenset(snapshot.agents)
         self._sink = sink
@@ -73,14 +76,16 @@ class EmbeddedBody:
         on_close: Callable[[], None] = lambda: None,
     ) -> Self:
         """Let Node create and fill a region; `known` are all agents that programs may mention."""
-        channel.request(
+        made = channel.request(
             "create_region",
             region=region,
             seed=seed,
             known=known,
             **node_messages.snapshot_message(snapshot),
         )
-        return cls(channel, region, snapshot, sink, on_close)
+        body = cls(channel, region, snapshot, sink, on_close)
+        body._read(made)
+        return body
 
     @property
     def lost(self) -> bool:
@@ -89,9 +94,7 @@ class EmbeddedBody:
 
     def snapshot(self) -> Snapshot:
         """Return the present state."""
-        return node_messages.snapshot_of(
-            self._channel.request("snapshot", region=self._region), self._box
-        )
+        return self._read(self._channel.request("snapshot", region=self._region))
 
     def run(
         self,
@@ -132,9 +135,10 @@ class EmbeddedBody:
     def set_state(self, snapshot: Snapshot) -> None:
         """Set the state to a snapshot by changing only what differs; no frames are sent."""
         before = self.snapshot()
-        self._channel.request(
+        set_to = self._channel.request(
             "apply", region=self._region, tick=snapshot.tick, **_difference(before, snapshot)
         )
+        self._read(set_to)
         self.tick, self.internal_state = snapshot.tick, snapshot.internal_state
         self._agents = frozenset(snapshot.agents)
 
@@ -150,6 +154,12 @@ class EmbeddedBody:
             self._channel.kill()
         else:
             self._on_close()
+
+    def _read(self, message: Mapping[str, Any]) -> Snapshot:
+        """Return the snapshot of a message, which has what changed since the one before."""
+        snapshot = node_messages.snapshot_of(message, self._box, self._blocks)
+        self._blocks = snapshot.blocks
+        return snapshot
 
     def _take(self, message: dict[str, Any]) -> None:
         frame: Frame

@@ -8,14 +8,14 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
-from beliefnest.world.frames import BlockGrid
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Items, Position
 from beliefnest.worlds.minecraft.channel import Channel
 from beliefnest.worlds.minecraft.node_messages import (
     agents_changes,
-    blocks_changes,
+    blocks_message,
     pose_message,
-    runs_of,
+    terrain_changes,
 )
 
 __all__ = ["Exhibit", "Plot", "Shown", "display_names", "origin_of"]
@@ -40,15 +40,15 @@ class Shown:
         agents: Agents whose pose is known, by the displayed name.
     """
 
-    blocks: BlockGrid
+    blocks: Terrain
     containers: Mapping[Position, Contents]
     signs: Mapping[Position, str]
     agents: Mapping[str, AgentState]
 
-    def whole(self) -> dict[str, Any]:
-        """Return the whole content as a message."""
+    def whole(self, low: Position) -> dict[str, Any]:
+        """Return the whole content as a message; `low` is the box's lowest corner."""
         return {
-            "blocks": runs_of(self.blocks),
+            "blocks": blocks_message(self.blocks, low),
             "containers": _rows(self.containers.items()),
             "signs": [[*place, text] for place, text in sorted(self.signs.items())],
             "agents": {name: pose_message(agent) for name, agent in self.agents.items()},
@@ -56,7 +56,7 @@ class Shown:
 
     def changes(self, before: "Shown", low: Position) -> dict[str, Any] | None:
         """Return the changes as a message, None if there are none; `low` is the box's corner."""
-        blocks = blocks_changes(before.blocks, self.blocks, low)
+        blocks = terrain_changes(before.blocks, self.blocks, low)
         gone = before.containers.keys() - self.containers.keys()
         contents = [
             (place, held)
@@ -113,7 +113,7 @@ class Exhibit:
             origin=plot.origin,
             stand=plot.stand,
             box=[plot.box.low, plot.box.high],
-            **shown.whole(),
+            **shown.whole(plot.box.low),
         )
         return cls(channel, name, plot.box.low, shown)
 

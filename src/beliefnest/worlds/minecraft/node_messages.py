@@ -6,11 +6,12 @@ from typing import Any
 
 import msgspec
 import numpy as np
+import numpy.typing as npt
 
 from beliefnest.errors import BeliefNestError, BodyError
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
-from beliefnest.world.terrain import Terrain
+from beliefnest.world.terrain import SIDE, Terrain
 from beliefnest.world.values import (
     AgentState,
     Block,
@@ -25,6 +26,7 @@ from beliefnest.worlds.protocol import Aim, Called, Fault, ProgramResult, Sensed
 
 __all__ = [
     "agent_message",
+    "blocks_message",
     "contents_message",
     "frame_of",
     "items_message",
@@ -52,12 +54,13 @@ class _Frame(msgspec.Struct, frozen=True):
 
 class _Snapshot(msgspec.Struct, frozen=True):
     tick: int
-    blocks: bytes
     containers: list[tuple[int, int, int, dict[str, int]]]
     agents: dict[str, AgentState]
     items: dict[int, DroppedItem] = {}
     internal_state: bytes = b""
     signs: list[tuple[int, int, int, str]] = []
+    blocks: bytes | None = None
+    changes: list[tuple[int, int, int, int]] = []
 
 
 class _Result(msgspec.Struct, frozen=True):
@@ -88,8 +91,13 @@ def frame_of(message: Mapping[str, Any]) -> tuple[str, Frame]:
     )
 
 
-def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
+def snapshot_of(message: Mapping[str, Any], box: Box, before: Terrain | None = None) -> Snapshot:
     """Return the snapshot in a message about a box.
+
+    Args:
+        message: The message.
+        box: The box.
+        before: Blocks of the last snapshot, of which a message may contain only the changes.
 
     Raises:
         BodyError: The message is malformed.
@@ -98,7 +106,7 @@ def snapshot_of(message: Mapping[str, Any], box: Box) -> Snapshot:
     return Snapshot(
         got.tick,
         box,
-        Terrain.of(_blocks_of(got.blocks, box)),
+        _terrain_of(got, box, before),
         {(x, y, z): items for x, y, z, items in sorted(got.containers, key=lambda c: c[:3])},
         dict(sorted(got.agents.items())),
         dict(sorted(got.items.items())),
@@ -112,7 +120,7 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
     return {
         "tick": snapshot.tick,
         "box": [snapshot.box.low, snapshot.box.high],
-        "blocks": runs_of(snapshot.blocks.dense()),
+        "blocks": blocks_message(snapshot.blocks, snapshot.box.low),
         "containers": contents_message(snapshot.containers),
         "agents": {name: agent_message(agent) for name, agent in snapshot.agents.items()},
         "items": items_message(snapshot.items),
@@ -121,15 +129,46 @@ def snapshot_message(snapshot: Snapshot) -> dict[str, Any]:
     }
 
 
-def runs_of(blocks: BlockGrid) -> bytes:
-    """Return blocks as a message: rows (state, number of consecutive blocks with it) of int32.
+def blocks_message(blocks: Terrain, low: Position) -> bytes | dict[str, Any]:
+    """Return all blocks of a box as a message; `low` is the box's lowest corner.
 
-    A large box that is mostly air, unknown or flat ground makes a short message.
+    The message is as long as what the box contains: a chunk that occurs often is in it once.
     """
-    flat = blocks.reshape(-1)
+    if blocks.is_dense:
+        return runs_of(blocks.dense())
+    used, rows = np.unique(blocks.rows, return_inverse=True)
+    return {
+        "first": [part + step for part, step in zip(low, blocks.lattice.start(0), strict=True)],
+        "side": SIDE,
+        "counts": blocks.lattice.counts,
+        "rows": runs_of(rows.astype(np.int32)),
+        "states": runs_of(np.stack([blocks.chunks[row] for row in used.tolist()])),
+    }
+
+
+def runs_of(numbers: npt.NDArray[np.int32]) -> bytes:
+    """Return numbers as a message: rows (number, count of consecutive elements with it) of int32.
+
+    Args:
+        numbers: Block states, or other numbers, in C order; not empty.
+    """
+    flat = numbers.reshape(-1)
     ends = np.append(np.flatnonzero(flat[1:] != flat[:-1]), flat.size - 1)
     counts = np.diff(ends, prepend=-1)
     return np.stack([flat[ends], counts], axis=1).astype("<i4").tobytes()
+
+
+def _terrain_of(got: _Snapshot, box: Box, before: Terrain | None) -> Terrain:
+    if got.blocks is not None:
+        return Terrain.of(_blocks_of(got.blocks, box))
+    if before is None:
+        raise BodyError("Node sent changes of blocks where it had to send all blocks")
+    blocks = before.draft()
+    for x, y, z, state in got.changes:
+        if (x, y, z) not in box:
+            raise BodyError(f"Node sent a block at ({x}, {y}, {z}), outside the box")
+        blocks[box.index((x, y, z))] = state
+    return blocks.terrain()
 
 
 def _blocks_of(runs: bytes, box: Box) -> BlockGrid:
@@ -173,10 +212,15 @@ def agent_message(agent: AgentState) -> dict[str, Any]:
     }
 
 
-def percepts_message(sensed: Sensed) -> dict[str, Any]:
-    """Return PERCEPTS of an agent whose program begins: everything that it knows."""
+def percepts_message(sensed: Sensed, low: Position) -> dict[str, Any]:
+    """Return PERCEPTS of an agent whose program begins: everything that it knows.
+
+    Args:
+        sensed: Its knowledge.
+        low: Lowest corner of the box.
+    """
     return {
-        "states": runs_of(sensed.blocks),
+        "states": blocks_message(sensed.blocks, low),
         "agents": {name: pose_message(agent) for name, agent in sensed.agents.items()},
         "items": items_message(sensed.items),
         **signs_message(sensed.signs),
@@ -192,7 +236,7 @@ def percepts_changes(before: Sensed, after: Sensed, low: Position) -> dict[str, 
         if before.items.get(number) != item:
             items[str(number)] = item
     parts = {
-        "blocks": blocks_changes(before.blocks, after.blocks, low),
+        "blocks": terrain_changes(before.blocks, after.blocks, low),
         "agents": dict(sorted(agents.items())),
         "items": dict(sorted(items.items(), key=lambda item: int(item[0]))),
         "heard": after.heard,
@@ -208,14 +252,6 @@ def terrain_changes(before: Terrain, after: Terrain, low: Position) -> list[list
     return [
         [low[0] + i, low[1] + j, low[2] + k, after[i, j, k]]
         for i, j, k in before.differing(after).tolist()
-    ]
-
-
-def blocks_changes(before: BlockGrid, after: BlockGrid, low: Position) -> list[list[int]]:
-    """Return what `terrain_changes` returns, of dense grids."""
-    return [
-        [low[0] + i, low[1] + j, low[2] + k, int(after[i, j, k])]
-        for i, j, k in np.argwhere(before != after).tolist()
     ]
 
 

@@ -81,9 +81,9 @@ class Grounds:
         self._same: dict[int, tuple[Terrain | BlockGrid, KnownBlocks]] = {}
         self._equal: dict[tuple[Box, bytes], KnownBlocks] = {}
 
-    def of(self, box: Box, blocks: Terrain | BlockGrid) -> KnownBlocks:
-        """Return the data of a terrain, or of a grid that must not change any more."""
-        held = blocks.dense() if isinstance(blocks, Terrain) and blocks.is_dense else blocks
+    def of(self, box: Box, blocks: Terrain) -> KnownBlocks:
+        """Return the data of the blocks of a box."""
+        held = blocks.dense() if blocks.is_dense else blocks
         same = self._same.get(id(held))
         if same is not None and same[0] is held:
             return same[1]
@@ -92,7 +92,7 @@ class Grounds:
         else:
             content = (box, held.tobytes())
             if content not in self._equal:
-                self._equal[content] = KnownBlocks(self._registry, box, Terrain.of_one(held))
+                self._equal[content] = KnownBlocks(self._registry, box, blocks)
             known = self._equal[content]
         # Keep the blocks alive, so that no other ones get their id.
         self._same[id(held)] = (held, known)

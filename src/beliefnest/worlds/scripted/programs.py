@@ -7,11 +7,11 @@ acts in the next ones. Agents act in the order of their programs.
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, cast
+from typing import Any
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.skills.calls import callables
-from beliefnest.world.frames import BlockGrid, Frame
+from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, Box, Event, EventKind, Point, Position
 from beliefnest.worlds.protocol import (
     Aim,
@@ -209,9 +209,7 @@ def _begun(
 ) -> _Run:
     def all_of_it() -> Sensed:
         others, heard = _others(world.agents, agent), _heard_by(agent, latest)
-        # Only programs of this world read it, and they read terrains as well as grids.
-        blocks = cast("BlockGrid", world.terrain)
-        return Sensed(blocks, others, heard=heard, signs=world.signs)
+        return Sensed(world.terrain, others, heard=heard, signs=world.signs)
 
     def ground() -> Ground:
         return grounds.of(world.box, world.terrain).ground

@@ -107,21 +107,31 @@ function sectionLike (section) {
   return made
 }
 
-/** Cache the last columns, four adjacent ones, because most queries ask for them again. */
+/**
+ * Cache the last columns, four adjacent ones, because most queries ask for them again. A world with a function `ground`
+ * gets from it, when they are first needed, the columns that were never set.
+ */
 function rememberColumns (World) {
   const { getLoadedColumn, setLoadedColumn, unloadColumn } = World.prototype
   const nothing = () => ({ x: 0, z: 0, column: undefined })
   Object.assign(World.prototype, {
     lately: null,
+    ground: null,
     getLoadedColumn (x, z) {
       this.lately ??= [nothing(), nothing(), nothing(), nothing()]
       const known = this.lately[(x & 1) << 1 | (z & 1)]
       if (known.x !== x || known.z !== z || known.column === undefined) {
-        known.column = getLoadedColumn.call(this, x, z)
+        known.column = getLoadedColumn.call(this, x, z) ?? this.begun(x, z)
         known.x = x
         known.z = z
       }
       return known.column
+    },
+    /** Return a column that was never set; undefined if there is none. */
+    begun (x, z) {
+      const column = this.ground?.(x, z)
+      if (column !== undefined) this.columns[`${x},${z}`] = column
+      return column
     },
     setLoadedColumn (x, z, ...rest) {
       this.lately = null

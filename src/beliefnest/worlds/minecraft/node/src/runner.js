@@ -2,7 +2,7 @@
 /** Runner of agents' programs: it runs the programs of one region together, tick by tick. */
 const { stopBot } = require('./bots/bot')
 const { View } = require('./percepts/view')
-const { statesOf } = require('./regions/box')
+const { Terrain } = require('./regions/terrain')
 const { Random } = require('./time/random')
 const { ruleSpeech } = require('./bots/speech')
 const { Memory } = require('./memory')
@@ -62,7 +62,7 @@ class Runner {
   }
 
   viewOf (region, { bot }, percepts) {
-    const states = statesOf(percepts.states, region.box)
+    const states = Terrain.read(percepts.states, region.box)
     return new View({ bot, clock: this.regions.clock, box: region.box, names: region.known, percepts: { ...percepts, states } })
   }
 

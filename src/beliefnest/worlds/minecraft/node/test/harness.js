@@ -1,5 +1,6 @@
 'use strict'
 /** Driver of main.js over its real channel, as Python does it. */
+const assert = require('node:assert/strict')
 const { spawn } = require('node:child_process')
 const path = require('node:path')
 const { Channel } = require('../src/channel/channel')
@@ -39,7 +40,7 @@ class Node {
   }
 
   hello (seed = 0) {
-    return this.request('hello', { protocol: 4, seed, minecraft: '1.20.4' })
+    return this.request('hello', { protocol: 5, seed, minecraft: '1.20.4' })
   }
 
   /** End the process as the end of Python would. */
@@ -67,9 +68,23 @@ function floor (extra = [], box = BOX) {
   return runsOf(states)
 }
 
-/** Return the block states of a snapshot of a box. @returns {Int32Array} */
+/** Return the block states of a snapshot of a box that has them all. @returns {Int32Array} */
 function statesIn (snapshot, box = BOX) {
   return statesOf(snapshot.blocks, new Box(...box))
+}
+
+/**
+ * Return the SNAPSHOT of a region of a handler in this process, with all blocks that stand there in place of the changes.
+ * @returns {Promise<object>}
+ */
+async function wholeSnapshot (handler, name) {
+  const { changes, ...snapshot } = await handler.perform({ op: 'snapshot', region: name })
+  const { serv } = handler.regions
+  const region = handler.regions.get(name)
+  const states = new Int32Array(region.box.size)
+  region.box.forEach((x, y, z, index) => { states[index] = serv.overworld.sync.getBlockStateId(region.toServer([x, y, z])) })
+  for (const [x, y, z, state] of changes) assert.equal(states[region.box.index(x, y, z)], state, 'a change is what stands there')
+  return { ...snapshot, blocks: runsOf(states) }
 }
 
 function agent (position, more = {}) {
@@ -89,4 +104,4 @@ function region (name, more = {}) {
   }
 }
 
-module.exports = { agent, BOX, floor, MAIN, Node, region, statesIn, STONE, THREE }
+module.exports = { agent, BOX, floor, MAIN, Node, region, statesIn, STONE, THREE, wholeSnapshot }

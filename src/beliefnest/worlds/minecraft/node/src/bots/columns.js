@@ -1,16 +1,19 @@
 'use strict'
-/** Columns of blocks that a bot of this process is sent. */
+/** Columns of blocks of a bot of this process. */
+const { CHUNK } = require('../regions/allotment')
 
 /**
- * Let a bot take the column that is in a packet `map_chunk` itself, where Mineflayer would read its bytes. Call this
- * before the bot's plugins are injected.
+ * Let a bot take each column, when it first asks for it, from the source in the packet `ground`, where Mineflayer would
+ * be sent all columns as bytes. Call this before the bot's plugins are injected.
  * @param {object} bot
  * @param {import('../net/transport').ClientEnd} client the bot's end of its connection
+ * @param {{x: number, z: number}} origin server position of scenario (0, y, 0)
  */
-function takeColumns (bot, client) {
+function takeColumns (bot, client, origin) {
   bot.once('inject_allowed', () => {
-    client.removeAllListeners('map_chunk')
-    client.on('map_chunk', ({ x, z, column }) => bot.world.setColumn(x, z, column))
+    client.on('ground', ({ source }) => {
+      bot.world.async.ground = (x, z) => source(x + origin.x / CHUNK, z + origin.z / CHUNK)
+    })
   })
 }
 

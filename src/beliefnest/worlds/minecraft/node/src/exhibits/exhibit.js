@@ -4,7 +4,8 @@
  * happens in it by itself, and no act in it reaches a simulator.
  */
 const { Vec3 } = require('vec3')
-const { Box, statesOf } = require('../regions/box')
+const { Box } = require('../regions/box')
+const { Terrain } = require('../regions/terrain')
 const { keyOf } = require('../server/plugins/lib/positions')
 
 class Exhibit {
@@ -16,7 +17,7 @@ class Exhibit {
     this.origin = { x, z }
     this.box = new Box(low, high)
     this.stand = { x: stand[0], y: stand[1], z: stand[2] }
-    this.states = statesOf(blocks, this.box)
+    this.blocks = Terrain.read(blocks, this.box)
     this.containers = new Map(containers.map(([x, y, z, items, complete]) => [keyOf({ x, y, z }), { items, complete }]))
     this.signs = new Map(signs.map(([x, y, z, text]) => [keyOf({ x, y, z }), text]))
     this.agents = new Map(Object.entries(agents))
@@ -30,7 +31,7 @@ class Exhibit {
    * @returns {{signs: number[][]}} positions of signs whose text has changed
    */
   take ({ blocks, containers, signs, agents }) {
-    for (const [x, y, z, state] of blocks) this.states[this.box.index(x, y, z)] = state
+    for (const [x, y, z, state] of blocks) this.blocks.set(x, y, z, state)
     for (const [x, y, z, items, complete] of containers) {
       if (items === null) this.containers.delete(keyOf({ x, y, z }))
       else this.containers.set(keyOf({ x, y, z }), { items, complete })
@@ -47,7 +48,7 @@ class Exhibit {
 
   /** Return the state at a position of the exhibit; air outside the box. @returns {number} */
   at ({ x, y, z }) {
-    return this.box.contains(x, y, z) ? this.states[this.box.index(x, y, z)] : 0
+    return this.box.contains(x, y, z) ? this.blocks.at(x, y, z) : 0
   }
 
   /** Return the server coordinates of a position. @returns {Vec3} */

@@ -2,7 +2,7 @@
 /** Exhibits of the embedded server in real time, and their visitors. */
 const { BadRequest } = require('../channel/errors')
 const { Exhibit } = require('../exhibits/exhibit')
-const { columnsOf } = require('../regions/columns')
+const { columnsOf, Ground } = require('../regions/ground')
 const { blockStates } = require('../server/plugins/lib/states')
 const { columnPacket } = require('../server/world')
 const { Visitor } = require('./visitor')
@@ -92,16 +92,8 @@ class Gallery {
 
   /** Return the packets of an exhibit's columns. @returns {object[]} */
   columns (exhibit) {
-    const { serv: { registry, minY, worldHeight } } = this
-    const Chunk = require('prismarine-chunk')(registry)
-    const columns = new Map(columnsOf(exhibit.box, exhibit.origin).map(([x, z]) => [`${x},${z}`, new Chunk({ minY, worldHeight })]))
-    exhibit.box.forEach((x, y, z, index) => {
-      const state = exhibit.states[index]
-      if (state === 0) return
-      const place = exhibit.toServer([x, y, z])
-      columns.get(`${place.x >> 4},${place.z >> 4}`).setBlockStateId({ x: place.x & 15, y, z: place.z & 15 }, state)
-    })
-    return [...columns].map(([key, column]) => columnPacket(column, ...key.split(',').map(Number)))
+    const ground = new Ground(this.serv, exhibit, exhibit.blocks, false)
+    return columnsOf(exhibit.box, exhibit.origin).map(([x, z]) => columnPacket(ground.column(x, z), x, z))
   }
 }
 

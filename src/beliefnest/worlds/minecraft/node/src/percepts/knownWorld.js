@@ -13,15 +13,17 @@ class KnownWorld {
    * @param {object} options
    * @param {import('prismarine-registry').Registry} options.registry
    * @param {import('../regions/box').Box} options.box
-   * @param {Int32Array} options.states block states of the box in its array order; -1 is unknown
+   * @param {import('../regions/terrain').Terrain} options.states block states; -1 is unknown
    * @param {object} options.beyond the bot's own world
    */
   constructor ({ registry, box, states, beyond }) {
     this.box = box
     this.beyond = beyond
     this.make = maker(registry)
-    this.blocks = new Array(box.size).fill(null)
     this.states = states
+    // Block objects that were asked for, by place and index in the chunks of `states`.
+    this.blocks = new Array(states.rows.length).fill(null)
+    // Texts of signs by position as a text.
     this.texts = new Map()
     // The raycast function follows rays through this world's `getBlock`.
     this.raycast = beyond.raycast
@@ -29,15 +31,26 @@ class KnownWorld {
 
   /** Return true if the block at a position is unknown. */
   lacks (x, y, z) {
-    return this.box.contains(x, y, z) && this.states[this.box.index(x, y, z)] < 0
+    return this.box.contains(x, y, z) && this.states.at(x, y, z) < 0
   }
 
   /** Return the block at integer coordinates. @returns {?object} */
   blockIn (x, y, z) {
     if (!this.box.contains(x, y, z)) return this.beyond.getBlock(new Vec3(x, y, z))
-    const index = this.box.index(x, y, z)
-    if (this.blocks[index] === null && this.states[index] >= 0) this.blocks[index] = this.made(this.states[index], x, y, z)
-    return this.blocks[index]
+    const { states } = this
+    const [place, index] = [states.place(x, y, z), states.within(x, y, z)]
+    const known = this.blocks[place]?.[index] ?? null
+    if (known !== null) return known
+    const state = states.chunks[states.rows[place]][index]
+    if (state < 0) return null
+    const blocks = (this.blocks[place] ??= new Array(states.volume).fill(null))
+    return (blocks[index] = this.made(state, x, y, z))
+  }
+
+  /** Make the block object at a position anew when it is next asked for. */
+  forget (x, y, z) {
+    const blocks = this.blocks[this.states.place(x, y, z)]
+    if (blocks !== null) blocks[this.states.within(x, y, z)] = null
   }
 
   getBlock ({ x, y, z }) {
@@ -48,16 +61,17 @@ class KnownWorld {
   made (state, x, y, z) {
     const block = this.make(state)
     block.position = new Vec3(x, y, z)
-    const text = this.texts.get(this.box.index(x, y, z))
+    const text = this.texts.size === 0 ? undefined : this.texts.get(`${x},${y},${z}`)
     // Add the methods that the game's blocks have for signs.
     return text === undefined ? block : Object.assign(block, { entity: {}, getSignText: () => [text, ''] })
   }
 
   /** Set the texts of all signs, as [x, y, z, text]. */
   readSigns (signs) {
-    for (const index of this.texts.keys()) this.blocks[index] = null
-    this.texts = new Map(signs.map(([x, y, z, text]) => [this.box.index(x, y, z), text]))
-    for (const index of this.texts.keys()) this.blocks[index] = null
+    const forgetAll = () => { for (const key of this.texts.keys()) this.forget(...key.split(',').map(Number)) }
+    forgetAll()
+    this.texts = new Map(signs.map(([x, y, z, text]) => [`${x},${y},${z}`, text]))
+    forgetAll()
   }
 
   /**
@@ -66,9 +80,8 @@ class KnownWorld {
    */
   learn (x, y, z, state) {
     const before = this.blockIn(x, y, z)
-    const index = this.box.index(x, y, z)
-    this.states[index] = state
-    this.blocks[index] = null
+    this.states.set(x, y, z, state)
+    this.forget(x, y, z)
     return { before, after: this.blockIn(x, y, z) }
   }
 

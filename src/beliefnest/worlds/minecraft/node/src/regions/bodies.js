@@ -54,7 +54,7 @@ class Bodies {
     })
     const bot = startBot(client, this.clock)
     shareAppearances(bot, client, this.Entity)
-    takeColumns(bot, client)
+    takeColumns(bot, client, region.origin)
     bot.physicsEnabled = false
     return { agent, bot, player: join(this.serv, region, server, state), state }
   }

@@ -49,18 +49,29 @@ class Box {
  * @throws {BadRequest} if they have not as many blocks as the box
  */
 function statesOf (bytes, box) {
-  const runs = new Int32Array(new Uint8Array(bytes).buffer, 0, Math.floor(bytes.byteLength / ROW_BYTES) * 2)
-  const states = new Int32Array(box.size)
+  const states = expanded(bytes, box.size)
+  if (states !== null) return states
+  const runs = rowsOf(bytes)
+  let filled = 0
+  for (let row = 0; row < runs.length; row += 2) filled += Math.max(runs[row + 1], 0)
+  throw new BadRequest(`the box has ${box.size} blocks, so the runs of its blocks must have as many; they have ${filled}`)
+}
+
+/** Return the numbers in runs (number, count of consecutive elements with it); null if there are not `size`. */
+function expanded (bytes, size) {
+  const runs = rowsOf(bytes)
+  const numbers = new Int32Array(size)
   let filled = 0
   for (let row = 0; row < runs.length; row += 2) {
     const end = filled + Math.max(runs[row + 1], 0)
-    if (runs[row] !== 0) states.fill(runs[row], filled, end)
+    if (runs[row] !== 0) numbers.fill(runs[row], filled, end)
     filled = end
   }
-  if (filled !== box.size || bytes.byteLength % ROW_BYTES !== 0) {
-    throw new BadRequest(`the box has ${box.size} blocks, so the runs of its blocks must have as many; they have ${filled}`)
-  }
-  return states
+  return filled === size && bytes.byteLength % ROW_BYTES === 0 ? numbers : null
+}
+
+function rowsOf (bytes) {
+  return new Int32Array(new Uint8Array(bytes).buffer, 0, Math.floor(bytes.byteLength / ROW_BYTES) * 2)
 }
 
 /** Return the runs of block states, as the channel sends them. @returns {Uint8Array} */
@@ -74,4 +85,4 @@ function runsOf (states) {
   return new Uint8Array(Int32Array.from(runs).buffer)
 }
 
-module.exports = { Box, runsOf, statesOf }
+module.exports = { Box, expanded, runsOf, statesOf }

@@ -5,7 +5,7 @@ const { Mail } = require('../net/transport')
 const { Random } = require('../time/random')
 const { Translator } = require('../net/translate')
 const { regionalState } = require('../server/regional')
-const { columnsOf } = require('./columns')
+const { columnsOf } = require('./ground')
 const { Place } = require('./place')
 
 const TICK_MS = 50
@@ -25,6 +25,10 @@ class Region extends Place {
     this.seed = seed
     this.state = regionalState()
     this.columns = columnsOf(box, origin)
+    // Blocks at the beginning; null until they are told.
+    this.ground = null
+    // Positions (server) in the box whose block changed since the last SNAPSHOT, by text.
+    this.changed = new Map()
     const report = (error, agent) => this.faults.push({ error, agent })
     this.context = new Context(seed, report)
     this.context.time = tick * TICK_MS
@@ -35,6 +39,21 @@ class Region extends Place {
   /** Return the spawn point that bots are told (server): always the lowest corner of the box. */
   get spawnPoint () {
     return this.toServer(this.box.low)
+  }
+
+  /** Record that the block at a position (server) has changed. */
+  noteChange (position) {
+    if (this.contains(position)) this.changed.set(`${position.x},${position.y},${position.z}`, position)
+  }
+
+  /**
+   * Return the blocks that changed since the last call, as [x, y, z, state].
+   * @param {(position: import('vec3').Vec3) => number} stateAt returns the state at a position (server)
+   */
+  takeChanges (stateAt) {
+    const changes = Array.from(this.changed.values(), position => [...this.toScenario(position), stateAt(position)])
+    this.changed.clear()
+    return changes
   }
 
   runAs (agent, action) {

@@ -3,12 +3,13 @@
 const { decode, encode } = require('@msgpack/msgpack')
 const { Allotment } = require('./allotment')
 const { Bodies } = require('./bodies')
-const { Box, runsOf, statesOf } = require('./box')
-const { buildColumns, dropColumns, readStates } = require('./columns')
+const { Box } = require('./box')
+const { buildColumns, dropColumns } = require('./columns')
 const { applyBlocks, applyContainers, applyItems, applySigns } = require('./changes')
 const { agentStates, containerStates, factsOf, itemStates, settleItems, signStates } = require('./facts')
 const { Recorder } = require('./recorder')
 const { Region, TICK_MS } = require('./region')
+const { Terrain } = require('./terrain')
 const { BadRequest } = require('../channel/errors')
 
 class Regions {
@@ -27,7 +28,10 @@ class Regions {
     this.bodies = new Bodies(serv, clock)
     this.bodies.keepSpeeds()
     this.byName = new Map()
-    serv.blocks.on('change', ({ position, after }) => serv.region.recorder.blockChanged(position, after))
+    serv.blocks.on('change', ({ position, after }) => {
+      serv.region.noteChange(position)
+      serv.region.recorder.blockChanged(position, after)
+    })
     serv.signs.on('change', ({ position, text, player }) => serv.region.recorder.signChanged(
       position, serv.blocks.at(position).stateId, text, player?.username ?? null))
     serv.facts.on('event', event => serv.region.recorder.serverEvent(event))
@@ -59,13 +63,13 @@ class Regions {
     if (this.byName.has(name)) throw new BadRequest(`there already is a region ${name}`)
     const box = new Box(...corners)
     requireHeight(this.serv, box)
-    const states = statesOf(blocks, box)
+    const terrain = Terrain.read(blocks, box)
     const region = new Region({ name, seed, box, origin: this.allotment.take(box), tick, known })
     region.recorder = new Recorder(region, factsOf(this.serv, region))
     this.byName.set(name, region)
     try {
       await this.inside(region, async () => {
-        buildColumns(this.serv, region, states)
+        buildColumns(this.serv, region, terrain)
         applyContainers(this.serv, region, containers)
         applySigns(this.serv, region, signs)
         await this.bodies.add(region, agents)
@@ -175,7 +179,7 @@ class Regions {
     return this.inside(region, () => {
       return {
         tick: region.tick,
-        blocks: runsOf(readStates(this.serv, region)),
+        changes: region.takeChanges(position => this.serv.overworld.sync.getBlockStateId(position)),
         containers: containerStates(this.serv, region),
         signs: signStates(this.serv, region),
         agents: agentStates(this.serv, region),

@@ -51,7 +51,7 @@ class RemoteExhibit {
     await guide.link.open()
     await setup.arrive()
     const present = setup.present()
-    if (!regions.server.overwrite) setup.requireFree(present, exhibit.states)
+    if (!regions.server.overwrite) setup.requireFree(present, exhibit.blocks.dense())
     this.saved = await regions.save({ scene, setup }, present)
     await this.fill()
     await Promise.all([...exhibit.agents].map(([name, pose]) => this.meet(name, pose)))
@@ -60,7 +60,7 @@ class RemoteExhibit {
 
   async fill () {
     const { exhibit, scene, setup } = this
-    scene.settle(await setup.build(exhibit.states))
+    scene.settle(await setup.build(exhibit.blocks.dense()))
     await setup.stock(setup.containers(scene.blocks).map(position => {
       const items = exhibit.containers.get(position.join())?.items ?? {}
       this.given.set(position.join(), this.stacks(position, items))

@@ -6,7 +6,8 @@
 const { setTimeout: sleep } = require('node:timers/promises')
 const { BadRequest } = require('../channel/errors')
 const { waitFor } = require('../bots/ticking')
-const { Box, runsOf, statesOf } = require('../regions/box')
+const { Box, runsOf } = require('../regions/box')
+const { Terrain } = require('../regions/terrain')
 const { Recorder } = require('../regions/recorder')
 const { vecOf } = require('../server/plugins/lib/positions')
 const { Agents } = require('./agents')
@@ -123,7 +124,7 @@ class RemoteRegions {
 
   async fill (open, { blocks, containers, agents, items, signs }) {
     const { region, scene, setup } = open
-    const wanted = statesOf(blocks, region.box)
+    const wanted = Terrain.read(blocks, region.box).dense()
     await setup.arrive()
     const { link, bot } = this.operator
     open.attach(bot, bot._client)

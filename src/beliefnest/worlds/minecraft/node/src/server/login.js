@@ -43,7 +43,7 @@ module.exports.player = (player, serv) => {
   /** Send everything that a client needs in order to be in the world. */
   player.sendWorld = columns => {
     player._client.write('login', loginPacket(serv, player.id, player.gameMode))
-    for (const [x, z] of columns) player.sendColumn(x, z)
+    player.sendColumns(columns)
     player.sendSigns()
     player._client.write('spawn_position', { location: serv.region.spawnPoint, angle: 0 })
     player._client.write('update_time', { age: [0, 0], time: [0, NOON] })

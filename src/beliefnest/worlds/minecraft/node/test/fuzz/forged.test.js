@@ -15,7 +15,7 @@ const { before, describe, test } = require('node:test')
 const assert = require('node:assert/strict')
 const { RequestHandler } = require('../../src/requestHandler')
 const { kinds } = require('../../src/sandbox/policy/kinds')
-const { agent, BOX, floor, statesIn } = require('../harness')
+const { agent, BOX, floor, statesIn, wholeSnapshot } = require('../harness')
 const { generator } = require('./generate')
 
 const FLOOR = BOX[0][1] + 1
@@ -83,11 +83,11 @@ describe('forged at random', () => {
 
   before(async () => {
     handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
-    await perform({ op: 'hello', protocol: 4, seed: 0, minecraft: '1.20.4' })
+    await perform({ op: 'hello', protocol: 5, seed: 0, minecraft: '1.20.4' })
   })
 
   const perform = request => handler.perform(request)
-  const snapshot = region => perform({ op: 'snapshot', region })
+  const snapshot = region => wholeSnapshot(handler, region)
 
   function create (region, random) {
     const { serv } = handler.regions

@@ -14,7 +14,7 @@ require('../../src/prepare').prepare()
 const { before, describe, test } = require('node:test')
 const assert = require('node:assert/strict')
 const { RequestHandler } = require('../../src/requestHandler')
-const { agent, BOX, floor, statesIn } = require('../harness')
+const { agent, BOX, floor, statesIn, wholeSnapshot } = require('../harness')
 const { materials, mayBeMissing, unexplained, worthTable } = require('./balance')
 const { AGENTS, Writer, generator } = require('./generate')
 
@@ -51,11 +51,11 @@ describe('random programs', () => {
 
   before(async () => {
     handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
-    await perform({ op: 'hello', protocol: 4, seed: 0, minecraft: '1.20.4' })
+    await perform({ op: 'hello', protocol: 5, seed: 0, minecraft: '1.20.4' })
     serv = handler.regions.serv
     worth = worthTable(serv.registry)
     await create('bystanders', 'bystanders', { sally: START.sally })
-    bystanders = plain(await perform({ op: 'snapshot', region: 'bystanders' }))
+    bystanders = plain(await wholeSnapshot(handler, 'bystanders'))
   })
 
   const perform = request => handler.perform(request)
@@ -129,7 +129,7 @@ describe('random programs', () => {
     // By now tossed items can be picked up; no pickup happens in the tick in which bots look.
     await perform({ op: 'step', region, ticks: SETTLING_TICKS })
     const { results } = await perform({ op: 'run', region, programs: Object.fromEntries(AGENTS.map(name => [name, LOOK])), timeout_ticks: 40 })
-    const { agents } = await perform({ op: 'snapshot', region })
+    const { agents } = await wholeSnapshot(handler, region)
     for (const name of AGENTS) {
       const { ok, error, log } = results[name]
       assert.deepEqual([ok, error], [true, null], name)
@@ -141,11 +141,11 @@ describe('random programs', () => {
   async function checkRun (region, random) {
     const programs = Object.fromEntries(AGENTS.filter(() => random.chance(80)).map(name => [name, new Writer(random, BLOCKS, Object.keys(INVENTORIES[name])).program()]))
     const timeout = 1 + random.below(random.chance(35) ? 60 : 400)
-    const first = await perform({ op: 'snapshot', region })
+    const first = await wholeSnapshot(handler, region)
     frames.length = 0
     const { results } = await perform({ op: 'run', region, programs, timeout_ticks: timeout })
     const told = [...frames]
-    const last = await perform({ op: 'snapshot', region })
+    const last = await wholeSnapshot(handler, region)
     try {
       assert.deepEqual(told.filter(frame => frame.region !== region), [], 'frames of other regions')
       // Frames do not contain the internal state.
@@ -181,7 +181,7 @@ describe('random programs', () => {
           total.programs += programs
           total.acts += acts
         }
-        assert.deepEqual(plain(await perform({ op: 'snapshot', region: 'bystanders' })), bystanders, 'another region')
+        assert.deepEqual(plain(await wholeSnapshot(handler, 'bystanders')), bystanders, 'another region')
       } finally {
         await perform({ op: 'destroy_region', region: name })
       }

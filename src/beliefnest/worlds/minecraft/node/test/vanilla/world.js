@@ -6,7 +6,7 @@
 const nbt = require('prismarine-nbt')
 const { Box } = require('../../src/regions/box')
 const { join, showWorld } = require('../../src/regions/joining')
-const { columnsOf } = require('../../src/regions/columns')
+const { columnsOf } = require('../../src/regions/ground')
 const { Region, TICK_MS } = require('../../src/regions/region')
 const { TcpEnd } = require('../../src/net/tcpEnd')
 const { COMMANDS, runCommand } = require('./commands')

@@ -37,9 +37,8 @@ module.exports.server = (serv) => {
     const before = serv.overworld.sync.getBlockStateId(position)
     if (before === stateId) return null
     serv.overworld.sync.setBlockStateId(position, stateId)
-    const column = `${Math.floor(position.x / 16)},${Math.floor(position.z / 16)}`
     for (const other of serv.players) {
-      if (other.loadedChunks?.[column]) blocks.send(other, position)
+      if (other.hasColumn?.(position)) blocks.send(other, position)
     }
     const change = { position: position.clone(), before, after: stateId, player }
     blocks.emit('change', change)

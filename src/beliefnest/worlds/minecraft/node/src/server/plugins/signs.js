@@ -23,9 +23,8 @@ module.exports.server = (serv) => {
   function put (position, text) {
     if (text === '') texts.delete(keyOf(position))
     else texts.set(keyOf(position), { position: vecOf(position), text })
-    const column = `${Math.floor(position.x / 16)},${Math.floor(position.z / 16)}`
     for (const player of serv.players) {
-      if (player.loadedChunks?.[column]) player.sendSign(position)
+      if (player.hasColumn?.(position)) player.sendSign(position)
     }
   }
 
