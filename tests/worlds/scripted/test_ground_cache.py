@@ -60,7 +60,7 @@ def test_programs_read_the_same_blocks_of_chunks_as_of_one_grid(seed: int) -> No
     box, chunked = box_of(grid), Terrain.of(grid)
     assert not chunked.is_dense
     grounds = Grounds()
-    texts = grounds.of(box, grid).text, grounds.of(box, chunked).text
+    texts = grounds.of(box, Terrain.of_one(grid)).text, grounds.of(box, chunked).text
     assert texts[0] != texts[1]
     assert read_by_a_program(texts[0]) == read_by_a_program(texts[1])
     draft = chunked.draft()
@@ -84,4 +84,4 @@ def test_small_boxes_with_equal_blocks_share_their_data() -> None:
     box, grounds = box_of(grid), Grounds()
     first, second = Terrain.of(grid), Terrain.of(grid)
     assert grounds.of(box, first) is grounds.of(box, second)
-    assert grounds.of(box, first) is grounds.of(box, np.ascontiguousarray(grid))
+    assert grounds.of(box, first) is grounds.of(box, Terrain.of_one(np.ascontiguousarray(grid)))
