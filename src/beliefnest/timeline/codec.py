@@ -18,7 +18,7 @@ import zstandard
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import Edit, Entry
 from beliefnest.world.frames import Frame, Snapshot
-from beliefnest.world.limits import MOST_HELD, box_fault
+from beliefnest.world.limits import box_fault
 from beliefnest.world.terrain import SIDE, VOLUME, Lattice, Terrain
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, Position
 
@@ -214,7 +214,7 @@ def _blocks_from(body: _SnapshotBody, box: Box) -> Terrain:
     """Return the block states of a stored snapshot; StoreError if they do not fill the box."""
     if min(box.shape) > 0 and not body.chunks and len(body.blocks) == 4 * math.prod(box.shape):
         return Terrain.of(np.frombuffer(body.blocks, "<i4").reshape(box.shape))
-    if not body.chunks or (fault := box_fault(box, MOST_HELD)):
+    if not body.chunks or (fault := box_fault(box)):
         told = f": {fault}" if body.chunks else ""
         raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}{told}")
     places = math.prod(Lattice(box.shape, is_one=False).counts)

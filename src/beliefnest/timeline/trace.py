@@ -25,7 +25,6 @@ from beliefnest.world.limits import (
     AGENT_SLOTS,
     LATEST_TICK,
     MOST_AGENTS,
-    MOST_HELD,
     WORN_SLOTS,
     agent_name_fault,
     box_fault,
@@ -216,7 +215,7 @@ class _Reader:
         self._box = Box(*line.box)
         self.names = tuple(line.agents)
         _check(
-            box_fault(self._box, MOST_HELD),
+            box_fault(self._box),
             _tick_fault(line.tick),
             *map(agent_name_fault, self.names),
         )

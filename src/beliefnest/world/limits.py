@@ -22,7 +22,6 @@ __all__ = [
     "LATEST_TICK",
     "MOST_AGENTS",
     "MOST_DENSE",
-    "MOST_HELD",
     "WORN_SLOTS",
     "agent_name_fault",
     "agents_fault",
@@ -53,9 +52,6 @@ _MOST_BLOCKS = 2**30
 
 MOST_DENSE = 8_000_000
 """Most blocks of a part of space that is read or drawn block by block."""
-
-MOST_HELD = 2**25
-"""Most blocks of a box of a trace."""
 
 _LONGEST_SIDE = 4096
 _CHUNK_BYTES = 50
