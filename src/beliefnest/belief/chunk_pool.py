@@ -96,12 +96,15 @@ class ChunkPool:
 
     def use(self, rows: Ints) -> None:
         """Count one more user of each row, for each time that it is listed."""
-        np.add.at(self.shares, rows, 1)
+        counts = np.bincount(rows)
+        self.shares[: len(counts)] += counts
 
     def leave(self, rows: Ints) -> None:
         """Count one user less of each row, for each time that it is listed; free unused ones."""
-        np.subtract.at(self.shares, rows, 1)
-        free = np.unique(rows[self.shares[rows] == 0])
+        counts = np.bincount(rows)
+        shares = self.shares[: len(counts)]
+        shares -= counts
+        free = np.flatnonzero((counts > 0) & (shares == 0))
         count = int(self.spare[0])
         self.spare[2 + count : 2 + count + len(free)] = free
         self.spare[0] += len(free)
@@ -141,12 +144,14 @@ class ChunkPool:
         used, numbers = self._used(rows)
         return self.codes[used], numbers
 
-    def _used(self, rows: Ints) -> tuple[npt.NDArray[np.bool_], Ints]:
-        """Return a mask of the rows of a grid, and for each place its number among them."""
-        is_used = np.zeros(len(self.shares), dtype=np.bool_)
+    def _used(self, rows: Ints) -> tuple[npt.NDArray[np.intp], Ints]:
+        """Return the different rows of a grid, and for each place the index of its row in them."""
+        is_used = np.zeros(self.used, dtype=np.bool_)
         is_used[rows] = True
-        numbers = (np.cumsum(is_used) - 1).astype(np.int32)
-        return is_used, numbers[rows]
+        used = np.flatnonzero(is_used)
+        numbers = np.empty(self.used, dtype=np.int32)
+        numbers[used] = np.arange(len(used))
+        return used, numbers[rows]
 
 
 def cut_grids(space: Space, grids: Sequence[Terrain]) -> CutGrids:
