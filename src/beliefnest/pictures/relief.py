@@ -21,6 +21,12 @@ NOWHERE, UNKNOWN = -2, -1
 
 _AIR = ("air", "cave_air", "void_air")
 
+_Mask = npt.NDArray[np.bool_]
+_Numbers = npt.NDArray[np.int32]
+
+_CELLS = 4_000_000
+"""Number of blocks that are looked at together."""
+
 Window = tuple[tuple[int, int], tuple[int, int]]
 """Lowest and highest x and z of a part of a box."""
 
@@ -58,33 +64,54 @@ def read_relief(
         height: Greatest y that is looked at.
         sights: Blocks that agents see, by name of the agent; shape of the box.
     """
-    registry, box = Registry.load(), state.box
+    registry, box, terrain = Registry.load(), state.box, state.blocks.terrain
     (x0, z0), (x1, z1) = window
-    cut = (
-        slice(x0 - box.low[0], x1 - box.low[0] + 1),
-        slice(0, height - box.low[1] + 1),
-        slice(z0 - box.low[2], z1 - box.low[2] + 1),
-    )
-    grid = state.blocks.grid[cut]
+    first, last = x0 - box.low[0], x1 - box.low[0] + 1
+    top, near, far = height - box.low[1] + 1, z0 - box.low[2], z1 - box.low[2] + 1
     is_air = np.zeros(registry.states + 1, dtype=np.bool_)
     for name in _AIR:
         ids = registry.state_ids(name)
         is_air[ids.start : ids.stop] = True
     # -1, unknown, indexes the last place.
     is_air[-1] = True
-    solid = ~is_air[grid]
-    depth = np.argmax(solid[:, ::-1], axis=1)
-    layers = grid.shape[1] - 1 - depth
-    found = np.take_along_axis(grid, layers[:, None], axis=1)[:, 0]
+    # A part of the columns at a time: all blocks of a large box would need much memory.
+    step = max(1, _CELLS // max(1, top * (far - near)))
+    columns = []
+    for start in range(first, last, step):
+        cut = (slice(start, min(start + step, last)), slice(0, top), slice(near, far))
+        grid = terrain.cut((cut[0].start, 0, near), (cut[0].stop, top, far))
+        columns.append(_columns(grid, is_air, {name: mask[cut] for name, mask in sights.items()}))
+    found, layers, empty = (np.concatenate([each[n] for each in columns]) for n in range(3))
     numbers, which = np.unique(found, return_inverse=True)
-    blocks = which.reshape(found.shape).astype(np.int32)
+    blocks = np.where(empty < 0, empty, which.reshape(found.shape)).astype(np.int32)
+    seen = {name: np.concatenate([each[3][name] for each in columns]) for name in sights}
+    names = tuple("air" if n < 0 else registry.text(n) for n in numbers.tolist())
+    return Relief(names, blocks, (layers + box.low[1]).astype(np.int32)), seen
+
+
+def _columns(
+    grid: npt.NDArray[np.int32], is_air: _Mask, sights: Mapping[str, _Mask]
+) -> tuple[_Numbers, npt.NDArray[np.intp], _Numbers, Mapping[str, _Mask]]:
+    """Return the highest blocks of columns, their layers, and who sees them.
+
+    Args:
+        grid: Block state ids (x, y, z).
+        is_air: By state, True for air; the last entry is for unknown.
+        sights: Blocks that agents see, by name of the agent; shape of the grid.
+
+    Returns:
+        Block state ids; layers; `UNKNOWN` or `NOWHERE` where all is air or unknown, else 0; and
+        masks by name of the agent. All are arrays (x, z).
+    """
+    solid = ~is_air[grid]
+    layers = grid.shape[1] - 1 - np.argmax(solid[:, ::-1], axis=1)
+    found = np.take_along_axis(grid, layers[:, None], axis=1)[:, 0]
     has = solid.any(axis=1)
-    blocks[~has] = np.where((grid < 0).any(axis=1), UNKNOWN, NOWHERE)[~has]
+    empty = np.where(has, 0, np.where((grid < 0).any(axis=1), UNKNOWN, NOWHERE))
     seen = {
         name: np.where(
-            has, np.take_along_axis(mask[cut], layers[:, None], axis=1)[:, 0], mask[cut].any(axis=1)
+            has, np.take_along_axis(mask, layers[:, None], axis=1)[:, 0], mask.any(axis=1)
         )
         for name, mask in sights.items()
     }
-    names = tuple("air" if n < 0 else registry.text(n) for n in numbers.tolist())
-    return Relief(names, blocks, (layers + box.low[1]).astype(np.int32)), seen
+    return found, layers, empty.astype(np.int32), seen

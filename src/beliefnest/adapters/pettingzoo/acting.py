@@ -164,8 +164,7 @@ class SkillActing:
     def _known_ground(self, agent: str) -> Ground:
         if self._senses == "world":
             return self._real_ground()
-        grid = self._nest[path_text((agent,))].state.blocks.grid
-        return self._ground(agent, Terrain.of_one(grid))
+        return self._ground(agent, self._nest[path_text((agent,))].state.blocks.terrain)
 
     def _real_ground(self) -> Ground:
         return self._ground("", self._world.terrain)
