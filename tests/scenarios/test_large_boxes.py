@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from beliefnest.errors import ScenarioError, WorldError
+from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios import instances, space
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import read_document
@@ -160,6 +161,25 @@ def test_a_large_box_takes_what_is_in_it(tmp_path: Any) -> None:
     assert snapshot.blocks.shape == (1000, 100, 1000)
     assert list(snapshot.containers) == [(12, 1, 12), (991, 1, 991)]
     assert len(snapshot.blocks.find([Registry.load().state_id("oak_planks")])) == 4 * 32 - 2
+
+
+def test_a_run_in_a_large_box_is_recorded_and_read(tmp_path: Any) -> None:
+    file, store = tmp_path / "big.yaml", tmp_path / "run.bn"
+    file.write_text(BIG + "static_blocks: [stone, air]\n")
+    chest = (991, 1, 991)
+    with Nest.open(Scenario.load(str(file)), "scripted", store=store) as nest:
+        (result,) = (
+            nest["/"].run_all({"ann": "await goToPosition(bot, new Vec3(60, 1, 40))"}).values()
+        )
+        assert result.ok
+        assert nest["/ann"].state.agents["ann"].position == (58.5, 1.0, 40.5)
+    assert store.stat().st_size < 2_000_000
+    with Nest.read(store) as nest:
+        for path in ("/", "/ann"):
+            blocks = nest[path].state.blocks
+            assert (blocks[999, 0, 999], blocks[999, 99, 999]) == ("stone", "air")
+        assert nest["/"].state.blocks[chest].startswith("chest")
+        assert nest["/ann"].state.blocks[chest] is None
 
 
 def refused(text: str, tmp_path: Any) -> str:
