@@ -66,6 +66,8 @@ class Space(NamedTuple):
         origin: float64 (3,), added to scenario coordinates to get the grid's.
         senses: Limits of what agents can perceive.
         beam: Scratch memory from `beams.beam_room`.
+        no_rows: What a scene of a dense grid has for rows: None. With chunks an empty array, which
+            no scene gets: numba wants one type from both branches of `cells.scene_of`.
     """
 
     sizes: tuple[int, int, int]
@@ -78,6 +80,7 @@ class Space(NamedTuple):
     origin: Floats
     senses: SenseLimits
     beam: "Beam"
+    no_rows: Ints | None
 
 
 class Poses(NamedTuple):

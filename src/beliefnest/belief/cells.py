@@ -96,9 +96,12 @@ def block_at(chunks: Chunks | None, blocks: States, rows: Rows, node: int, place
 
 
 @inlined
-def scene_of(space: Space, codes: Codes, rows: Rows) -> Scene:
+def scene_of(chunks: Chunks | None, space: Space, codes: Codes, rows: Rows) -> Scene:
     """Return the shapes of a node, from its line of `Nodes.codes` and its rows."""
-    return Scene(codes, space.sizes, space.starts, space.boxes, rows, space.chunks)
+    if chunks is None:
+        # As scenes without nodes: kernels of sight are then compiled once for both.
+        return Scene(codes, space.sizes, space.starts, space.boxes, space.no_rows, chunks)
+    return Scene(codes, space.sizes, space.starts, space.boxes, rows, chunks)
 
 
 @inner
@@ -144,7 +147,7 @@ def share(grids: Grids, node: int, parent: int, chunk: int) -> None:
 @inner
 def _intrude(space: Space, grids: Grids, node: int, cell: Cell) -> None:
     """Set or clear `INTRUDED` of a cell of a grid in chunks, from the shapes of its neighbours."""
-    scene = scene_of(space, grids.codes[0], grids.rows[node])
+    scene = scene_of(space.chunks, space, grids.codes[0], grids.rows[node])
     intruded = False
     for side in range(6):
         other = neighbour(cell, side)
@@ -186,7 +189,8 @@ def put_block(
         grids.blocks[node, cell] = state
         if space.codes[old] != space.codes[state]:
             place = grid_cell(space, cell)
-            set_code(grids.codes[node], space.sizes, space.reaches, place, space.codes[state])
+            code = whole(space.codes[state])
+            set_code(grids.codes[node], space.sizes, space.reaches, place, code)
             grids.geometry[node] += 1
     else:
         _put_in_chunk(space, grids, node, grid_cell(space, cell), state)

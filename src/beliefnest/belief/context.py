@@ -128,6 +128,7 @@ class BeliefContext:
             1.0 - np.array(self.box.low, dtype=np.float64),
             self.options.limits,
             beams.beam_room(),
+            None if self.is_dense else np.zeros(0, dtype=np.int32),
         )
 
     @property

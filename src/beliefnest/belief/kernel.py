@@ -107,7 +107,7 @@ def _held(space: Space, grids: Grids, node: int, place: int) -> int:
 @inlined
 def _scene(space: Space, grids: Grids, node: int) -> Scene:
     """Return the shapes of a node."""
-    return scene_of(space, grids.codes[line_of(space.chunks, node)], grids.rows[node])
+    return scene_of(space.chunks, space, grids.codes[line_of(space.chunks, node)], grids.rows[node])
 
 
 @inner

@@ -54,13 +54,13 @@ def _sees_agent_past(
     space: Space, poses: Poses, codes: Codes, rows: Rows, eye: Eye, pose: int
 ) -> bool:
     """Return `sees_agent` through the shapes with these codes and rows (`cells.scene_of`)."""
-    return sees_agent(space, poses, scene_of(space, codes, rows), eye, pose)
+    return sees_agent(space, poses, scene_of(space.chunks, space, codes, rows), eye, pose)
 
 
 @inner
 def _sees_cell_past(space: Space, codes: Codes, rows: Rows, eye: Eye, cell: int) -> bool:
     """Return `sees_cell` for a flat cell, through the shapes with these codes and rows."""
-    return sees_cell(space, scene_of(space, codes, rows), eye, grid_cell(space, cell))
+    return sees_cell(space, scene_of(space.chunks, space, codes, rows), eye, grid_cell(space, cell))
 
 
 @allocating
@@ -119,4 +119,4 @@ def sees_point(
     eye = eye_of(space, poses, pose)
     x, y, z = point
     place = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
-    return eye_sees_point(scene_of(space, codes, rows), eye, place)
+    return eye_sees_point(scene_of(space.chunks, space, codes, rows), eye, place)

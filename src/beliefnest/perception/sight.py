@@ -265,7 +265,9 @@ class Geometry(SightLines):
         lit = self._lit(seer[0])
         if lit is not None:
             seen = np.zeros(self.codes.shape, dtype=np.bool_)
-            seen[lit] = eye_loops.seen_blocks(self._scene, seer, np.argwhere(lit))
+            # In the order of `sees_blocks`: the kernel is compiled for each order.
+            cells = np.ascontiguousarray(np.argwhere(lit))
+            seen[lit] = eye_loops.seen_blocks(self._scene, seer, cells)
         else:
             noted = shadows.cast_shadows(self._scene, self.sight.reaches, seer[0])
             seen = eye_loops.seen_grid(self._scene, seer, noted)
