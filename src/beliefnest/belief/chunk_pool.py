@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import UNKNOWN, Space
-from beliefnest.perception.codes import EMPTY, code_grid
+from beliefnest.belief.arrays import UNKNOWN
+from beliefnest.perception.codes import EMPTY, Reaches, code_grid
+from beliefnest.perception.sight import ChunkGeometry, Sight, SightLines
 from beliefnest.world.terrain import SIDE, VOLUME, Terrain, chunks_of
+from beliefnest.world.values import Position
 
-__all__ = ["NOTHING", "ChunkPool", "CutGrids", "cut_grids"]
+__all__ = ["NOTHING", "ChunkPool", "CutGrids", "cut_grids", "lines_of_sight"]
 
 Ints = npt.NDArray[np.int32]
 States = npt.NDArray[np.int16]
@@ -154,20 +156,40 @@ class ChunkPool:
         return used, numbers[rows]
 
 
-def cut_grids(space: Space, grids: Sequence[Terrain]) -> CutGrids:
-    """Cut grids of block numbers of the box into chunks, and compute their geometry."""
+def lines_of_sight(sight: Sight, origin: Position, blocks: Terrain) -> SightLines:
+    """Prepare block states for looks; `origin` is the position of the lower corner of the box."""
+    if blocks.is_dense:
+        return sight.geometry(blocks.dense(), origin)
+    cut = cut_grids(sight.state_codes, sight.reaches, (blocks,))
+    return ChunkGeometry(sight, origin, blocks.shape, cut.codes, cut.rows[0])
+
+
+def cut_grids(shape_codes: Codes, reaches: Reaches, grids: Sequence[Terrain]) -> CutGrids:
+    """Cut grids of block numbers of the box into chunks, and compute their geometry.
+
+    Args:
+        shape_codes: Code of each number; the last entry is for unknown.
+        reaches: Sides at which the shape of each code reaches out of its cell.
+        grids: The grids.
+    """
     known: dict[bytes, int] = {}
     kept: list[bytes] = []
     rows: list[Ints] = []
     for grid in grids:
-        rows.append(_cut(space, grid, known, kept))
+        rows.append(_cut(shape_codes, reaches, grid, known, kept))
     size = VOLUME * np.dtype(np.int16).itemsize
     both = np.frombuffer(b"".join(kept), dtype=np.uint8).reshape(len(kept), 2 * size)
     blocks, codes = both[:, :size].copy(), both[:, size:].copy()
     return CutGrids(blocks.view(np.int16), codes.view(np.uint16), rows)
 
 
-def _cut(space: Space, grid: Terrain, known: dict[bytes, int], kept: list[bytes]) -> Ints:
+def _cut(
+    shape_codes: Codes,
+    reaches: Reaches,
+    grid: Terrain,
+    known: dict[bytes, int],
+    kept: list[bytes],
+) -> Ints:
     """Return the numbers of the chunks of a grid, and add new ones to `known` and `kept`."""
 
     def number_of(blocks: States, codes: Codes) -> int:
@@ -182,12 +204,12 @@ def _cut(space: Space, grid: Terrain, known: dict[bytes, int], kept: list[bytes]
     for chunk, places, inside in grid.kinds():
         blocks, codes = empty.copy(), _empty_codes()
         blocks[inside] = chunk[inside]
-        codes[inside] = space.codes[chunk[inside]]
+        codes[inside] = shape_codes[chunk[inside]]
         rows[places] = number_of(blocks, codes)
     # Shapes of some blocks reach into neighbouring cells, and so into neighbouring chunks.
-    reaching = [state for state in grid.states if space.reaches[space.codes[state]]]
+    reaching = [state for state in grid.states if reaches[shape_codes[state]]]
     for place in grid.lattice.around(grid.find(reaching)).tolist() if reaching else ():
-        rows[place] = number_of(*_with_neighbours(space, grid, place))
+        rows[place] = number_of(*_with_neighbours(shape_codes, reaches, grid, place))
     return rows
 
 
@@ -196,7 +218,9 @@ def _empty_codes() -> Codes:
     return np.full((SIDE, SIDE, SIDE), EMPTY, dtype=np.uint16)
 
 
-def _with_neighbours(space: Space, grid: Terrain, place: int) -> tuple[States, Codes]:
+def _with_neighbours(
+    shape_codes: Codes, reaches: Reaches, grid: Terrain, place: int
+) -> tuple[States, Codes]:
     """Return the blocks of a chunk, and their geometry with what reaches in from around it."""
     start = grid.lattice.start(place)
     low = [max(at - 1, 0) for at in start]
@@ -205,7 +229,7 @@ def _with_neighbours(space: Space, grid: Terrain, place: int) -> tuple[States, C
     wide = np.full([SIDE + 4] * 3, EMPTY, dtype=np.uint16)
     # A code grid has a margin of one cell.
     wide[tuple(slice(a - s + 1, b - s + 3) for a, b, s in zip(low, high, start, strict=True))] = (
-        code_grid(near, space.codes, space.reaches)
+        code_grid(near, shape_codes, reaches)
     )
     held = np.full([SIDE + 2] * 3, UNKNOWN, dtype=np.int16)
     held[tuple(slice(a - s + 1, b - s + 1) for a, b, s in zip(low, high, start, strict=True))] = (

@@ -66,7 +66,8 @@ class Beginning:
     def cut(self) -> CutGrids:
         """Return the chunks of both grids of `grids`."""
         if self._cut is None:
-            self._cut = cut_grids(self._context.space, self.grids)
+            space = self._context.space
+            self._cut = cut_grids(space.codes, space.reaches, self.grids)
         return self._cut
 
 

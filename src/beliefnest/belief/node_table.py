@@ -283,7 +283,7 @@ class NodeTable:
         """Set all blocks of a node, and its geometry."""
         space = self.context.space
         if self.pool is not None:
-            (rows,) = self.pool.add_grids(cut_grids(space, (blocks,)))
+            (rows,) = self.pool.add_grids(cut_grids(space.codes, space.reaches, (blocks,)))
             self.set_rows(node, rows)
             self.leave(rows)
             return

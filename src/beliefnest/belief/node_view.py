@@ -122,7 +122,8 @@ class NodeView:
         if forest.table.pool is None:
             return self._dense_geometry
         if self._is_left:
-            cut = cut_grids(forest.context.space, (self.numbers,))
+            space = forest.context.space
+            cut = cut_grids(space.codes, space.reaches, (self.numbers,))
             codes, rows = cut.codes, cut.rows[0]
         else:
             codes, rows = forest.table.codes(self._node)

@@ -202,13 +202,46 @@ def test_imaginations_are_the_same(tmp_path):
             [each.world.agents["bob"].position for each in forks],
             [mind.is_unknown(cell) for cell in cells],
             [mind.may_reach("bob", cell) for cell in cells],
+            [sorted(each.seen_by("bob")) for each in forks],
         )
 
     plain, cut = with_and_without_chunks(imagined)
     assert plain == cut
-    equal, feet, unknown, _ = plain
+    equal, feet, unknown, _, _ = plain
     assert equal[2][3]
     assert not equal[0][2]
     assert feet[1] != feet[0]
     assert True in unknown
     assert False in unknown
+
+
+def test_imagined_histories_are_the_same(tmp_path):
+    def imagined():
+        world = bn.ScriptedWorld(
+            BOX,
+            blocks(),
+            {"ann": (-7.5, 61.0, -17.5), "bob": (5.5, 61.0, 2.5)},
+            containers={CHEST: {"bread": 2}},
+        )
+        known = bn.InitialBelief(
+            ("ann",), {CHEST: ({"bread": 2}, True)}, {}, {"bob": (5.5, 61.0, 2.5)}
+        )
+        perception = bn.Perception(max_visible_distance=12)
+        with bn.Nest(
+            world,
+            static_blocks=["stone"],
+            initial_beliefs=[known],
+            perception=perception,
+            store=tmp_path / f"{terrain.DENSE}.bn",
+        ) as nest:
+            world.step(20)
+            world.withdraw("bob", CHEST, {"bread": 1})
+            world.place_agent("ann", (5.5, 61.0, 3.5))
+            world.open("ann", CHEST)
+            take = f"await getItemFromChest(bot, {list(CHEST)}, {{bread: 1}})"
+            found = nest["/ann"].imagine(0, actors={"bob": {"take": take, "idle": ""}}, n=8)
+            return found.by_candidate("bob")
+
+    plain, cut = with_and_without_chunks(imagined)
+    assert plain == cut
+    assert plain["take"] > plain["idle"]

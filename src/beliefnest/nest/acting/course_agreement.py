@@ -6,10 +6,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from beliefnest.belief.chunk_pool import lines_of_sight
 from beliefnest.nest.acting.courses import Course, Glimpse
 from beliefnest.nest.past.percepts import Percept
-from beliefnest.perception.sight import Geometry, Sight
-from beliefnest.world.frames import BlockGrid
+from beliefnest.perception.sight import Sight, SightLines
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Point, Position, block_at
 
 __all__ = ["Agreement", "Tolerance", "Witness"]
@@ -69,8 +70,8 @@ class Agreement:
     """
 
     witness: Witness
-    _grids: dict[int, tuple[BlockGrid, bytes]] = field(default_factory=dict)
-    _geometries: dict[bytes, Geometry] = field(default_factory=dict)
+    _grids: dict[int, tuple[Terrain, bytes]] = field(default_factory=dict)
+    _geometries: dict[bytes, SightLines] = field(default_factory=dict)
     _sees: dict[tuple[bytes, Point, float, float, Point], bool] = field(default_factory=dict)
     _blocks: dict[tuple[bytes, int], bool] = field(default_factory=dict)
     _lying: dict[tuple[bytes, Point, float, float], Counter[tuple[str, Position]]] = field(
@@ -161,12 +162,12 @@ class Agreement:
             or self._sees_agent(grid, glimpse, glimpse.agents[deed[1]].position)
         )
 
-    def _blocks_fit(self, grid: bytes, blocks: BlockGrid, number: int) -> bool:
+    def _blocks_fit(self, grid: bytes, blocks: Terrain, number: int) -> bool:
         key = (grid, number)
         found = self._blocks.get(key)
         if found is None:
             percept, keep = self.witness.percepts[number], self._keep[number]
-            there = blocks.reshape(-1)[percept.cells[keep]]
+            there = blocks.at(percept.cells[keep])
             found = self._blocks[key] = bool(np.array_equal(there, percept.states[keep]))
         return found
 
@@ -229,18 +230,18 @@ class Agreement:
             found = self._sees[key] = bool(geometry.sees_agents(*eye, [feet])[0])
         return found
 
-    def _grid(self, blocks: BlockGrid) -> bytes:
+    def _grid(self, blocks: Terrain) -> bytes:
         known = self._grids.get(id(blocks))
         if known is None or known[0] is not blocks:
             while len(self._grids) >= _MOST_GRIDS:
                 del self._grids[next(iter(self._grids))]
-            known = self._grids[id(blocks)] = (blocks, blocks.tobytes())
+            known = self._grids[id(blocks)] = (blocks, blocks.key)
         return known[1]
 
-    def _geometry(self, grid: bytes, blocks: BlockGrid) -> Geometry:
+    def _geometry(self, grid: bytes, blocks: Terrain) -> SightLines:
         found = self._geometries.get(grid)
         if found is None:
-            made = self.witness.sight.geometry(blocks, self.witness.box.low)
+            made = lines_of_sight(self.witness.sight, self.witness.box.low, blocks)
             found = self._geometries[grid] = made
         return found
 

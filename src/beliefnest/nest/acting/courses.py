@@ -18,8 +18,9 @@ from beliefnest.errors import InputError, WorldError
 from beliefnest.minds.walking import Act, Changes, Draw, Open, Step, Strategy, Walker
 from beliefnest.nest.past.percepts import Deed, Percept, deed_of
 from beliefnest.world.event_kinds import AT_CONTAINERS
-from beliefnest.world.frames import BlockGrid, Frame, Snapshot
+from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.signs import plain_state
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Items, Point, Position, block_at, feet_in
 from beliefnest.worlds.protocol import Fault, RunRules
 from beliefnest.worlds.scripted.engines import Engines
@@ -119,7 +120,7 @@ class Glimpse:
     """
 
     tick: int
-    blocks: BlockGrid
+    blocks: Terrain
     agents: Mapping[str, AgentState]
     containers: Mapping[Position, Items]
     deeds: tuple[Deed, ...]
@@ -410,7 +411,7 @@ class Course:
             deeds = tuple(sorted(found))
         is_new = frame is None or not frame.is_empty
         containers = dict(world.containers)
-        return Glimpse(world.now, world.blocks, world.agents, containers, deeds, is_new)
+        return Glimpse(world.now, world.terrain, world.agents, containers, deeds, is_new)
 
 
 def _place(detail: Mapping[str, Any]) -> Position:

@@ -12,6 +12,7 @@ from functools import cache
 
 import numpy as np
 
+from beliefnest.belief.chunk_pool import lines_of_sight
 from beliefnest.belief.columns import Columns
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent, Source
@@ -20,9 +21,9 @@ from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.nest.past.embodiable import embodiable, with_chests
-from beliefnest.perception.sight import Geometry, Sight
+from beliefnest.perception.sight import Sight, SightLines
 from beliefnest.skills.calls import OPEN_CONTAINER, Call
-from beliefnest.world.frames import BlockGrid, Frame
+from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.terrain import States, Terrain
@@ -121,7 +122,7 @@ class Imagination:
         self._believed = believed
         self._grounds = grounds
         self._ground: tuple[Terrain, Ground] | None = None
-        self._geometry: tuple[BlockGrid, Geometry] | None = None
+        self._geometry: tuple[Terrain, SightLines] | None = None
         self._switches: tuple[Terrain, Sequence[Position]] | None = None
         self._news = news
         self._sight = sight
@@ -407,10 +408,10 @@ class Imagination:
     def _has_free_line(self, eye: Point, block: Position) -> bool:
         return self._looking().has_free_line(eye, block)
 
-    def _looking(self) -> Geometry:
-        blocks = self.world.blocks
+    def _looking(self) -> SightLines:
+        blocks = self.world.terrain
         if self._geometry is None or self._geometry[0] is not blocks:
-            self._geometry = (blocks, self._sight.geometry(blocks, self.world.box.low))
+            self._geometry = (blocks, lines_of_sight(self._sight, self.world.box.low, blocks))
         return self._geometry[1]
 
     def _take(self, frame: Frame) -> None:
