@@ -58,6 +58,8 @@ class Walkers:
     Attributes:
         feet: Places of the agents by name.
         nest: Nest of their beliefs.
+        paths: Paths of these beliefs.
+        began: Processor time of opening the nest, in s.
         world: World in which they walk.
     """
 
@@ -65,10 +67,12 @@ class Walkers:
         self._chance = random.Random(_SEED)
         registry = Registry.load()
         stone, (x, y, z) = registry.state_id("stone"), walk.shape
-        blocks = np.full(walk.shape, registry.air, dtype=np.int32)
-        blocks[:, : _GROUND + 1] = stone
-        blocks[4::7, _GROUND + 1 : _GROUND + 4, 5::7] = stone
-        self._taken = blocks[:_FIELD, _GROUND + 1, :_FIELD] == stone
+        blocks = Terrain.full(walk.shape, registry.air).draft()
+        blocks.fill((0, 0, 0), (x, _GROUND + 1, z), stone)
+        self._taken = np.zeros((_FIELD, _FIELD), dtype=np.bool_)
+        self._taken[4::7, 5::7] = True
+        for i, k in product(range(4, x, 7), range(5, z, 7)):
+            blocks.fill((i, _GROUND + 1, k), (i + 1, _GROUND + 4, k + 1), stone)
         self.feet: dict[str, Point] = {}
         for number in range(walk.agents):
             at = _SPAWN + 7 * (number % 5) + 0.5, _SPAWN + 4 * (number // 5 % 9) + 0.5
@@ -76,22 +80,25 @@ class Walkers:
         self._yaws = {name: self._chance.uniform(-math.pi, math.pi) for name in self.feet}
         box = Box((0, 0, 0), (x - 1, y - 1, z - 1))
         agents = {name: AgentState(feet) for name, feet in self.feet.items()}
-        self.world = ScriptedWorld.from_snapshot(Snapshot(0, box, Terrain.of(blocks), {}, agents))
+        snapshot = Snapshot(0, box, blocks.terrain().canonical(), {}, agents)
         del blocks
+        self.world = ScriptedWorld.from_snapshot(snapshot)
         known = ["stone", "air"] if walk.is_known else []
+        started = time.process_time()
         self.nest = Nest(self.world, static_blocks=known, store=store)
-        self._paths = paths_below_root(list(self.feet), walk.depth)
+        self.began = time.process_time() - started
+        self.paths = paths_below_root(list(self.feet), walk.depth)
 
     def first_beliefs(self) -> float:
         """Make all beliefs down to the walk's depth; return the processor time in s."""
         started = time.process_time()
-        self.nest.states(self._paths)
+        self.nest.states(self.paths)
         return time.process_time() - started
 
     def read(self) -> float:
         """Read every belief of the walk; return the processor time in ms."""
         started = time.process_time()
-        for path in self._paths:
+        for path in self.paths:
             self.nest[path].state  # noqa: B018 - what is measured
         return (time.process_time() - started) * 1e3
 
