@@ -8,6 +8,10 @@ from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.page import write_page
 from beliefnest.nest.face.nest import Nest
 from beliefnest.viewer.page.html import page_html
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.terrain import Terrain
+from beliefnest.world.values import AgentState, Box
+from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest_benchmarks.browser import Browser
 from beliefnest_benchmarks.hills import LARGE, Hills
 
@@ -58,6 +62,35 @@ def test_a_wide_world_is_shown_as_a_whole_from_above_and_in_space(
     """
     # Grass, water, planks and stone, each in the light of several slopes.
     assert browser.script(colours) > 8
+    assert browser.complaints() == []
+
+
+def test_of_a_vast_world_the_part_around_agents_is_shown_and_grows_with_them(browser, tmp_path):
+    far = {"anne": (30.5, 1, 40.5), "bob": (60.5, 1, 44.5)}
+    ground = Terrain.full((400, 8, 300), 0).draft()
+    world = ScriptedWorld.from_snapshot(
+        Snapshot(
+            0,
+            Box((0, 0, 0), (399, 7, 299)),
+            ground.terrain(),
+            {},
+            {name: AgentState(place, 0.0) for name, place in far.items()},
+        )
+    )
+    with Nest(world, store=tmp_path / "vast.bn"), world.tick():
+        world.place_agent("bob", (330.5, 1, 44.5))
+    page = tmp_path / "vast.html"
+    write_page(ShowOptions(tmp_path / "vast.bn"), page)
+
+    browser.open(f"{page.as_uri()}#view=plan&at=/&beside=none&tick=0")
+    sides = "const {width, height} = document.querySelector('.plan > canvas');"
+    browser.until_script(sides + "return width !== 300")
+    # Anne and Bob with 24 blocks around them, in steps of 16.
+    assert browser.script(sides + "return width / height") == pytest.approx(96 / 64, rel=0.05)
+    browser.script("location.hash = '#view=plan&at=/&beside=none&tick=1'")
+    browser.until_script(sides + "return width / height > 3")
+    marks = "return document.querySelectorAll('.stage:not([hidden]) .over .target').length"
+    assert browser.script(marks) == 2
     assert browser.complaints() == []
 
 

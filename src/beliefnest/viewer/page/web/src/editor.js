@@ -2,6 +2,7 @@
 
 import { badge, button, element, refill, svg } from './elements.js'
 import { Plan } from './floorPlan.js'
+import { wholeOf } from './part.js'
 import { Run } from './run.js'
 import { packedData } from './source.js'
 import { mainStorey, thingsOf } from './things.js'
@@ -138,7 +139,7 @@ class Editor {
     const { seen } = this.scene
     this.plan.drawn = null
     this.plan.draw({
-      run: this.run, timeline: this.run.timelines[0], track: this.track, tick: 0, things: this.things, storey: this.storey, seen, seenVersion: '', ray: null, chosen: null, named: true, dark: matchMedia('(prefers-color-scheme: dark)').matches
+      run: this.run, part: wholeOf(this.run), timeline: this.run.timelines[0], track: this.track, tick: 0, things: this.things, storey: this.storey, seen, seenVersion: '', ray: null, chosen: null, named: true, dark: matchMedia('(prefers-color-scheme: dark)').matches
     })
     // Nothing on this plan is a button: the layer above it takes clicks and keys, and reads out what is there.
     for (const each of this.plan.over.querySelectorAll('.target')) for (const name of ['tabindex', 'role', 'aria-label']) each.removeAttribute(name)

@@ -29,14 +29,15 @@ export class Plan {
 
   /**
    * Draw a scene.
-   * @param {object} scene - run, track, tick, things, storey, seen (Uint8Array or null), ray, chosen, dark, and `named` to name containers
+   * @param {object} scene - run, part, track, tick, things, storey, seen (Uint8Array or null), ray, chosen, dark, and `named` to name containers
    */
   draw (scene) {
-    const { run } = scene
-    const [width, , depth] = run.shape
+    const { run, part } = scene
+    const [width, depth] = part.size
     const room = this.element.getBoundingClientRect()
     this.size = Math.max(isWide(run) ? LEAST_WIDE : LEAST, Math.min(room.width / width, room.height / depth))
-    this.low = run.head.box.low
+    const { low } = run.head.box
+    this.low = [low[0] + part.low[0], low[1], low[2] + part.low[1]]
     this.drawBlocks(scene, width, depth)
     const [w, d] = [width * this.size, depth * this.size]
     this.over.setAttribute('viewBox', `0 0 ${w} ${d}`)
@@ -50,8 +51,8 @@ export class Plan {
   }
 
   drawBlocks (scene, width, depth) {
-    const { run, track, tick, storey, seen, dark } = scene
-    const version = `${track.gridVersion(tick)} ${storey} ${this.size} ${dark} ${scene.seenVersion}`
+    const { run, part, track, tick, storey, seen, dark } = scene
+    const version = `${track.gridVersion(tick)} ${storey} ${this.size} ${this.low} ${dark} ${scene.seenVersion}`
     if (version === this.drawn) return
     this.drawn = version
     const scale = Math.min(2, devicePixelRatio || 1) * this.size
@@ -64,7 +65,7 @@ export class Plan {
     const height = run.shape[1]
     if (isWide(run)) {
       const image = paint.createImageData(width, depth)
-      paintRelief(image, run, grid, layer, seen, tones)
+      paintRelief(image, { run, part, grid, layer, seen }, tones)
       return this.putImage(paint, image)
     }
     for (let i = 0; i < width; i++) {

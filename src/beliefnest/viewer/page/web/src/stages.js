@@ -4,6 +4,7 @@ import { PerspectiveCamera, Vector3 } from 'three'
 import { believesText } from './detail.js'
 import { element, refill } from './elements.js'
 import { Plan } from './floorPlan.js'
+import { partToShow } from './part.js'
 import { isWide } from './run.js'
 import { Space, hasWebGL } from './space.js'
 import { thingsOf } from './things.js'
@@ -58,16 +59,15 @@ export class Stages {
     const wanted = scene.choice.view ?? (innerWidth < NARROW ? 'plan' : 'space')
     const view = this.webgl && VIEWS[wanted] ? wanted : 'plan'
     this.drawBar(scene, view)
-    this.aim(scene)
     const { beside, run, track } = scene
-    this.stages[0].draw(scene, view)
     const two = beside !== null && beside !== track
+    const second = two ? besideScene(scene) : null
+    const known = this.aimed === run ? this.part : null
+    this.part = partToShow(run, [scene.things, ...(two ? [second.things] : [])], known)
+    this.aim(scene)
+    this.stages[0].draw({ ...scene, part: this.part }, view)
     this.stages[1].element.hidden = !two
-    if (two) {
-      const tick = Math.max(beside.timeline.facts.start, Math.min(beside.timeline.facts.head, scene.tick))
-      const things = thingsOf(run, beside, tick)
-      this.stages[1].draw({ ...scene, track: beside, tick, things, seen: null, seenVersion: '', ray: null }, view)
-    }
+    if (two) this.stages[1].draw({ ...second, part: this.part }, view)
   }
 
   drawBar ({ run, timeline, choice, storey, beside, track }, view) {
@@ -96,9 +96,9 @@ export class Stages {
     const two = beside !== null && beside !== track
     const room = this.element.getBoundingClientRect()
     const aspect = Math.max(0.5, room.width / (two && innerWidth > NARROW ? 2 : 1) / Math.max(1, room.height - BARS))
-    const [width, , depth] = run.shape
+    const { low: [left, back], size: [width, depth] } = this.part
     const { low } = run.head.box
-    this.target.set(low[0] + width / 2, isWide(run) ? middleHeight(run, things) : low[1] + 1, low[2] + depth / 2)
+    this.target.set(low[0] + left + width / 2, isWide(run) ? middleHeight(run, things) : low[1] + 1, low[2] + back + depth / 2)
     const far = Math.max(0.9 * depth + 3, (0.56 * width / (HALF_VIEW * aspect) + 0.35 * depth) / 1.2)
     this.camera.position.set(this.target.x, this.target.y + 0.92 * far, this.target.z + 0.78 * far)
     this.camera.lookAt(this.target)
@@ -153,6 +153,13 @@ class Stage {
 }
 
 /** Return the height in the middle of those at which things stand. @returns {number} */
+/** Return the scene of the simulator that is shown beside the chosen one. */
+function besideScene (scene) {
+  const { beside, run } = scene
+  const tick = Math.max(beside.timeline.facts.start, Math.min(beside.timeline.facts.head, scene.tick))
+  return { ...scene, track: beside, tick, things: thingsOf(run, beside, tick), seen: null, seenVersion: '', ray: null }
+}
+
 function middleHeight (run, things) {
   const heights = [...things.containers.map(each => each.place[1]), ...things.agents.filter(each => each.pose !== null).map(each => each.pose.y)].sort((a, b) => a - b)
   return heights[Math.floor(heights.length / 2)] ?? run.head.box.low[1] + 1
