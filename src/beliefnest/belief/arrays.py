@@ -127,6 +127,8 @@ class Nodes(NamedTuple):
         parent: (N,), index of the shallower node; -1 for node 0.
         agent: (N,), the owner, whose belief the node is; -1 for node 0.
         child_at, child: Node n's children are child[child_at[n]:child_at[n + 1]].
+        twin: (N,), the earlier node of the same owner below the parent of the parent, as `/b` for
+            `/a/b`; -1: there is none.
         pose: (N, A), id of each agent's believed pose; -1 unknown.
         equipment: (N, A), pose id of each agent's believed equipment; -1 unknown.
         seen_at: (N, A), last tick at which the pose was current, for poses that no longer are.
@@ -138,6 +140,7 @@ class Nodes(NamedTuple):
         codes: (N, cells with margin), geometry of the blocks, as codes of `perception.codes`.
         geometry: (N,), number of changes of the geometry so far.
         versions: (N,), number of changes of blocks, or of the rows that hold them, so far.
+        unlike: (N,), number of cells whose shape is not that of the parent's cell.
         pending: (N, words), bit set of cells where the parent knows another block.
         fresh: (N,), whether a bit of `pending` was set since the owner last looked for those cells.
         eye: (N,), id of the pose the owner last looked from; -1: it was not present.
@@ -157,6 +160,7 @@ class Nodes(NamedTuple):
     agent: Ints
     child_at: Ints
     child: Ints
+    twin: Ints
     pose: Ints
     equipment: Ints
     seen_at: Ints
@@ -168,6 +172,7 @@ class Nodes(NamedTuple):
     codes: npt.NDArray[np.uint16]
     geometry: Ints
     versions: Ints
+    unlike: Ints
     pending: npt.NDArray[np.uint64]
     fresh: Flags
     eye: Ints
@@ -190,6 +195,7 @@ class Looks(NamedTuple):
 
     parent: Ints
     agent: Ints
+    twin: Ints
     pose: Ints
     equipment: Ints
     seen_at: Ints
@@ -213,6 +219,7 @@ class Grids(NamedTuple):
     codes: npt.NDArray[np.uint16]
     geometry: Ints
     versions: Ints
+    unlike: Ints
     pending: npt.NDArray[np.uint64]
     fresh: Flags
 

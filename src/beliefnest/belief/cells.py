@@ -53,6 +53,7 @@ def grids_of(nodes: Nodes) -> Grids:
         nodes.codes,
         nodes.geometry,
         nodes.versions,
+        nodes.unlike,
         nodes.pending,
         nodes.fresh,
     )

@@ -9,13 +9,16 @@ past (section 5). Every node has a higher number than its parent. `fold` therefo
 applies it to node 0 and then updates all other nodes in rising order: each owner looks at a parent
 that already is as it is after this entry.
 
-**Cost grows with what changed.** Three caches in `Nodes` spare lines of sight:
+**Cost grows with what changed.** Caches in `Nodes` spare lines of sight:
 
 * `pending` has a bit for each cell where the parent knows another block than the node. Perception
   replaces a value by the parent's value (section 4), so it can change no other cell.
 * `sees` and `watched` hold what the owner saw last. They stay true while the owner looks from the
   same pose (`eye`) at the same shapes (`seen_geometry`). `tried` says for which pose of the other
   agent `sees` holds.
+* Nodes of one owner share lines of sight: `/a/b` looks from the same eye as `/b`, its *twin*. While
+  `/a` believes in the shapes of the real world (`unlike` is 0), it sees what the twin sees, unless
+  it believes an agent elsewhere.
 * `fresh` says that a bit of `pending` was set since the last look. Without it, and without a
   change of the eye or of the shapes, every pending cell was out of sight before and still is.
 """
@@ -73,6 +76,7 @@ def _looks_of(nodes: Nodes) -> Looks:
     return Looks(
         nodes.parent,
         nodes.agent,
+        nodes.twin,
         nodes.pose,
         nodes.equipment,
         nodes.seen_at,
@@ -126,17 +130,36 @@ def _mark(space: Space, grids: Grids, node: int, place: int) -> None:
         grids.pending[node, word] &= ~bit
 
 
+@inlined
+def _newly_unlike(space: Space, other: int, before: int, after: int) -> int:
+    """Return 1 if a change of a block makes its shape differ from another block's, -1 if equal.
+
+    Return 0 if nothing changes in this respect.
+    """
+    shape = space.codes[other]
+    return whole(space.codes[after] != shape) - whole(space.codes[before] != shape)
+
+
 @inner
 def _put(space: Space, grids: Grids, node: int, cell: int, state: int) -> None:
-    """Set the block of a cell in a node, its geometry, and the pending bits that depend on it."""
+    """Set the block of a cell in a node, its geometry, and what depends on it.
+
+    This is the node's and its children's `unlike`, and their pending bits.
+    """
     place = place_of(space.chunks, space, cell)
-    if _held(space, grids, node, place) == state:
+    before = _held(space, grids, node, place)
+    if before == state:
         return
     put_block(space.chunks, space, grids, node, cell, state)
     if node > 0:
+        above = _held(space, grids, whole(grids.parent[node]), place)
+        grids.unlike[node] += _newly_unlike(space, above, before, state)
         _mark(space, grids, node, place)
     for n in range(grids.child_at[node], grids.child_at[node + 1]):
-        _mark(space, grids, whole(grids.child[n]), place)
+        child = whole(grids.child[n])
+        below = _held(space, grids, child, place)
+        grids.unlike[child] += _newly_unlike(space, below, before, state)
+        _mark(space, grids, child, place)
 
 
 @compiled
@@ -252,6 +275,23 @@ def _apply_entry(
             bases.basis_source[0, spot] = SOURCE_SEEN
 
 
+@inlined
+def _guide(looks: Looks, grids: Grids, node: int) -> int:
+    """Return the node's twin if it looks from the same eye at the same shapes; otherwise -1.
+
+    The twin has been updated for this entry: it has a lower number and is at a lower depth.
+    """
+    twin, parent = whole(looks.twin[node]), whole(looks.parent[node])
+    if (
+        twin != UNKNOWN
+        and grids.unlike[parent] == 0
+        and looks.eye[twin] == looks.eye[node]
+        and looks.seen_geometry[twin] == grids.geometry[looks.parent[twin]]
+    ):
+        return twin
+    return UNKNOWN
+
+
 @merged
 def _propagate_bases(
     space: Space, grids: Grids, bases: Bases, node: int, eye: Eye, moved: bool
@@ -285,13 +325,16 @@ def _observe_agents(
     place without the agent (section 4).
     """
     parent, me = whole(looks.parent[node]), whole(looks.agent[node])
-    scene = _scene(space, grids, parent)
+    scene, guide = _scene(space, grids, parent), _guide(looks, grids, node)
     for who in range(looks.pose.shape[1]):
         pose = whole(looks.pose[parent, who])
         seen = who == me
         if not seen and pose != UNKNOWN:
             if moved or looks.tried[node, who] != pose:
-                looks.sees[node, who] = sees_agent(space, poses, scene, eye, pose)
+                if guide != UNKNOWN and looks.pose[looks.parent[guide], who] == pose:
+                    looks.sees[node, who] = looks.sees[guide, who]
+                else:
+                    looks.sees[node, who] = sees_agent(space, poses, scene, eye, pose)
                 looks.tried[node, who] = pose
             seen = looks.sees[node, who]
         if seen:

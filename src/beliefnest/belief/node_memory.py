@@ -48,8 +48,8 @@ def columns_of(context: BeliefContext, spots: int) -> Mapping[str, Column]:
     """
     agents, number, flag = (len(context.agents),), np.int32, np.bool_
     columns = {
-        **{name: Column((), number) for name in ("parent", "agent", "geometry", "versions")},
-        **{name: Column((), number) for name in ("eye", "seen_geometry")},
+        **{name: Column((), number) for name in ("parent", "agent", "twin", "unlike")},
+        **{name: Column((), number) for name in ("geometry", "versions", "eye", "seen_geometry")},
         "fresh": Column((), flag),
         **{name: Column(agents, number) for name in ("pose", "equipment", "seen_at", "tried")},
         **{name: Column(agents, flag) for name in ("current", "sees")},

@@ -256,7 +256,7 @@ class NodeTable:
         return next(path for path, number in self.index.items() if number == node)
 
     def link(self) -> None:
-        """Index the children of all nodes; `nodes` then marks what is pending in the new ones."""
+        """Index the children of all nodes; find twins and differences from parents of new ones."""
         parent = self._rows["parent"][: self.count]
         order = np.argsort(parent, kind="stable").astype(np.int32)
         self._child = order[np.searchsorted(parent[order], 0) :]
@@ -264,20 +264,34 @@ class NodeTable:
             np.int32
         )
         self._nodes = self._coded = self._copied = None
-        for node in range(self._linked, self.count):
-            self._set_pending(node)
+        for path, node in self.index.items():
+            if node >= self._linked:
+                self._rows["twin"][node] = self._twin(path, node)
+                self._compare_with_parent(node)
         self._linked = max(self.count, 1)
 
-    def _set_pending(self, node: int) -> None:
-        """Compute all pending bits of a node from its blocks and those of its parent."""
+    def _twin(self, path: BeliefPath, node: int) -> int:
+        """Return the twin of a node; see `arrays.Nodes`."""
+        twin = self.index.get((*path[:-2], path[-1]), UNKNOWN) if len(path) > 1 else UNKNOWN
+        return twin if twin < node else UNKNOWN
+
+    def _compare_with_parent(self, node: int) -> None:
+        """Compute all pending bits of a node, and the number of cells with another shape."""
         grids = self._rows["rows" if self.pool is not None else "blocks"]
         own, held = grids[node], grids[self.parent(node)]
+        differs = np.flatnonzero(held != own)
+        shapes = self.context.space.codes
+        if self.pool is not None:
+            own, held = self.pool.blocks[own[differs]], self.pool.blocks[held[differs]]
+            is_pending = np.ones(len(differs), dtype=np.bool_)
+        else:
+            own, held = own[differs], held[differs]
+            is_pending = held != UNKNOWN
         pending = np.zeros(self._rows["pending"].shape[1] * 64, dtype=np.bool_)
-        pending[: len(own)] = held != own
-        if self.pool is None:
-            pending[: len(own)] &= held != UNKNOWN
+        pending[differs] = is_pending
+        self._rows["unlike"][node] = np.count_nonzero(shapes[own] != shapes[held])
         self._rows["pending"][node] = np.packbits(pending, bitorder="little").view("<u8")
-        self._rows["fresh"][node] |= pending.any()
+        self._rows["fresh"][node] |= is_pending.any()
 
     def set_blocks(self, node: int, blocks: Terrain) -> None:
         """Set all blocks of a node, and its geometry."""
