@@ -43,6 +43,7 @@ RUN_BY = {
     ("frames.md", "python"): "adapters/dataframes/test_tables.py",
     ("imagine.md", "python"): "docs/test_imagine_page.py",
     ("inspect.md", "python"): "adapters/inspect_ai/test_tasks.py",
+    ("large-worlds.md", "python"): "docs/test_nest_pages.py",
     ("looking.md", "python"): "docs/test_looking_page.py",
     ("minds.md", "python"): "docs/test_minds_page.py",
     ("models.md", "python"): "llm/test_docs.py",

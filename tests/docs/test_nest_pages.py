@@ -11,6 +11,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGES = (
     "coming-from-mineflayer.md",
     "filters.md",
+    "large-worlds.md",
     "programs.md",
     "python.md",
     "scripted-world.md",

@@ -132,6 +132,39 @@ def test_containers_stand_where_the_blocks_say_or_are_chests():
     assert world.snapshot().containers == {CHEST: {}, (1, 0, 1): {"apple": 3}}
 
 
+def test_fills_are_the_same_as_their_blocks_one_by_one():
+    fills = [("stone", (0, 0, 0), (7, 0, 7)), ("oak_planks", (2, 0, 2), (5, 1, 4))]
+    blocks = {(x, 0, z): "stone" for x in range(8) for z in range(8)}
+    blocks |= {(x, y, z): "oak_planks" for x in range(2, 6) for y in (0, 1) for z in range(2, 5)}
+    single = {(5, 1, 4): "glass"}
+    filled = world_of(fills=fills, blocks=single, agents={}, inventories={}, containers={})
+    assert facts(filled) == facts(
+        world_of(blocks=blocks | single, agents={}, inventories={}, containers={})
+    )
+
+
+def test_a_fill_of_a_vast_box_does_not_visit_its_blocks():
+    box, floor = ((0, 0, 0), (999, 99, 999)), [("stone", (0, 0, 0), (999, 39, 999))]
+    world = bn.ScriptedWorld(box, fills=floor, agents={"ann": (500.5, 40, 500.5)})
+    assert len(world.terrain.chunks) < 30
+    assert world.block_text((999, 39, 0)) == "stone"
+    assert world.block_text((999, 40, 0)) == "air"
+
+
+@pytest.mark.parametrize(
+    ("fill", "message"),
+    [
+        (("chest", (0, 0, 0), (1, 0, 0)), "'chest' cannot fill a cuboid; give each one"),
+        (("stone", (2, 0, 0), (1, 0, 0)), "is empty; give its lower corner first"),
+        (("stone", (0, 0, 0), (8, 0, 0)), "outside"),
+        (("oak_dor", (0, 0, 0), (1, 0, 0)), "oak_dor"),
+    ],
+)
+def test_impossible_fills_are_refused(fill, message):
+    with pytest.raises(bn.WorldError, match=message):
+        world_of(fills=[fill])
+
+
 def test_a_snapshot_is_not_changed_by_what_follows():
     world = world_of()
     before = facts(world)

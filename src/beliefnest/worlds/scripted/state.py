@@ -168,6 +168,16 @@ class ScriptedState(Barred):
         else:
             self._facts.containers.pop(place, None)
 
+    def _fill(self, block: str, low: Position, high: Position) -> None:
+        """Set all blocks of a cuboid of a new world."""
+        state = self._state(block)
+        if self._registry.is_container(self._registry.name(state)) or state in self._plates:
+            raise WorldError(f"{block!r} cannot fill a cuboid; give each one in 'blocks'")
+        if any(a > b for a, b in zip(low, high, strict=True)):
+            raise WorldError(f"the cuboid {low} to {high} is empty; give its lower corner first")
+        x, y, z = self._box.index(high)
+        self._facts.blocks.fill(self._box.index(low), (x + 1, y + 1, z + 1), state)
+
     def _set_agent(
         self,
         name: str,

@@ -62,7 +62,7 @@ class ScriptedWorld(PoweredState):
 
     Args:
         box: Two inclusive corners of block positions.
-        blocks: Block state texts by position; the rest is air.
+        blocks: Block state texts by position; the rest is air, or what `fills` sets.
         agents: Feet positions by agent name.
         inventories: Items by agent name.
         containers: Contents by position; a chest is added if `blocks` has no block there.
@@ -70,6 +70,9 @@ class ScriptedWorld(PoweredState):
         tick: The first tick.
         signs: Texts of signs by position; `blocks` must have a sign there.
         sign_claims: Claims of the texts by position.
+        fills: Cuboids of one block: its state text and two inclusive corners, the lower one first;
+            later ones win, and `blocks` win over all. They cost next to nothing, whatever their
+            size. Containers and pressure plates are given as single blocks.
 
     Raises:
         WorldError: A position is outside the box, or a block, item or agent name is invalid.
@@ -86,11 +89,14 @@ class ScriptedWorld(PoweredState):
         tick: int = 0,
         signs: Mapping[Position, str] | None = None,
         sign_claims: Mapping[Position, Iterable[Claim]] | None = None,
+        fills: Iterable[tuple[str, Position, Position]] = (),
     ) -> None:
         super().__init__(box)
         self._tick = tick
         self._listeners: list[Listener] = []
         self._pending: Pending | None = None
+        for block, low, high in fills:
+            self._fill(block, self._inside(low), self._inside(high))
         for position, text in (blocks or {}).items():
             self._put(self._inside(position), text)
         for position, items in (containers or {}).items():
