@@ -29,6 +29,7 @@ if TYPE_CHECKING:  # Each name is imported when it is first used.
         StoreError,
         TemplateError,
         TickError,
+        TooLargeError,
         UnknownNameError,
         WorldError,
     )
@@ -95,6 +96,7 @@ __all__ = [
     "Task",
     "TemplateError",
     "TickError",
+    "TooLargeError",
     "UnknownNameError",
     "WorldError",
     "__version__",

@@ -20,6 +20,7 @@ __all__ = [
     "StoreError",
     "TemplateError",
     "TickError",
+    "TooLargeError",
     "UnknownNameError",
     "WorldError",
 ]
@@ -33,6 +34,10 @@ class BeliefNestError(Exception):
 
 class InputError(BeliefNestError):
     """An argument has a wrong form or value."""
+
+
+class TooLargeError(InputError):
+    """An answer needs more memory or time than there is; nothing of it was computed."""
 
 
 class WorldError(BeliefNestError):

@@ -11,6 +11,7 @@ from tests.minds.reference import CORNERS, STRAIGHT, Cell, Question, Reference, 
 from tests.profiles import at_night
 
 import beliefnest as bn
+from beliefnest.world import terrain
 
 FLOORS = ("gold_block", "emerald_block", "diamond_block")
 
@@ -194,6 +195,12 @@ def model(question: Question) -> Any:
         act_cost=question.act_cost,
         diagonal=question.diagonal,
     )
+
+
+@pytest.mark.parametrize("seed", range(at_night(100, 8)))
+def test_inference_in_chunks_agrees_with_the_reference(seed, monkeypatch):
+    monkeypatch.setattr(terrain, "DENSE", 0)
+    test_inference_agrees_with_the_reference(seed)
 
 
 @pytest.mark.parametrize("seed", range(at_night(500, 16)))

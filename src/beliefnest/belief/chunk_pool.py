@@ -13,7 +13,7 @@ from beliefnest.perception.sight import ChunkGeometry, Sight, SightLines
 from beliefnest.world.terrain import SIDE, VOLUME, Terrain, chunks_of
 from beliefnest.world.values import Position
 
-__all__ = ["NOTHING", "ChunkPool", "CutGrids", "cut_grids", "lines_of_sight"]
+__all__ = ["NOTHING", "ChunkPool", "CutGrids", "changed_lines", "cut_grids", "lines_of_sight"]
 
 Ints = npt.NDArray[np.int32]
 States = npt.NDArray[np.int16]
@@ -162,6 +162,22 @@ def lines_of_sight(sight: Sight, origin: Position, blocks: Terrain) -> SightLine
         return sight.geometry(blocks.dense(), origin)
     cut = cut_grids(sight.state_codes, sight.reaches, (blocks,))
     return ChunkGeometry(sight, origin, blocks.shape, cut.codes, cut.rows[0])
+
+
+def changed_lines(lines: SightLines, blocks: Terrain, cells: npt.NDArray[np.int64]) -> SightLines:
+    """Prepare block states that differ from those of `lines` in some cells (n, 3) at most."""
+    sight = lines.sight
+    if not isinstance(lines, ChunkGeometry):
+        return lines_of_sight(sight, lines.origin, blocks)
+    places = blocks.lattice.around(cells)
+    made = [
+        _with_neighbours(sight.state_codes, sight.reaches, blocks, place)[1].reshape(1, VOLUME)
+        for place in places.tolist()
+    ]
+    rows = lines.rows.copy()
+    rows[places] = len(lines.codes) + np.arange(len(places), dtype=np.int32)
+    codes = np.concatenate([lines.codes, *made])
+    return ChunkGeometry(sight, lines.origin, lines.shape, codes, rows)
 
 
 def cut_grids(shape_codes: Codes, reaches: Reaches, grids: Sequence[Terrain]) -> CutGrids:

@@ -652,7 +652,8 @@ class NodeTable:
                 node, [cell for cell in left if (node, cell) not in self.edited_cells]
             )
             node = self.parent(node)
-        return {cell for cell in left if self.block(0, cell) >= 0}
+        known = np.array([*left], dtype=np.int64)
+        return set(known[self.blocks_at(0, known) >= 0].tolist())
 
     def below(self, node: int) -> npt.NDArray[np.bool_]:
         """Return a mask of the nodes below a node."""

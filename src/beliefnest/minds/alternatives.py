@@ -7,15 +7,16 @@ the doubted elements and the cells behind blocks whose shapes are in doubt.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.perception.sight import Geometry, Sight
-from beliefnest.world.frames import BlockGrid
+from beliefnest.belief.chunk_pool import changed_lines, lines_of_sight
+from beliefnest.perception.sight import Sight, SightLines
+from beliefnest.world.terrain import SIDE, VOLUME, Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Items, Point, Position
 
 __all__ = ["Pose", "World", "Worlds"]
@@ -25,6 +26,16 @@ Pose = tuple[Point, float, float]
 
 # Radius of a block's cube, and of its shape, which may reach half a block out along one axis.
 _CUBE, _SHAPE = 0.88, 1.25
+# Radius of the cubes of all cells of a chunk.
+_CHUNK = 7.0
+_CHUNKS_AT_ONCE = 256
+
+_AROUND = np.array([(0, 0, 0), *np.eye(3, dtype=np.int64), *-np.eye(3, dtype=np.int64)])
+_IN_CHUNK = np.stack(np.unravel_index(np.arange(VOLUME), (SIDE, SIDE, SIDE)), axis=1)
+_NO_CELLS = np.empty((0, 3), dtype=np.int64)
+
+Cells = npt.NDArray[np.int64]
+"""Indices of cells (n, 3)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +48,7 @@ class World:
         agents: Feet, yaw and pitch of agents whose pose is known.
     """
 
-    blocks: BlockGrid
+    blocks: Terrain
     contents: Mapping[Position, Items]
     agents: Mapping[str, Pose]
 
@@ -53,7 +64,7 @@ class Worlds:
     Args:
         sight: Rules of sight.
         box: The part of space.
-        worlds: The alternatives; those with equal blocks share a grid.
+        worlds: The alternatives; those with equal blocks share a terrain.
         items: Dropped items.
         agent: The agent that looks.
         transparent: True if agents that see a container perceive its contents.
@@ -69,30 +80,34 @@ class Worlds:
         *,
         transparent: bool,
     ) -> None:
-        self.box, self.worlds, self.items = box, tuple(worlds), items
-        self._sight, self._agent, self._transparent = sight, agent, transparent
+        self.box, self.worlds, self.items, self.agent = box, tuple(worlds), items, agent
+        self._sight, self._transparent = sight, transparent
 
-    def geometry(self, actual: int) -> Geometry:
+    def geometry(self, actual: int) -> SightLines:
         """Return the blocks of an alternative, prepared for lines of sight."""
         return self._geometry_of[actual]
 
-    @cached_property
-    def _geometry_of(self) -> list[Geometry]:
-        by_grid: dict[int, Geometry] = {}
-        by_codes: dict[bytes, Geometry] = {}
-        found = []
-        for world in self.worlds:
-            key = id(world.blocks)
-            if key not in by_grid:
-                made = self._sight.geometry(world.blocks, self.box.low)
-                by_grid[key] = by_codes.setdefault(made.codes.tobytes(), made)
-            found.append(by_grid[key])
-        return found
+    def states(self, number: int) -> npt.NDArray[np.int32]:
+        """Return the states of an alternative at the cells whose blocks differ."""
+        return self.worlds[number].blocks.at_indices(self._doubted)
 
     @cached_property
-    def _round(self) -> dict[int, Geometry]:
+    def _geometry_of(self) -> list[SightLines]:
+        first = self.worlds[0].blocks
+        plain = lines_of_sight(self._sight, self.box.low, first)
+        by_blocks = {id(first): plain}
+        by_codes = {plain.codes_at(self._near).tobytes(): plain}
+        for blocks in (world.blocks for world in self.worlds):
+            if id(blocks) not in by_blocks:
+                made = changed_lines(plain, blocks, self._doubted)
+                key = made.codes_at(self._near).tobytes()
+                by_blocks[id(blocks)] = by_codes.setdefault(key, made)
+        return [by_blocks[id(world.blocks)] for world in self.worlds]
+
+    @cached_property
+    def _round(self) -> dict[int, SightLines]:
         sight = _all_round(self._sight)
-        return {id(each): Geometry(sight, each.origin, each.codes) for each in self._geometry_of}
+        return {id(each): replace(each, sight=sight) for each in self._geometry_of}
 
     @cached_property
     def has_one_view(self) -> bool:
@@ -100,26 +115,28 @@ class Worlds:
         return len({id(each) for each in self._geometry_of}) == 1
 
     @cached_property
-    def _doubted(self) -> npt.NDArray[np.int64]:
-        """Indices of the cells whose blocks differ."""
+    def _doubted(self) -> Cells:
+        """Indices of the cells whose blocks differ, in order."""
         first = self.worlds[0].blocks
-        others = {id(world.blocks): world.blocks for world in self.worlds}.values()
-        differs = np.logical_or.reduce([each != first for each in others])
-        return np.argwhere(differs)
+        others = {id(world.blocks): world.blocks for world in self.worlds[1:]}.values()
+        differing = [first.differing(each) for each in others if each is not first]
+        return np.unique(np.concatenate([_NO_CELLS, *differing]), axis=0)
+
+    @cached_property
+    def _near(self) -> Cells:
+        """Indices of the cells whose shapes may differ, in order; they may lie in the margin."""
+        return np.unique((self._doubted[:, None] + _AROUND).reshape(-1, 3), axis=0)
 
     @cached_property
     def _hiding(self) -> npt.NDArray[np.float64]:
         """Middles of the cells whose shapes differ."""
-        first = self._geometry_of[0].codes
-        others = {id(each): each.codes for each in self._geometry_of}.values()
+        geometries = {id(each): each for each in self._geometry_of}.values()
+        first, *others = (each.codes_at(self._near) for each in geometries)
         differs = np.logical_or.reduce([each != first for each in others])
-        cells = np.argwhere(differs[1:-1, 1:-1, 1:-1])
-        middles: npt.NDArray[np.float64] = cells + 0.5 + np.array(self.box.low)
-        return middles
+        inside = ((self._near >= 0) & (self._near < np.array(self.box.shape))).all(axis=1)
+        return self._middles(self._near[differs & inside])
 
-    @cached_property
-    def _middles(self) -> npt.NDArray[np.float64]:
-        cells = np.argwhere(np.ones(self.box.shape, dtype=np.bool_))
+    def _middles(self, cells: Cells) -> npt.NDArray[np.float64]:
         middles: npt.NDArray[np.float64] = cells + 0.5 + np.array(self.box.low)
         return middles
 
@@ -137,7 +154,7 @@ class Worlds:
 
     @cached_property
     def _doubted_agents(self) -> list[str]:
-        names = {name for world in self.worlds for name in world.agents} - {self._agent}
+        names = {name for world in self.worlds for name in world.agents} - {self.agent}
         if not self.has_one_view:
             return sorted(names)
         poses = {name: {world.agents.get(name) for world in self.worlds} for name in names}
@@ -164,17 +181,29 @@ class Worlds:
         look: Pose = ((feet[0], feet[1] + EYE_HEIGHT, feet[2]), yaw, pitch)
         if self.has_one_view and not self._doubted_contents and not self._doubted_agents:
             return self._alike_by_blocks(look, all_round)
-        percepts: list[object] = self._percepts(look, self._doubted, range(count), all_round)
-        by_percept: dict[object, list[int]] = {}
-        for number, percept in enumerate(percepts):
-            by_percept.setdefault(percept, []).append(number)
-        for percept, group in by_percept.items():
-            if len({id(self._geometry_of[number]) for number in group}) > 1:
-                # Doubted elements look the same in these, but may hide different things.
-                behind = self._percepts(look, self._candidates(look[0]), group, all_round)
-                for number, further in zip(group, behind, strict=True):
-                    percepts[number] = (percept, further)
+        percepts = self._percepts(look, all_round)
+        undecided = self._undecided(percepts)
+        # Doubted elements look the same in these, but may hide different things.
+        for cells in self._behind(look[0]) if undecided else ():
+            for group in undecided:
+                further = self._seen(look, cells, group, all_round)
+                for number, seen in zip(group, further, strict=True):
+                    percepts[number] = (percepts[number], seen.tobytes())
+            undecided = self._undecided(percepts)
+            if not undecided:
+                break
         return _masks(percepts)
+
+    def _undecided(self, percepts: Sequence[object]) -> list[list[int]]:
+        """Return groups of alternatives with equal percepts but different lines of sight."""
+        groups: dict[object, list[int]] = {}
+        for number, percept in enumerate(percepts):
+            groups.setdefault(percept, []).append(number)
+        return [
+            group
+            for group in groups.values()
+            if len({id(self._geometry_of[number]) for number in group}) > 1
+        ]
 
     def _alike_by_blocks(self, look: Pose, all_round: bool) -> list[int]:
         """Return the result of `alike` if only blocks differ, and all of them hide the same."""
@@ -183,8 +212,8 @@ class Worlds:
         seen = seeing.sees_blocks(*look, self._doubted + np.array(self.box.low))
         key = seen.tobytes()
         if key not in self._by_seen:
-            cells = tuple(self._doubted[seen].T)
-            self._by_seen[key] = _masks([world.blocks[cells].tobytes() for world in self.worlds])
+            states = [self.states(number)[seen] for number in range(len(self.worlds))]
+            self._by_seen[key] = _masks([each.tobytes() for each in states])
         return self._by_seen[key]
 
     @cached_property
@@ -192,58 +221,92 @@ class Worlds:
         """Alternatives with the same percept, by which of the differing blocks are seen."""
         return {}
 
-    def _percepts(
-        self, look: Pose, cells: npt.NDArray[np.int64], which: Sequence[int], all_round: bool
-    ) -> list[object]:
-        """Return the percepts of cells, agents and items in some alternatives."""
-        seen: dict[int, npt.NDArray[np.bool_]] = {}
-        percepts: list[object] = []
-        for number in which:
-            plain = self._geometry_of[number]
-            seeing = self._round[id(plain)] if all_round else plain
-            if id(plain) not in seen:
-                places = cells + np.array(self.box.low, dtype=np.int64)
-                seen[id(plain)] = seeing.sees_blocks(*look, places)
-            percepts.append(
-                self._percept(self.worlds[number], seeing, look, cells, seen[id(plain)])
+    def _percepts(self, look: Pose, all_round: bool) -> list[object]:
+        """Return the percepts of doubted blocks, of contents, agents and items."""
+        everyone = range(len(self.worlds))
+        return [
+            self._percept(number, look, all_round, seen)
+            for number, seen in zip(
+                everyone, self._seen(look, self._doubted, everyone, all_round), strict=True
             )
-        return percepts
+        ]
 
-    def _candidates(self, eye: Point) -> npt.NDArray[np.int64]:
-        """Return the indices of cells whose sight from a place can depend on the alternative."""
-        far = self._sight.max_visible_distance
-        middles, place = self._middles, np.array(eye)
-        wanted = np.zeros(len(middles), dtype=np.bool_)
-        away = middles - place
-        distance = np.sqrt((away**2).sum(axis=1))
-        for hiding in self._hiding - place:
-            length = float(np.sqrt((hiding**2).sum()))
-            if far is not None and length > far + _SHAPE:
-                continue
-            if length <= _SHAPE:
-                wanted[:] = True
-                break
-            # Lines from the eye to a cell that come near the hiding one: within two cones.
-            with np.errstate(divide="ignore", invalid="ignore"):
-                cosine = np.clip(away @ hiding / (distance * length), -1, 1)
-            spread = math.asin(_SHAPE / length) + np.arcsin(_CUBE / np.maximum(distance, _CUBE))
-            behind = distance >= length - _SHAPE - _CUBE
-            wanted |= (behind & (np.arccos(cosine) <= spread)) | (distance <= _CUBE)
+    def _seen(
+        self, look: Pose, cells: Cells, which: Sequence[int], all_round: bool
+    ) -> list[npt.NDArray[np.bool_]]:
+        """Return a mask of the cells whose blocks are seen, for some alternatives."""
+        seen: dict[int, npt.NDArray[np.bool_]] = {}
+        places = cells + np.array(self.box.low, dtype=np.int64)
+        for number in which:
+            key = id(self._geometry_of[number])
+            if key not in seen:
+                seen[key] = self._seeing(number, all_round).sees_blocks(*look, places)
+        return [seen[id(self._geometry_of[number])] for number in which]
+
+    def _seeing(self, number: int, all_round: bool) -> SightLines:
+        plain = self._geometry_of[number]
+        return self._round[id(plain)] if all_round else plain
+
+    def _behind(self, eye: Point) -> Iterator[Cells]:
+        """Yield the indices of known cells whose sight from a place can depend on the alternative.
+
+        In a box of several chunks they come in parts, the nearest first. Without a limit of
+        distance they may lie anywhere in the box.
+        """
+        far, blocks = self._sight.max_visible_distance, self.worlds[0].blocks
+        place = np.array(eye)
+        hiding = self._hiding - place
         if far is not None:
-            wanted &= distance <= far + 1e-6
-        found: npt.NDArray[np.int64] = np.argwhere(wanted.reshape(self.box.shape))
-        return found
+            hiding = hiding[np.sqrt((hiding**2).sum(axis=1)) <= far + _SHAPE]
+        if not len(hiding):
+            return
+        if blocks.is_dense:
+            cells, middles = self._known_cells
+            yield cells[_is_behind(middles - place, hiding, _CUBE, far)]
+            return
+        starts = self._chunks_around(place, far)
+        away = starts + SIDE / 2 + np.array(self.box.low) - place
+        kept = _is_behind(away, hiding, _CHUNK, None if far is None else far + _CHUNK)
+        starts = starts[kept][np.argsort((away[kept] ** 2).sum(axis=1), kind="stable")]
+        for first in range(0, len(starts), _CHUNKS_AT_ONCE):
+            some = starts[first : first + _CHUNKS_AT_ONCE]
+            cells = blocks.lattice.clipped((some[:, None] + _IN_CHUNK).reshape(-1, 3))
+            cells = cells[_is_behind(self._middles(cells) - place, hiding, _CUBE, far)]
+            yield cells[blocks.at_indices(cells) >= 0]
+
+    @cached_property
+    def _known_cells(self) -> tuple[Cells, npt.NDArray[np.float64]]:
+        """Indices and middles of the cells of a box of one chunk that are known."""
+        cells = np.argwhere(self.worlds[0].blocks.dense() >= 0)
+        return cells, self._middles(cells)
+
+    @cached_property
+    def _is_known(self) -> npt.NDArray[np.bool_]:
+        """By number of a chunk, True if a cell of it is known."""
+        blocks = self.worlds[0].blocks
+        known = np.array([bool((chunk >= 0).any()) for chunk in blocks.chunks], dtype=np.bool_)
+        return known[blocks.rows]
+
+    def _chunks_around(self, place: npt.NDArray[np.float64], far: float | None) -> Cells:
+        """Return the indices of the first cells of the known chunks within a distance."""
+        lattice = self.worlds[0].blocks.lattice
+        spans = [(0, size) for size in self.box.shape]
+        if far is not None:
+            reach = math.ceil(far) + 1
+            at = np.floor(place - self.box.low).astype(np.int64).tolist()
+            spans = [
+                (max(middle - reach, 0), min(middle + reach + 1, size))
+                for middle, size in zip(at, self.box.shape, strict=True)
+            ]
+        numbers = lattice.within(*spans)
+        return lattice.starts(numbers[self._is_known[numbers]])
 
     def _percept(
-        self,
-        world: World,
-        seeing: Geometry,
-        look: Pose,
-        cells: npt.NDArray[np.int64],
-        seen: npt.NDArray[np.bool_],
+        self, number: int, look: Pose, all_round: bool, seen: npt.NDArray[np.bool_]
     ) -> tuple[object, ...]:
-        """Return the percept of candidates in an alternative, as a value to compare."""
-        states = world.blocks[tuple(cells.T)]
+        """Return a percept of an alternative as a value to compare; `seen` masks doubted cells."""
+        world, seeing = self.worlds[number], self._seeing(number, all_round)
+        states = self.states(number)
         blocks = np.where(seen & (states >= 0), states, -1).tobytes()
         contents: list[object] = []
         if self._doubted_contents:
@@ -267,6 +330,38 @@ class Worlds:
             places = [item.position for item in self.items.values()]
             items = seeing.sees_points(*look, places).tobytes()
         return blocks, tuple(contents), tuple(agents), items
+
+
+def _is_behind(
+    away: npt.NDArray[np.float64],
+    hiding: npt.NDArray[np.float64],
+    radius: float,
+    far: float | None,
+) -> npt.NDArray[np.bool_]:
+    """Return a mask of the balls whose sight can depend on what is in some cells.
+
+    Args:
+        away: Middles of the balls (n, 3), from the eye.
+        hiding: Middles of the cells (m, 3), from the eye.
+        radius: Radius of the balls.
+        far: Greatest distance of middles; None: no limit.
+    """
+    wanted = np.zeros(len(away), dtype=np.bool_)
+    distance = np.sqrt((away**2).sum(axis=1))
+    for cell in hiding:
+        length = float(np.sqrt((cell**2).sum()))
+        if length <= _SHAPE:
+            wanted[:] = True
+            break
+        # Lines from the eye to a ball that come near the hiding cell: within two cones.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cosine = np.clip(away @ cell / (distance * length), -1, 1)
+        spread = math.asin(_SHAPE / length) + np.arcsin(radius / np.maximum(distance, radius))
+        behind = distance >= length - _SHAPE - radius
+        wanted |= (behind & (np.arccos(cosine) <= spread)) | (distance <= radius)
+    if far is not None:
+        wanted &= distance <= far + 1e-6
+    return wanted
 
 
 def _masks(percepts: Sequence[object]) -> list[int]:

@@ -18,7 +18,15 @@ import numpy.typing as npt
 from beliefnest.minds.relaxing import relax
 from beliefnest.minds.stage import Stage, numbers_in
 
-__all__ = ["Knowledge", "PlanRules", "Planner", "count_values", "log_sum", "planner_for"]
+__all__ = [
+    "Knowledge",
+    "PlanRules",
+    "Planner",
+    "count_doubtful",
+    "count_values",
+    "log_sum",
+    "planner_for",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -275,6 +283,12 @@ def _distinct(rows: Floats) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64
     of_row = [kinds.setdefault(row.tobytes(), len(kinds)) for row in rows]
     first = [of_row.index(kind) for kind in range(len(kinds))]
     return np.array(first, dtype=np.int64), np.array(of_row, dtype=np.int64)
+
+
+def count_doubtful(stage: Stage) -> int:
+    """Return the number of cells at which an agent can think all alternatives possible."""
+    everyone = (1 << len(stage.moves)) - 1
+    return int((stage.same[0] == everyone).sum())
 
 
 def count_values(stage: Stage, credences: int) -> int:

@@ -8,16 +8,24 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.errors import TooLargeError
 from beliefnest.minds.alternatives import Worlds
 from beliefnest.minds.mind_model import Goal
-from beliefnest.minds.stage import Stage
-from beliefnest.minds.ways import Ways, walkable, ways_from
+from beliefnest.minds.stage import DIAGONALS, SIDES, Stage
+from beliefnest.minds.ways import Floor, Ways, let_through, ways_from
+from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Position, feet_in
 
 __all__ = ["Scene"]
 
 _MOST_STAGES = 64
+
+_MOST_CELLS = 1 << 18
+"""Most cells of a stage: that many were tried, and took 20 s and 700 MB with two alternatives."""
+
+_OBJECTS = 500
+"""Bytes of the Python objects of a cell of a stage: position and number."""
 
 
 class Scene:
@@ -58,11 +66,29 @@ class Scene:
         )
 
     def stage(self, *cells: Position) -> Stage:
-        """Return the stage of all cells that can be got to from some."""
+        """Return the stage of all cells that can be got to from some.
+
+        Raises:
+            TooLargeError: The planner has no room for so many cells.
+        """
         for known in self._stages.values():
             if all(cell in known.index for cell in cells):
                 return known
-        ways = ways_from(self.worlds.box, self._walks, cells, diagonal=self._diagonal)
+        limit, each = memory_limit(), self._cell_bytes
+        most = _MOST_CELLS if limit is None else min(_MOST_CELLS, limit.bytes // each)
+        ways = ways_from(self.worlds.box, self._floors, cells, diagonal=self._diagonal, most=most)
+        if ways is None:
+            why = f"It plans for at most {most:,}"
+            if limit is not None and most < _MOST_CELLS:
+                why = (
+                    f"Each takes at least {each:,} bytes, and this process may use "
+                    f"{limit.bytes // MEGABYTE:,} MB, {limit.source}"
+                )
+            raise TooLargeError(
+                f"{self.worlds.agent} can get to more than {most:,} cells from {cells[0]}, too "
+                f"many for the planner. {why}: use a smaller box, or end the floor with "
+                "walls or gaps around the part that matters"
+            )
         digest = hashlib.blake2b(self._key)
         digest.update(repr(ways.cells).encode())
         digest.update(ways.moves.tobytes())
@@ -75,26 +101,33 @@ class Scene:
 
     def can_stand(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell in any alternative."""
-        box = self.worlds.box
-        return cell in box and any(bool(walk[box.index(cell)]) for walk in self._walks)
+        place = np.array([self.worlds.box.index(cell)])
+        return any(bool(floor.stands(place)[0]) for floor in self._floors)
 
     def has_unknown_floor(self, cell: Position) -> bool:
         """Return True if the block below a cell is unknown in all alternatives."""
         box, below = self.worlds.box, (cell[0], cell[1] - 1, cell[2])
         return below in box and all(
-            int(world.blocks[box.index(below)]) < 0 for world in self.worlds.worlds
+            world.blocks[box.index(below)] < 0 for world in self.worlds.worlds
         )
 
     @cached_property
-    def _walks(self) -> list[npt.NDArray[np.bool_]]:
-        """By alternative where an agent can stand; where blocks are equal the same array."""
-        made: dict[int, npt.NDArray[np.bool_]] = {}
+    def _floors(self) -> list[Floor]:
+        """The floor of each alternative; one for those that let bodies through alike."""
+        made: dict[bytes, Floor] = {}
         return [
-            made.setdefault(id(world.blocks), walkable(self._registry, world.blocks))
-            if id(world.blocks) not in made
-            else made[id(world.blocks)]
-            for world in self.worlds.worlds
+            made.setdefault(
+                let_through(self._registry, self.worlds.states(number)).tobytes(),
+                Floor(self._registry, world.blocks),
+            )
+            for number, world in enumerate(self.worlds.worlds)
         ]
+
+    @property
+    def _cell_bytes(self) -> int:
+        """Bytes that a cell of a stage needs at least."""
+        steps = len(SIDES) + (len(DIAGONALS) if self._diagonal else 0)
+        return _OBJECTS + len(self.worlds.worlds) * (4 * steps + 8 + len(self._goals))
 
     def _made(self, ways: Ways) -> Stage:
         worlds = self.worlds
@@ -141,7 +174,7 @@ class Scene:
             elif goal.block is not None:
                 ids = self._registry.state_ids(goal.block)
                 for a, world in enumerate(worlds):
-                    states = world.blocks[tuple(below[inside].T)]
+                    states = world.blocks.at_indices(below[inside])
                     acts[a, number, inside] = (states >= ids.start) & (states < ids.stop)
             else:
                 dropped = [

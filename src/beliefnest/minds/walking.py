@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from random import Random
 
 import numpy as np
-import numpy.typing as npt
 
 from beliefnest.minds.alternatives import Pose, World, Worlds
 from beliefnest.minds.hypotheses import Hypotheses, conditioned
@@ -15,6 +14,7 @@ from beliefnest.minds.planner import Knowledge
 from beliefnest.minds.stage import Stage
 from beliefnest.minds.surroundings import Scene
 from beliefnest.perception.sight import Sight
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position
 
 __all__ = ["Act", "Changes", "Draw", "Open", "Step", "Strategy", "Walker"]
@@ -42,7 +42,7 @@ class Changes:
     """Changes in a history since its start.
 
     Attributes:
-        blocks: Indices into the grid with the new block states.
+        blocks: Indices of cells with the new block states.
         moved: Container, item, and the change of the item's count since then.
     """
 
@@ -165,21 +165,21 @@ class Strategy:
 
     def _changed(self, changes: Changes) -> Scene:
         before = self._scene.worlds
-        grids: dict[int, npt.NDArray[np.int32]] = {}
+        made: dict[int, Terrain] = {}
         worlds = []
         for world in before.worlds:
-            grid = grids.get(id(world.blocks))
-            if grid is None:
-                grid = grids[id(world.blocks)] = world.blocks.copy()
+            if id(world.blocks) not in made:
+                draft = world.blocks.draft()
                 for index, state in changes.blocks:
-                    grid[index] = state
+                    draft[index] = state
+                made[id(world.blocks)] = draft.terrain()
             contents = {place: dict(items) for place, items in world.contents.items()}
             for place, item, count in changes.moved:
                 held = contents.setdefault(place, {})
                 held[item] = max(0, held.get(item, 0) + count)
             kept = {place: _without_nothing(items) for place, items in contents.items()}
-            worlds.append(World(grid, kept, world.agents))
-        made = Worlds(
+            worlds.append(World(made[id(world.blocks)], kept, world.agents))
+        changed = Worlds(
             self._sight,
             before.box,
             worlds,
@@ -187,7 +187,7 @@ class Strategy:
             self.model.agent,
             transparent=self._transparent,
         )
-        return self._scene.with_worlds(made, repr(changes).encode())
+        return self._scene.with_worlds(changed, repr(changes).encode())
 
 
 class Walker:

@@ -27,7 +27,7 @@ from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, CodeGrid,
 from beliefnest.perception.options import sight_limits
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry
-from beliefnest.world.terrain import chunks_of
+from beliefnest.world.terrain import SIDE, chunks_of
 from beliefnest.world.values import Point, Position
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
@@ -204,6 +204,10 @@ class SightLines(ABC):
         i, j, k = rays.blocker(self._scene, but, (start[0], start[1], start[2]), d)
         return None if i < 0 else (x + i - 1, y + j - 1, z + k - 1)
 
+    @abstractmethod
+    def codes_at(self, cells: npt.NDArray[np.int64]) -> CodeGrid:
+        """Return the shape codes of cells with some indices (n, 3), in the box or its margin."""
+
     @property
     @abstractmethod
     def _scene(self) -> "Scene":
@@ -230,6 +234,11 @@ class Geometry(SightLines):
     """
 
     codes: CodeGrid
+
+    def codes_at(self, cells: npt.NDArray[np.int64]) -> CodeGrid:
+        """Return the shape codes of cells with some indices (n, 3), in the box or its margin."""
+        found: CodeGrid = self.codes[tuple(cells.T + 1)]
+        return found
 
     def with_blocks(self, changes: Mapping[Position, int]) -> "Geometry":
         """Return the geometry with other block states (-1: unknown) at some positions of the grid.
@@ -314,6 +323,15 @@ class ChunkGeometry(SightLines):
     shape: tuple[int, int, int]
     codes: CodeGrid
     rows: npt.NDArray[np.int32]
+
+    def codes_at(self, cells: npt.NDArray[np.int64]) -> CodeGrid:
+        """Return the shape codes of cells with some indices (n, 3), in the box or its margin."""
+        x, y, z = self.shape
+        chunks, within = np.divmod(cells.T + 1, SIDE)
+        numbers = np.ravel_multi_index(tuple(chunks), chunks_of((x + 2, y + 2, z + 2)))
+        places = np.ravel_multi_index(tuple(within), (SIDE, SIDE, SIDE))
+        found: CodeGrid = self.codes[self.rows[numbers], places]
+        return found
 
     @functools.cached_property
     def _scene(self) -> "Scene":

@@ -106,6 +106,28 @@ class Lattice:
         i, j, k = number // (ny * nz), number // nz % ny, number % nz
         return i * SIDE - _MARGIN, j * SIDE - _MARGIN, k * SIDE - _MARGIN
 
+    def starts(self, numbers: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+        """Return the indices (n, 3) of the first cells of some chunks of a box in chunks."""
+        return np.stack(np.unravel_index(numbers, self.counts), axis=1) * SIDE - _MARGIN
+
+    def within(
+        self, x: tuple[int, int], y: tuple[int, int], z: tuple[int, int]
+    ) -> npt.NDArray[np.int64]:
+        """Return the numbers of the chunks with some cells of a box in chunks, in order.
+
+        Args:
+            x: Index of the first cell along x, and of the last one and one.
+            y: The same along y.
+            z: The same along z.
+        """
+        low, high = (x[0], y[0], z[0]), (x[1], y[1], z[1])
+        axes = [
+            np.array([number for number, _, _ in axis], dtype=np.int64)
+            for axis in self.ranges(low, high)
+        ]
+        numbers = np.meshgrid(*axes, indexing="ij")
+        return np.ravel_multi_index([each.reshape(-1) for each in numbers], self.counts)
+
     def ranges(self, low: Index, high: Index) -> list[list[tuple[int, int, int]]]:
         """Return by axis the chunks with cells from `low` to before `high`.
 
@@ -241,6 +263,10 @@ class Terrain:
             places.reshape(-1), i % SIDE, j % SIDE, k % SIDE
         ]
         return found
+
+    def at_indices(self, cells: npt.NDArray[np.integer[Any]]) -> States:
+        """Return the states of the cells with some indices (n, 3)."""
+        return self.at(np.ravel_multi_index(tuple(cells.T), self.shape))
 
     def slabs(self) -> Iterator[tuple[int, States]]:
         """Yield the box in parts along x: number of the first layer, and states of the layers."""

@@ -18,7 +18,7 @@ from beliefnest.episodes.policies.course_planner import USUAL, Bounds
 from beliefnest.episodes.policies.expecting import Expecting, GoalShares, combinations, uniform
 from beliefnest.episodes.policies.search import Search
 from beliefnest.episodes.policies.traces import likelihoods_of_traces
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, TooLargeError
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
@@ -207,6 +207,8 @@ def _by_deeds(
     )
     try:
         found = view.infer(model, *below).posterior()
+    except TooLargeError:
+        raise
     except InputError:
         # It cannot reach any of the goals, so its course is no evidence.
         return prior

@@ -167,8 +167,14 @@ class Agreement:
         found = self._blocks.get(key)
         if found is None:
             percept, keep = self.witness.percepts[number], self._keep[number]
-            there = blocks.at(percept.cells[keep])
-            found = self._blocks[key] = bool(np.array_equal(there, percept.states[keep]))
+            if percept.known is None:
+                there = blocks.at(percept.cells[keep])
+                found = bool(np.array_equal(there, percept.states[keep]))
+            else:
+                differs = percept.known.differing(blocks, lambda known, _: known >= 0)
+                cells = np.ravel_multi_index(tuple(differs.T), blocks.shape)
+                found = self.witness.ignored.issuperset(cells.tolist())
+            self._blocks[key] = found
         return found
 
     def _contents_fit(self, course: Course, glimpse: Glimpse, percept: Percept) -> bool:

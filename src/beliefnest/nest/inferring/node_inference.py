@@ -6,17 +6,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beliefnest.errors import InputError, TickError
+from beliefnest.errors import InputError, TickError, TooLargeError
 from beliefnest.minds.evidence import Moment
 from beliefnest.minds.hypotheses import Hypotheses
 from beliefnest.minds.inference import Inference, reported_credence
 from beliefnest.minds.mind_model import MindModel
-from beliefnest.minds.planner import count_values
+from beliefnest.minds.planner import count_doubtful, count_values
 from beliefnest.minds.surroundings import Scene
 from beliefnest.minds.tracking import Tracker
 from beliefnest.minds.transitions import known_after
 from beliefnest.nest.inferring.perceived_course import Question, Reading
 from beliefnest.nest.past.recording import Recording
+from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.paths import BeliefPath, path_text
 
 __all__ = ["ModelStart", "credence_in", "infer_in", "start_of_model"]
@@ -226,10 +227,27 @@ def _told(
 
 
 def _chunks(model: MindModel, moments: Sequence[Moment]) -> list[slice]:
-    """Return chunks of the utilities whose values fit into memory."""
+    """Return chunks of the utilities whose values fit into memory.
+
+    Raises:
+        TooLargeError: Those of one utility do not.
+    """
     first = next(moment for moment in moments if moment.cell is not None)
     assert first.cell is not None
-    values = count_values(first.scene.stage(first.cell), len(model.credence_rows))
+    stage, credences, limit = (
+        first.scene.stage(first.cell),
+        len(model.credence_rows),
+        memory_limit(),
+    )
+    least = 8 * count_doubtful(stage) * credences
+    if limit is not None and least > limit.bytes:
+        raise TooLargeError(
+            f"plans of {model.agent} from {first.cell} need at least {least // MEGABYTE:,} MB, for "
+            f"{len(stage.cells):,} cells that it can get to and {credences:,} credences. This "
+            f"process may use {limit.bytes // MEGABYTE:,} MB, {limit.source}: use a smaller box, "
+            "walls or gaps in the floor, or a coarser grid of credences"
+        )
+    values = count_values(stage, credences)
     size = max(1, _ROOM // (8 * values))
     count = len(model.utility_rows)
     return [slice(start, min(start + size, count)) for start in range(0, count, size)]

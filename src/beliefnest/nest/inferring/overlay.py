@@ -16,8 +16,8 @@ from beliefnest.errors import InputError
 from beliefnest.minds.alternatives import Pose, World
 from beliefnest.minds.mind_model import Alternative
 from beliefnest.world.claims import Claim, ClaimKind
-from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import Registry, parse_state
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Items, Point, Position, block_at
 
 __all__ = ["Overlay"]
@@ -176,17 +176,18 @@ class Overlay:
             for name, agent in view.agents.items()
             if agent.position is not None and name != self._agent
         }
-        grids: dict[tuple[int, ...], BlockGrid] = {}
+        made: dict[tuple[int, ...], Terrain] = {}
         found = []
         for a in range(count):
             key = tuple(states[a] for states in self._blocks.values())
-            if key not in grids:
-                grids[key] = view.grid.copy()
+            if key not in made:
+                draft = view.terrain.draft()
                 for place, state in zip(self._blocks, key, strict=True):
-                    grids[key][self._box.index(place)] = state
+                    draft[self._box.index(place)] = state
+                made[key] = draft.terrain()
             mine = {place: items[a] for place, items in self._contents.items()}
             feet = {name: (known[a], 0.0, 0.0) for name, known in self._feet.items()}
-            found.append(World(grids[key], {**contents, **mine}, {**poses, **feet}))
+            found.append(World(made[key], {**contents, **mine}, {**poses, **feet}))
         return found
 
     def digest(self, view: NodeView) -> bytes:

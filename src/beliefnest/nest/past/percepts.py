@@ -38,7 +38,8 @@ class Percept:
     Attributes:
         tick: Its first tick; it holds until the next percept.
         present: False: the owner is credited with no percept (semantics, section 5.1).
-        cells: int64 (n,), flat cells of the blocks that it saw.
+        known: Block states if it perceived all known blocks, as in reality; None: it saw some.
+        cells: int64 (n,), flat cells of the blocks that it saw, if it saw some.
         states: int32 (n,), their block states.
         contents: Complete contents that it perceived.
         agents: Feet, yaw and pitch of the agents that it perceived, its own included.
@@ -49,6 +50,7 @@ class Percept:
 
     tick: int
     present: bool
+    known: Terrain | None
     cells: npt.NDArray[np.int64]
     states: npt.NDArray[np.int32]
     contents: Mapping[Position, Items]
@@ -62,6 +64,7 @@ class Percept:
         return bool(
             self.events
             or self.present != before.present
+            or self.known != before.known
             or not np.array_equal(self.cells, before.cells)
             or not np.array_equal(self.states, before.states)
             or self.contents != before.contents
@@ -122,8 +125,20 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
     owner = path[-1] if path else None
     agents = view.agents
     present = owner is None or agents[owner].current
-    seen = forest.current_blocks(path, _in_reach(forest, path)) if present else set()
+    # In reality every known block is current.
+    known = view.terrain if owner is None else None
+    seen: set[int] = set()
+    if owner is not None and present:
+        seen = forest.current_blocks(path, _in_reach(forest, path, owner))
     cells = np.array(sorted(seen), dtype=np.int64)
+
+    def is_perceived(place: Position) -> bool:
+        if place not in context.box:
+            return False
+        if known is not None:
+            return known[context.box.index(place)] >= 0
+        return cell_of(context.box, place) in seen
+
     contents = {
         place: dict(held.items)
         for place, held in view.containers.items()
@@ -138,12 +153,12 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
     lying = Counter(
         (item.name, block_at(item.position))
         for item in view.items.values()
-        if block_at(item.position) in context.box
-        and cell_of(context.box, block_at(item.position)) in seen
+        if is_perceived(block_at(item.position))
     )
     percept = Percept(
         tick,
         present,
+        known,
         cells,
         view.terrain.at(cells),
         contents,
@@ -155,10 +170,10 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
     return percept, view.terrain
 
 
-def _in_reach(forest: Forest, path: BeliefPath) -> Iterable[int]:
+def _in_reach(forest: Forest, path: BeliefPath, owner: str) -> Iterable[int]:
     """Return cells among which are all whose block is current in a node; its owner is present."""
     context, far = forest.context, forest.context.options.max_visible_distance
-    feet = forest.feet(path[:-1], path[-1]) if path else None
+    feet = forest.feet(path[:-1], owner)
     if context.is_dense or far is None or feet is None:
         return range(context.cells)
     eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])
