@@ -1,14 +1,14 @@
 /** Simulator in three dimensions: boxes for blocks, figures for agents, labels as text on top. */
 
 import {
-  BoxGeometry, BufferAttribute, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight, InstancedMesh,
-  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Quaternion,
+  BoxGeometry, BufferAttribute, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight,
+  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Mesh, MeshBasicMaterial, MeshLambertMaterial,
   Raycaster, Scene, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { element } from './elements.js'
 import { apart } from './labels.js'
-import { CHUNK, Kinds, boxedCells, changedChunks, coarser, facesOf } from './surfaces.js'
+import { CHUNK, Kinds, boxesOf, changedChunks, coarser, facesOf } from './surfaces.js'
 import { contentsLabel, shortened, signsText } from './things.js'
 
 const WRONG = 0xd55e00
@@ -160,24 +160,19 @@ export class Space {
   mergedMeshes (run, blocks, number) {
     const faces = facesOf(blocks, number, (state, isSeen, normal) => litShade(run.states[state], isSeen, normal))
     return ['solid', 'liquid'].filter(part => faces[part].places.length).map(part => {
-      const mesh = merged(faces[part], this.material(`merged ${part}`, () => chequered(OPACITY[part])))
-      mesh.position.set(...run.head.box.low)
+      const mesh = meshOf(run, faces[part], this.material(`merged ${part}`, () => chequered(OPACITY[part])))
+      mesh.userData.isMerged = true
       return mesh
     })
   }
 
   boxMeshes (run, blocks, number) {
-    const boxes = { solid: [], clear: [] }
-    for (const cell of boxedCells(blocks, number)) {
-      const block = run.states[blocks.grid[cell]]
-      const isSeen = blocks.seen === null || blocks.seen[cell] === 1
-      const place = run.place(cell)
-      const colour = shadeOf(block, isSeen).clone()
-      if (isSeen && (place[0] + place[2] - run.head.box.low[0] - run.head.box.low[2]) % 2 === 0) colour.multiplyScalar(DARKER)
-      const list = block.glassy && !block.container ? boxes.clear : boxes.solid
-      for (const box of block.boxes) list.push({ box, cell, colour, place })
-    }
-    return ['solid', 'clear'].filter(part => boxes[part].length).map(part => instances(boxes[part], this.material(`boxes ${part}`, () => plainMaterial(OPACITY[part]))))
+    const faces = boxesOf(blocks, number, (state, isSeen, normal, isDark) => litShade(run.states[state], isSeen, normal, isDark))
+    return ['solid', 'clear'].filter(part => faces[part].places.length).map(part => {
+      const mesh = meshOf(run, faces[part], this.material(`boxes ${part}`, () => plainMaterial(OPACITY[part])))
+      mesh.userData.cells = faces[part].cells
+      return mesh
+    })
   }
 
   /** Show chunks that are far from the camera with less detail while pictures follow one another quickly. */
@@ -196,9 +191,7 @@ export class Space {
   dropMeshes (meshes) {
     for (const mesh of meshes) {
       this.blocks.remove(mesh)
-      // The geometry of single boxes is shared.
-      if (mesh.userData.isMerged) mesh.geometry.dispose()
-      else mesh.dispose()
+      mesh.geometry.dispose()
     }
   }
 
@@ -365,9 +358,9 @@ export class Space {
   }
 
   /** Return the block or container that a ray hit. @returns {string} */
-  blockAt ({ object, instanceId, point, face }) {
+  blockAt ({ object, faceIndex, point, face }) {
     const run = this.run
-    const cell = object.userData.isMerged ? run.cell(point.clone().addScaledVector(face.normal, -0.5).toArray()) : object.userData.cells[instanceId]
+    const cell = object.userData.isMerged ? run.cell(point.clone().addScaledVector(face.normal, -0.5).toArray()) : object.userData.cells[Math.floor(faceIndex / 2)]
     return `${run.states[this.blocksBuilt.grid[cell]].container ? 'container' : 'block'}-${cell}`
   }
 }
@@ -387,18 +380,18 @@ function shadeOf (block, isSeen) {
 }
 
 /** Return the colour of a block's face in the light of the scene. @returns {number[]} */
-function litShade (block, isSeen, normal) {
-  const name = `${isSeen} ${normal.join()}`
+function litShade (block, isSeen, normal, isDark = false) {
+  const name = `${isSeen} ${isDark} ${normal.join()}`
   block.lit ??= new Map()
   if (!block.lit.has(name)) {
     const light = lightOn(normal)
-    block.lit.set(name, shadeOf(block, isSeen).toArray().map((part, at) => part * light[at]))
+    block.lit.set(name, shadeOf(block, isSeen).toArray().map((part, at) => part * light[at] * (isDark ? DARKER : 1)))
   }
   return block.lit.get(name)
 }
 
 function plainMaterial (opacity) {
-  return new MeshLambertMaterial({ transparent: opacity < 1, opacity })
+  return new MeshBasicMaterial({ vertexColors: true, transparent: opacity < 1, opacity })
 }
 
 /**
@@ -427,8 +420,8 @@ function chequered (opacity) {
   return material
 }
 
-/** Return the mesh of merged faces. */
-function merged ({ places, colours, normals, plain }, material) {
+/** Return the mesh of faces of a run's blocks. */
+function meshOf (run, { places, colours, normals, plain }, material) {
   const count = plain.length / 4
   const corners = Uint32Array.from({ length: 6 * count }, (_, at) => 4 * Math.floor(at / 6) + CORNERS[at % 6])
   const geometry = new BufferGeometry()
@@ -438,7 +431,7 @@ function merged ({ places, colours, normals, plain }, material) {
   geometry.setAttribute('plain', new BufferAttribute(new Uint8Array(plain), 1))
   geometry.setIndex(new BufferAttribute(corners, 1))
   const mesh = new Mesh(geometry, material)
-  mesh.userData.isMerged = true
+  mesh.position.set(...run.head.box.low)
   return mesh
 }
 
@@ -451,19 +444,6 @@ function sphereOf (mesh) {
     mesh.userData.sphere.radius *= mesh.scale.x
   }
   return mesh.userData.sphere
-}
-
-/** Return the mesh of single boxes. */
-function instances (boxes, material) {
-  const mesh = new InstancedMesh(CUBE, material, boxes.length)
-  const still = new Quaternion()
-  mesh.userData.cells = boxes.map(({ cell }) => cell)
-  boxes.forEach(({ box: [x0, y0, z0, x1, y1, z1], colour, place: [x, y, z] }, number) => {
-    const middle = new Vector3(x + (x0 + x1) / 64, y + (y0 + y1) / 64, z + (z0 + z1) / 64)
-    mesh.setMatrixAt(number, new Matrix4().compose(middle, still, new Vector3((x1 - x0) / 32, (y1 - y0) / 32, (z1 - z0) / 32)))
-    mesh.setColorAt(number, colour)
-  })
-  return mesh
 }
 
 export { EYE }
