@@ -2,8 +2,8 @@
 
 import {
   BoxGeometry, BufferAttribute, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight,
-  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Mesh, MeshBasicMaterial, MeshLambertMaterial,
-  Raycaster, Scene, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
+  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Mesh, MeshLambertMaterial,
+  Raycaster, Scene, ShaderMaterial, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { element } from './elements.js'
@@ -23,7 +23,29 @@ const SUN_POWER = 1.6
 const SKY_POWER = 2.2
 const GROUND_LIGHT = 0xb8b0a4
 const FAR = 60
-const DARKER = 0.97
+const DARKER = 0.987
+/** Shader of the corners of blocks' faces; `side` is the normal, and 1 for faces without a chequerboard. */
+const FACE_CORNER = `
+  attribute vec3 color;
+  attribute vec4 side;
+  flat varying vec3 vColor;
+  flat varying float vPlain;
+  varying vec2 vField;
+  void main () {
+    vColor = color;
+    vPlain = side.w;
+    vField = position.xz - 0.5 * side.xz;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }`
+const FACE_PIXEL = `
+  uniform float opacity;
+  flat varying vec3 vColor;
+  flat varying float vPlain;
+  varying vec2 vField;
+  void main () {
+    bool isDark = vPlain < 0.5 && mod(floor(vField.x) + floor(vField.y), 2.0) < 0.5;
+    gl_FragColor = vec4(isDark ? ${DARKER} * vColor : vColor, opacity);
+  }`
 const OPACITY = { solid: 1, clear: 0.35, liquid: 0.6 }
 /** Corners of the two triangles of a rectangle. */
 const CORNERS = [0, 1, 2, 0, 2, 3]
@@ -160,7 +182,7 @@ export class Space {
   mergedMeshes (run, blocks, number) {
     const faces = facesOf(blocks, number, (state, isSeen, normal) => litShade(run.states[state], isSeen, normal))
     return ['solid', 'liquid'].filter(part => faces[part].places.length).map(part => {
-      const mesh = meshOf(run, faces[part], this.material(`merged ${part}`, () => chequered(OPACITY[part])))
+      const mesh = meshOf(run, faces[part], this.material(part, () => faceMaterial(OPACITY[part])))
       mesh.userData.isMerged = true
       return mesh
     })
@@ -169,7 +191,7 @@ export class Space {
   boxMeshes (run, blocks, number) {
     const faces = boxesOf(blocks, number, (state, isSeen, normal, isDark) => litShade(run.states[state], isSeen, normal, isDark))
     return ['solid', 'clear'].filter(part => faces[part].places.length).map(part => {
-      const mesh = meshOf(run, faces[part], this.material(`boxes ${part}`, () => plainMaterial(OPACITY[part])))
+      const mesh = meshOf(run, faces[part], this.material(part, () => faceMaterial(OPACITY[part])))
       mesh.userData.cells = faces[part].cells
       return mesh
     })
@@ -379,56 +401,41 @@ function shadeOf (block, isSeen) {
   return isSeen ? block.shade : block.unseen
 }
 
-/** Return the colour of a block's face in the light of the scene. @returns {number[]} */
+/** Return the colour of a block's face in the light of the scene, as screens show it (sRGB). @returns {number[]} */
 function litShade (block, isSeen, normal, isDark = false) {
   const name = `${isSeen} ${isDark} ${normal.join()}`
   block.lit ??= new Map()
   if (!block.lit.has(name)) {
-    const light = lightOn(normal)
-    block.lit.set(name, shadeOf(block, isSeen).toArray().map((part, at) => part * light[at] * (isDark ? DARKER : 1)))
+    const lit = shadeOf(block, isSeen).clone().multiply(lightOn(normal)).convertLinearToSRGB()
+    block.lit.set(name, lit.multiplyScalar(isDark ? DARKER : 1).toArray())
   }
   return block.lit.get(name)
 }
 
-function plainMaterial (opacity) {
-  return new MeshBasicMaterial({ vertexColors: true, transparent: opacity < 1, opacity })
-}
-
 /**
  * Return the light that a face of a block reflects, as the lights of the scene shine on a MeshLambertMaterial. Faces of
- * merged blocks look to six sides only, so that their colours include it and no pixel computes it.
- * @returns {number[]} share of each colour
+ * blocks look to six sides only, so that their colours include it and no pixel computes it.
+ * @returns {Color} share of each colour
  */
 function lightOn (normal) {
   const direction = new Vector3(...normal)
   const sky = new Color(GROUND_LIGHT).lerp(new Color(0xffffff), 0.5 * direction.y + 0.5).multiplyScalar(SKY_POWER)
   const sun = SUN_POWER * Math.max(0, direction.dot(SUN.clone().normalize()))
-  return sky.toArray().map(part => (part + sun) / Math.PI)
+  return sky.addScalar(sun).multiplyScalar(1 / Math.PI)
 }
 
-/** Return a material that draws every second block a little darker, as a chequerboard. */
-function chequered (opacity) {
-  const material = new MeshBasicMaterial({ vertexColors: true, transparent: opacity < 1, opacity })
-  material.onBeforeCompile = shader => {
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nattribute float plain;\nvarying float vPlain;\nvarying vec3 vInner;')
-      .replace('#include <begin_vertex>', '#include <begin_vertex>\nvPlain = plain;\nvInner = position - 0.5 * normal;')
-    shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', '#include <common>\nvarying float vPlain;\nvarying vec3 vInner;')
-      .replace('#include <color_fragment>', `#include <color_fragment>\nif (vPlain < 0.5 && mod(floor(vInner.x) + floor(vInner.z), 2.0) < 0.5) diffuseColor.rgb *= ${DARKER};`)
-  }
-  return material
+/** Return the material of faces that have their light in their colours, with every second block a little darker. */
+function faceMaterial (opacity) {
+  return new ShaderMaterial({ vertexShader: FACE_CORNER, fragmentShader: FACE_PIXEL, uniforms: { opacity: { value: opacity } }, transparent: opacity < 1 })
 }
 
 /** Return the mesh of faces of a run's blocks. */
-function meshOf (run, { places, colours, normals, plain }, material) {
-  const count = plain.length / 4
-  const corners = Uint32Array.from({ length: 6 * count }, (_, at) => 4 * Math.floor(at / 6) + CORNERS[at % 6])
+function meshOf (run, { places, colours, sides }, material) {
+  const corners = Uint32Array.from({ length: 3 * sides.length / 8 }, (_, at) => 4 * Math.floor(at / 6) + CORNERS[at % 6])
   const geometry = new BufferGeometry()
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(places), 3))
-  geometry.setAttribute('normal', new BufferAttribute(new Int8Array(normals), 3))
   geometry.setAttribute('color', new BufferAttribute(new Float32Array(colours), 3))
-  geometry.setAttribute('plain', new BufferAttribute(new Uint8Array(plain), 1))
+  geometry.setAttribute('side', new BufferAttribute(new Int8Array(sides), 4))
   geometry.setIndex(new BufferAttribute(corners, 1))
   const mesh = new Mesh(geometry, material)
   mesh.position.set(...run.head.box.low)

@@ -124,13 +124,12 @@ function normalOf (axis, side) {
   return normal
 }
 
-/** Faces under construction: corners, normals, colours. */
+/** Faces under construction: by corner its place, its colour, and its side: a normal, and 1 without a chequerboard. */
 class Faces {
   constructor () {
     this.places = []
-    this.normals = []
     this.colours = []
-    this.plain = []
+    this.sides = []
     this.cells = []
   }
 
@@ -145,9 +144,8 @@ class Faces {
     const normal = normalOf(axis, side)
     for (const at of side ? [a, b, c, d] : [a, d, c, b]) {
       this.places.push(...at)
-      this.normals.push(...normal)
       this.colours.push(...colour)
-      this.plain.push(plain)
+      this.sides.push(...normal, plain)
     }
   }
 }
