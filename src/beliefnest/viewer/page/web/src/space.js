@@ -51,9 +51,10 @@ const OPACITY = { solid: 1, clear: 0.35, liquid: 0.6 }
 const CORNERS = [0, 1, 2, 0, 2, 3]
 const CUBE = new BoxGeometry(1, 1, 1)
 const EDGES = new EdgesGeometry(CUBE)
-const BODY = new CapsuleGeometry(0.28, 0.75, 4, 12)
-const HEAD = new SphereGeometry(0.26, 16, 12)
-const NOSE = new ConeGeometry(0.12, 0.32, 10)
+/** Geometries of the parts of an agent: as it is drawn, and with few triangles for pictures from afar that move fast. */
+const BODY = [new CapsuleGeometry(0.28, 0.75, 4, 12), new CapsuleGeometry(0.28, 0.75, 1, 6)]
+const HEAD = [new SphereGeometry(0.26, 16, 12), new SphereGeometry(0.26, 6, 4)]
+const NOSE = [new ConeGeometry(0.12, 0.32, 10), new ConeGeometry(0.12, 0.32, 4)]
 const RING = new TorusGeometry(0.5, 0.045, 8, 32)
 const UNSEEN = new Color('#55535c')
 
@@ -197,16 +198,19 @@ export class Space {
     })
   }
 
-  /** Show chunks that are far from the camera with less detail while pictures follow one another quickly. */
+  /** Show what is far from the camera with less detail while pictures follow one another quickly. */
   chooseDetail () {
     if (!this.isLarge) return
+    const isFar = (place, radius) => this.hurried && this.camera.position.distanceTo(place) - radius > FAR
     for (const meshes of this.chunks.values()) {
       for (const mesh of meshes) {
         if (mesh.userData.detail === null) continue
         const { center, radius } = sphereOf(mesh)
-        const isFar = this.hurried && this.camera.position.distanceTo(center) - radius > FAR
-        mesh.visible = (mesh.userData.detail === 'coarse') === isFar
+        mesh.visible = (mesh.userData.detail === 'coarse') === isFar(center, radius)
       }
+    }
+    for (const mesh of this.figures.children) {
+      if (mesh.userData.fine) mesh.geometry = isFar(mesh.position, 0) ? mesh.userData.coarse : mesh.userData.fine
     }
   }
 
@@ -233,7 +237,7 @@ export class Space {
     for (const each of scene.things.signs) this.addSign(scene, each)
     for (const each of scene.run.head.places ?? []) this.addPlace(scene, each)
     for (const cell of scene.things.wrongBlocks.slice(0, 100)) this.outline(scene.run.place(cell), WRONG)
-    for (const [, , x, y, z] of scene.things.items) this.add(CUBE, '#3fa7a7', [x, y + 0.15, z], { size: 0.22 })
+    for (const [, , x, y, z] of scene.things.items) this.add([CUBE], '#3fa7a7', [x, y + 0.15, z], { size: 0.22 })
     if (scene.ray !== null) this.addRay(scene.ray)
     this.dropTags()
   }
@@ -259,12 +263,12 @@ export class Space {
     }
   }
 
-  add (geometry, colour, [x, y, z], { ghost = false, size = 1, thing = null } = {}) {
+  add ([geometry, coarse = geometry], colour, [x, y, z], { ghost = false, size = 1, thing = null } = {}) {
     const material = this.material(`${colour} ${ghost}`, () => new MeshLambertMaterial({ color: colour, transparent: ghost, opacity: ghost ? 0.45 : 1 }))
     const mesh = new Mesh(geometry, material)
     mesh.position.set(x, y, z)
     mesh.scale.setScalar(size)
-    mesh.userData.thing = thing
+    mesh.userData = { thing, fine: geometry, coarse }
     this.figures.add(mesh)
     return mesh
   }
@@ -281,7 +285,7 @@ export class Space {
     nose.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), new Vector3(dx, dy, dz).normalize())
     const wrong = each.marks.includes('false')
     if (wrong || scene.chosen === thing) {
-      const ring = this.add(RING, wrong ? WRONG : '#2b2a33', [pose.x, pose.y + 0.06, pose.z], {})
+      const ring = this.add([RING], wrong ? WRONG : '#2b2a33', [pose.x, pose.y + 0.06, pose.z], {})
       ring.rotation.x = Math.PI / 2
     }
     const sign = signsText(scene.run, each.marks, each.age)
