@@ -395,7 +395,7 @@ export class Space {
 function blocksOf ({ run, track, tick, storey, seen }) {
   if (run.kinds?.count !== run.states.length) run.kinds = new Kinds(run.states)
   const top = Math.max(0, Math.min(run.shape[1], storey - run.head.box.low[1] + 2))
-  return { grid: track.grid(tick), shape: run.shape, top, kinds: run.kinds, seen, chunk: CHUNK }
+  return { grid: track.grid(tick), shape: run.shape, top, kinds: run.kinds, seen, chunk: CHUNK, outset: 0 }
 }
 
 /** Return the colour of a block; the next call may return the same object. */

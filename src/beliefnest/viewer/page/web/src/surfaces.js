@@ -12,6 +12,8 @@ const SOLID = 1
 const LIQUID = 2
 const CLEAR = 3
 const ENOUGH = 4
+/** Outset of coarse faces. It closes the cracks between edges that end at each other, which would glitter while the camera moves. */
+const OUTSET = 0.03
 const LIQUIDS = new Set(['water', 'lava'])
 
 /**
@@ -42,6 +44,7 @@ function mergedAs ({ name, boxes, glassy }) {
  * @property {Kinds} kinds
  * @property {Uint8Array|null} seen - 1 for cells that are seen; null: all
  * @property {number} chunk - width and depth of its chunks
+ * @property {number} outset - length by which faces of full cubes reach beyond their edges
  */
 
 /** Return the numbers of the chunks of a grid whose pictures differ between two sets of blocks. @returns {number[]} */
@@ -83,7 +86,7 @@ export function cornersOf ({ shape: [width, , depth], top, chunk }, number) {
  */
 export function coarser (blocks, before, numbers) {
   const shape = blocks.shape.map(size => Math.ceil(size / 2))
-  const made = { ...blocks, shape, top: Math.ceil(blocks.top / 2), chunk: blocks.chunk / 2, seen: null, grid: before?.grid ?? new Int16Array(shape[0] * shape[1] * shape[2]).fill(-1) }
+  const made = { ...blocks, shape, top: Math.ceil(blocks.top / 2), chunk: blocks.chunk / 2, outset: OUTSET, seen: null, grid: before?.grid ?? new Int16Array(shape[0] * shape[1] * shape[2]).fill(-1) }
   if (blocks.seen !== null) made.seen = before?.seen ?? new Uint8Array(made.grid.length)
   for (const number of numbers) {
     const [from, to] = cornersOf(made, number)
@@ -133,9 +136,13 @@ class Faces {
     this.cells = []
   }
 
-  /** Add a rectangle: its lowest corner, its two edges along the axes `u` and `v`, and the side to which it looks. */
-  add (axis, side, corner, [u, wide], [v, high], colour, plain) {
-    const [a, b, c, d] = [[0, 0], [wide, 0], [wide, high], [0, high]].map(([along, up]) => {
+  /**
+   * Add a rectangle: its lowest corner, its two edges along the axes `u` and `v`, and the side to which it looks. It reaches
+   * beyond its edges by the outset.
+   */
+  add (axis, side, corner, [u, wide], [v, high], colour, plain, outset = 0) {
+    const [left, right, below, above] = [-outset, wide + outset, -outset, high + outset]
+    const [a, b, c, d] = [[left, below], [right, below], [right, above], [left, above]].map(([along, up]) => {
       const at = [...corner]
       at[u] += along
       at[v] += up
@@ -174,8 +181,11 @@ export function facesOf (blocks, number, colourOf) {
           corner[axis] = slice + side
           corner[u] = from[u] + along
           corner[v] = from[v] + up
-          const faces = merged[state] === LIQUID ? found.liquid : found.solid
-          faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0, normalOf(axis, side)), unseen)
+          const isLiquid = merged[state] === LIQUID
+          const faces = isLiquid ? found.liquid : found.solid
+          // Where transparent faces overlapped, their colour would be darker.
+          const outset = isLiquid ? 0 : blocks.outset
+          faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0, normalOf(axis, side)), unseen, outset)
         })
       }
     }
