@@ -428,6 +428,24 @@ def test_a_branch_is_the_world_of_what_follows_it():
     assert nest.at(1)["/observer/sally"].explain(container=CHEST).fact.path == ()
 
 
+def test_explanations_that_are_asked_together_equal_those_asked_one_by_one():
+    world, nest = corner(inventories={"anne": {"diamond": 1}})
+    world.deposit("anne", CHEST, {"diamond": 1})
+    world.step(1)
+    nest["/observer"].switch("try")
+    nest["/observer"].scripted.withdraw("sally", CHEST, {"diamond": 1})
+    reader, path = nest.reader, ("observer", "sally")
+    (key,) = (info.key for info in reader.timelines() if info.key.branch == "try")
+    things = [{"container": CHEST}, {"agent": "anne"}, {"block": EAST_BLOCK}]
+    # At ticks before 2 the beliefs are in the timeline below the branch, and at 2 they rest on it.
+    asked = [(tick, reader.element(**each)) for tick in (3, 0, 2, 1) for each in things]
+    together = reader.explain(key, path, asked)
+    alone = [reader.explain(key, path, [each])[0] for each in asked]
+    assert together == alone
+    assert list(map(lines, together)) == list(map(lines, alone))
+    assert len({str(each) for each in alone}) > 6
+
+
 @pytest.mark.parametrize(
     ("asked", "error", "message"),
     [

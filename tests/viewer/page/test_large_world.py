@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from beliefnest.cli.options import ShowOptions
@@ -9,6 +10,7 @@ from beliefnest.cli.page import write_page
 from beliefnest.nest.face.nest import Nest
 from beliefnest.viewer.page.html import page_html
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box
 from beliefnest.worlds.scripted.world import ScriptedWorld
@@ -122,6 +124,95 @@ def test_a_click_on_merged_faces_chooses_the_block_that_was_hit(browser, tmp_pat
         # The camera looks from above and from the south, so that one of these sides is open.
         sides = ((x, y + 1, z), (x, y, z + 1), (x - 1, y, z), (x + 1, y, z))
         assert "air" in map(hills.world.block_text, sides)
+
+
+TURN = """
+const done = arguments[arguments.length - 1]
+const canvas = document.querySelector('.space canvas')
+canvas.setPointerCapture = canvas.releasePointerCapture = () => {}
+const gl = canvas.getContext('webgl2')
+const frames = []
+let triangles = 0
+for (const name of ['drawElements', 'drawElementsInstanced']) {
+  const draw = gl[name].bind(gl)
+  gl[name] = (...given) => {
+    triangles += given[1] / 3 * (given[4] ?? 1)
+    draw(...given)
+  }
+}
+const small = new OffscreenCanvas(40, 30).getContext('2d', {willReadFrequently: true})
+const look = () => {
+  small.fillStyle = 'white'
+  small.fillRect(0, 0, 40, 30)
+  small.drawImage(canvas, 0, 0, 40, 30)
+  const sums = [0, 0, 0, 0]
+  small.getImageData(0, 0, 40, 30).data.forEach((part, at) => { sums[at % 4] += part })
+  frames.push({width: canvas.width, triangles, shade: sums.map(sum => sum / 1200)})
+  triangles = 0
+}
+const room = canvas.getBoundingClientRect()
+const at = {clientX: room.left + room.width / 2, clientY: room.top + room.height / 2}
+const send = kind => canvas.dispatchEvent(new PointerEvent(kind, {
+  pointerId: 1, pointerType: 'mouse', button: 0, buttons: 1, bubbles: true, ...at
+}))
+const rest = () => {
+  if (canvas.width < canvas.clientWidth) return requestAnimationFrame(rest)
+  look()
+  done(frames)
+}
+const turn = left => {
+  at.clientX += 1
+  send('pointermove')
+  requestAnimationFrame(() => {
+    look()
+    if (left > 0) return turn(left - 1)
+    send('pointerup')
+    rest()
+  })
+}
+send('pointerdown')
+turn(8)
+"""
+"""Script that drags the picture and lets it rest; it returns width, triangles, colour of frames."""
+
+
+def test_a_large_world_that_turns_has_far_fewer_triangles_and_the_same_colours(browser, tmp_path):
+    page = page_of(Hills(LARGE, agents=4), 1, tmp_path)
+    browser.open(f"{page.as_uri()}#view=space&at=/")
+    browser.until_script(
+        "const c = document.querySelector('.space canvas'); return c.width > c.clientWidth"
+    )
+    *turning, rest = browser.ask(TURN)
+    coarse = [frame for frame in turning if frame["width"] < rest["width"] / 2]
+    assert len(coarse) > 5
+    for frame in coarse:
+        assert 0 < frame["triangles"] < 0.4 * rest["triangles"]
+        assert frame["shade"] == pytest.approx(rest["shade"], abs=4)
+
+
+def test_boxes_beside_each_other_and_on_cubes_are_drawn_and_found(browser, tmp_path):
+    state = Registry.load().state_id
+    blocks = np.full((9, 4, 9), state("air"), dtype=np.int32)
+    blocks[:, 0] = state("smooth_stone")
+    blocks[2:7, 1, 2:7] = state("smooth_stone_slab")
+    world = ScriptedWorld.from_snapshot(
+        Snapshot(
+            0,
+            Box((0, 0, 0), (8, 3, 8)),
+            Terrain.of(blocks),
+            {},
+            {"anne": AgentState((0.5, 1, 0.5), 0.0)},
+        )
+    )
+    with Nest(world, store=tmp_path / "slabs.bn"):
+        world.step()
+    page = tmp_path / "slabs.html"
+    write_page(ShowOptions(tmp_path / "slabs.bn"), page)
+    browser.open(f"{page.as_uri()}#view=space&at=/")
+    browser.until_script("return document.querySelector('.space canvas')?.width > 300")
+    browser.script(CLICK, 0.5, 0.5)
+    heading = "return document.querySelector('.chosen-thing h3')?.textContent"
+    assert browser.until_script(heading) == "block at 4, 1, 4"
 
 
 def _new(text: str | None, earlier: list[str]) -> str | None:

@@ -5,7 +5,7 @@ along the path a `_Finding` notes when the belief took its present value, and th
 in the parent node that did not reach it. `sightings` then says why it did not.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from beliefnest.belief.columns import cell_of
@@ -17,6 +17,7 @@ from beliefnest.belief.priors import merged_belief
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.element_history import (
     LogStep,
+    Span,
     cells_of,
     is_current,
     last_change,
@@ -42,7 +43,7 @@ from beliefnest.nest.explain.parts import (
 )
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import Edit, ForkPoint
+from beliefnest.timeline.journal import Edit, ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point, Position
 
@@ -84,29 +85,38 @@ def _inside(recording: Recording, place: Position | None) -> Position:
 
 
 def explain(
-    recording: Recording, path: BeliefPath, tick: int | None, element: Element
-) -> Explanation:
-    """Return the chain of perceptions behind a node's belief about an element.
+    recording: Recording, path: BeliefPath, asked: Sequence[tuple[int | None, Element]]
+) -> list[Explanation]:
+    """Return the chains of perceptions behind a node's beliefs, in the order of the questions.
 
     Args:
         recording: Recording of the nest.
         path: Path of the node.
-        tick: Tick of the belief; None: now.
-        element: The element.
+        asked: Questions: the tick of a belief (None: now) and the element that it is about.
 
     Raises:
-        TickError: The tick is in the future, or before the start of everything.
+        TickError: A tick is in the future, or before the start of everything.
     """
-    return _explained(recording, path, recording.moment(path, tick), element)
+    moments = [(recording.moment(path, tick), element) for tick, element in asked]
+    return _explained(recording, path, moments)
 
 
 def _explained(
-    recording: Recording, path: BeliefPath, moment: ForkPoint, element: Element
-) -> Explanation:
-    """Explain a belief at a moment: the fact in the timeline's world, then each level of belief.
+    recording: Recording, path: BeliefPath, asked: Sequence[tuple[ForkPoint, Element]]
+) -> list[Explanation]:
+    """Explain beliefs at moments: the fact in the timeline's world, then each level of belief."""
+    inquiries = [_inquiry(recording, path, moment, element) for moment, element in asked]
+    together: dict[TimelineKey, list[_Inquiry]] = {}
+    for inquiry in inquiries:
+        together.setdefault(inquiry.moment.timeline, []).append(inquiry)
+    for some in together.values():
+        _follow(recording, path, some)
+    return [_explanation(recording, inquiry) for inquiry in inquiries]
 
-    If the element has not changed since the fork of the timeline, also explain the belief there.
-    """
+
+def _inquiry(
+    recording: Recording, path: BeliefPath, moment: ForkPoint, element: Element
+) -> "_Inquiry":
     root = moment.timeline.path
     paths = [path[:depth] for depth in range(len(root), len(path) + 1)]
     now = _held_now(recording, path, moment, element)
@@ -114,13 +124,21 @@ def _explained(
     traces = [
         _Finding(node, now[node], _grounds(recording, node, now, element)) for node in paths[1:]
     ]
-    _follow(recording, path, moment, element, traces)
+    return _Inquiry(moment, element, fact, traces)
+
+
+def _explanation(recording: Recording, inquiry: "_Inquiry") -> Explanation:
+    """Return the answer to an inquiry.
+
+    If the element has not changed since the fork of the timeline, also explain the belief there.
+    """
+    moment, element, fact = inquiry.moment, inquiry.element, inquiry.fact
     before = None
     base = recording.journal.info(moment.timeline).base
     if base is not None and fact.since is None:
-        before = _explained(recording, root, base, element)
+        (before,) = _explained(recording, moment.timeline.path, [(base, element)])
     weighed = recording.setting.perception.testimony == "informed"
-    levels = tuple(replace(_level(trace, element), weighed=weighed) for trace in traces)
+    levels = tuple(replace(_level(each, element), weighed=weighed) for each in inquiry.traces)
     return Explanation(element, moment.tick, fact, levels, before)
 
 
@@ -163,6 +181,16 @@ class _Finding:
     def observed_at(self) -> int | None:
         """The last tick at which the belief was current."""
         return None if self.held.basis is None else self.held.basis.observed_at
+
+
+@dataclass
+class _Inquiry:
+    """Question for a belief: its moment and element, the fact, and findings for each level."""
+
+    moment: ForkPoint
+    element: Element
+    fact: Fact
+    traces: list[_Finding]
 
 
 def _held_now(
@@ -224,29 +252,34 @@ def _fact(recording: Recording, moment: ForkPoint, held: _HeldNow, element: Elem
     )
 
 
-def _follow(
-    recording: Recording,
-    path: BeliefPath,
-    moment: ForkPoint,
-    element: Element,
-    traces: list[_Finding],
-) -> None:
-    """Fold the log from the oldest basis on, and note in each trace what happened."""
-    if not traces:
+def _follow(recording: Recording, path: BeliefPath, inquiries: Sequence[_Inquiry]) -> None:
+    """Fold the log from the oldest basis on, and note in each trace what happened.
+
+    Args:
+        recording: Recording of the nest.
+        path: Path of the node.
+        inquiries: Inquiries about one timeline.
+    """
+    spans = {
+        number: Span(each.moment, min(_begin(recording, trace) for trace in each.traces))
+        for number, each in enumerate(inquiries)
+        if each.traces
+    }
+    if not spans:
         return
-    start = min(_begin(recording, trace) for trace in traces)
-    last = None
-    for step in steps_since(recording.history, recording.journal, path, moment, start, element):
-        last = step
-        for trace in traces:
+    cells = {cell for each in inquiries for cell in cells_of(each.element, recording.box)}
+    history, journal = recording.history, recording.journal
+    for number, step in steps_since(history, journal, path, spans, sorted(cells)):
+        moment, element = inquiries[number].moment, inquiries[number].element
+        is_last = (step.timeline, step.forest.position) == (moment.timeline, moment.entries)
+        for trace in inquiries[number].traces:
             _take(recording, trace, step, element)
-    for trace in traces:
-        if last is not None and trace.held.basis is None:
-            parent = value_in(last.forest, trace.path[:-1], element)
-            if parent is not None:
-                # The node never knew the element: explain why the owner does not see it now.
-                missed = _missed(recording, trace.path, last, element, parent, acts=())
-                trace.missed = replace(missed, tick=moment.tick)
+            if is_last and trace.held.basis is None:
+                parent = value_in(step.forest, trace.path[:-1], element)
+                if parent is not None:
+                    # The node never knew the element: explain why the owner does not see it now.
+                    missed = _missed(recording, trace.path, step, element, parent, acts=())
+                    trace.missed = replace(missed, tick=moment.tick)
 
 
 def _take(recording: Recording, trace: _Finding, step: LogStep, element: Element) -> None:

@@ -1,8 +1,9 @@
 """History of one element in the nodes of a path, entry by entry, up to the explained moment."""
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.forest import Forest
@@ -17,6 +18,7 @@ from beliefnest.world.values import Box
 
 __all__ = [
     "LogStep",
+    "Span",
     "cells_of",
     "is_current",
     "last_change",
@@ -42,6 +44,13 @@ class LogStep:
     entry: Entry | None
 
 
+class Span(NamedTuple):
+    """Part of a log that explains a belief: from just before a tick to a moment."""
+
+    moment: ForkPoint
+    tick: int
+
+
 def cells_of(element: Element, box: Box) -> Sequence[int]:
     """Return the cells whose basis must be tracked. Contents and poses carry a basis anyway."""
     if isinstance(element.where, str) or element.kind == "container":
@@ -53,20 +62,40 @@ def steps_since(
     history: History,
     journal: Journal,
     path: BeliefPath,
-    moment: ForkPoint,
-    tick: int,
-    element: Element,
-) -> Iterator[LogStep]:
-    """Yield the forest of a node after each entry from just before `tick` to a moment."""
-    info = journal.info(moment.timeline)
-    if info.base is not None and tick <= info.start:
-        yield from steps_since(history, journal, path, info.base, tick, element)
-    first = min(journal.entries_until(moment.timeline, tick - 1), moment.entries)
-    cells = cells_of(element, history.context.box)
-    entries = itertools.chain([None], journal.entries(moment.timeline, first, moment.entries))
-    forests = history.steps(moment.timeline, path, first, moment.entries, cells)
-    for forest, entry in zip(forests, entries, strict=True):
-        yield LogStep(moment.timeline, forest, entry)
+    spans: Mapping[int, Span],
+    cells: Sequence[int],
+) -> Iterator[tuple[int, LogStep]]:
+    """Yield the forests of a node that belong to spans of a log, which is folded only once.
+
+    Args:
+        history: History of the nest.
+        journal: Its journal.
+        path: Path of the node.
+        spans: Spans by any numbers; their moments are in one timeline.
+        cells: Cells whose basis must be tracked.
+
+    Yields:
+        The number of a span, and the forest after each entry of it. The forests of one span come
+        in the order of time, and begin with that before its first entry.
+    """
+    (timeline,) = {span.moment.timeline for span in spans.values()}
+    info = journal.info(timeline)
+    older = {number: span for number, span in spans.items() if span.tick <= info.start}
+    if info.base is not None and older:
+        earlier = {number: Span(info.base, span.tick) for number, span in older.items()}
+        yield from steps_since(history, journal, path, earlier, cells)
+    firsts = {
+        number: min(journal.entries_until(timeline, span.tick - 1), span.moment.entries)
+        for number, span in spans.items()
+    }
+    first, last = min(firsts.values()), max(span.moment.entries for span in spans.values())
+    entries = itertools.chain([None], journal.entries(timeline, first, last))
+    forests = history.steps(timeline, path, first, last, cells)
+    for position, (forest, entry) in enumerate(zip(forests, entries, strict=True), first):
+        for number, span in spans.items():
+            if firsts[number] <= position <= span.moment.entries:
+                is_first = position == firsts[number]
+                yield number, LogStep(timeline, forest, None if is_first else entry)
 
 
 def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:

@@ -1,11 +1,12 @@
-"""Reader of a nest for viewers: timelines, nodes over time, past simulators and looks."""
+"""Reader of a nest for viewers: timelines, nodes over time, explanations and looks."""
 
 from collections.abc import Sequence
 
 from beliefnest.belief.forest import Forest
-from beliefnest.nest.explain.parts import Sighting
+from beliefnest.nest.explain.chain import element_of, explain
+from beliefnest.nest.explain.explanation import Explanation
+from beliefnest.nest.explain.parts import Element, Sighting
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
-from beliefnest.nest.face.shown import PastSimulator
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.views import VisiblePart, visible_part
 from beliefnest.timeline.journal import Entry, TimelineInfo, TimelineKey
@@ -73,9 +74,22 @@ class Reader:
         with self._recording.turn:
             self.history.advance(key, forest, position)
 
-    def simulator(self, key: TimelineKey, path: BeliefPath, tick: int) -> PastSimulator:
-        """Return a node at a tick of any timeline that it has or can follow."""
-        return PastSimulator(self._recording.on(key), path, tick)
+    def element(
+        self,
+        *,
+        container: Position | None = None,
+        agent: str | None = None,
+        block: Position | None = None,
+    ) -> Element:
+        """Return an element for `explain`; raises as `ShownSimulator.explain` does."""
+        return element_of(self._recording, container, agent, block)
+
+    def explain(
+        self, key: TimelineKey, path: BeliefPath, asked: Sequence[tuple[int, Element]]
+    ) -> Sequence[Explanation]:
+        """Return explanations of a node's beliefs about elements at ticks."""
+        with self._recording.turn:
+            return explain(self._recording.on(key), path, asked)
 
     def look(
         self, key: TimelineKey, path: BeliefPath, tick: int, viewer: str, target: str | Position

@@ -125,7 +125,8 @@ class ShownSimulator(ABC):
             PositionError: The position is outside the box.
         """
         element = element_of(self._recording, container, agent, block)
-        return explain(self._recording, self._path, self._tick, element)
+        (explanation,) = explain(self._recording, self._path, [(self._tick, element)])
+        return explanation
 
     @property
     @in_turn

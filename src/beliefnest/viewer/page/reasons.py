@@ -11,7 +11,7 @@ from beliefnest.belief.columns import place_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError
-from beliefnest.nest.explain.parts import Sighting
+from beliefnest.nest.explain.parts import Element, Sighting
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.face.reader import Reader
 from beliefnest.nest.past.views import VisiblePart, visible_part
@@ -29,7 +29,7 @@ __all__ = ["ahead", "explanation_of", "look_of", "name_of", "sight_of"]
 _THING = re.compile(r"(agent|block|container|inventory)-(\d{1,9})", re.ASCII)
 
 _EXPLANATIONS = 36
-"""Largest number of explanations in a page without a server; each takes some 0.1 s."""
+"""Largest number of explanations in a page without a server; together they take some seconds."""
 
 _ENTRIES = 6000
 """Largest number of entries folded for explanations; pages of longer runs need a server."""
@@ -60,14 +60,27 @@ def explanation_of(
         InputError: There is no such thing.
         TickError: The timeline has no such tick.
     """
-    shown = reader.simulator(key, path, tick)
+    (told,) = _told_reasons(reader, key, path, [(tick, thing)])
+    return told
+
+
+def _told_reasons(
+    reader: Reader, key: TimelineKey, path: BeliefPath, asked: Sequence[tuple[int, str]]
+) -> list[dict[str, Any]]:
+    """Return the answers of `explanation_of` for several ticks and things, found together."""
+    told = reader.explain(key, path, [(tick, _element(reader, thing)) for tick, thing in asked])
+    return [
+        {"t": tick, "lines": str(each).splitlines()}
+        for (tick, _), each in zip(asked, told, strict=True)
+    ]
+
+
+def _element(reader: Reader, thing: str) -> Element:
     kind, number = _named(thing)
     if kind in ("agent", "inventory"):
-        told = shown.explain(agent=_agent(reader, number))
-    else:
-        place = _place(reader, number)
-        told = shown.explain(container=place) if kind == "container" else shown.explain(block=place)
-    return {"t": tick, "lines": str(told).splitlines()}
+        return reader.element(agent=_agent(reader, number))
+    place = _place(reader, number)
+    return reader.element(container=place) if kind == "container" else reader.element(block=place)
 
 
 def look_of(
@@ -230,23 +243,28 @@ def _add(rows: dict[str, list[Any]], name: str, tick: int, value: Any) -> None:
 def _explanations(
     data: RunData, nodes: Sequence[tuple[TimelineInfo, BeliefPath]]
 ) -> dict[str, list[Any]]:
-    reader, found = data.reader, {}
+    reader = data.reader
+    found: dict[str, list[Any]] = {}
     wanted = sorted(nodes, key=lambda each: (each[1] not in data.about.paths, bool(each[0].base)))
     longest = max((info.entries for info, _ in nodes), default=1)
     left = min(_EXPLANATIONS, _ENTRIES // max(1, longest))
     infos = {info.key: info for info, _ in wanted}
     deeds = {key: _deeds(reader, info) for key, info in infos.items()} if left else {}
+    asked: dict[tuple[TimelineKey, BeliefPath], list[tuple[int, str]]] = {}
     for kind in ("container", "agent"):
         for info, path in wanted:
             for thing in _things(reader, kind) if path else ():
                 ticks = deeds.get(info.key, [])[: max(0, left)]
                 left -= len(ticks)
-                # In order of time, a forest is folded further from tick to tick.
-                rows = [
-                    explanation_of(reader, info.key, path, tick, thing) for tick in reversed(ticks)
-                ]
-                if rows:
-                    found[f"{name_of(info.key, path)} {thing}"] = rows[::-1]
+                if ticks:
+                    found[f"{name_of(info.key, path)} {thing}"] = []
+                    asked.setdefault((info.key, path), []).extend((tick, thing) for tick in ticks)
+    for (key, path), questions in asked.items():
+        # In order of time, a forest is folded further from tick to tick.
+        questions.sort()
+        told = _told_reasons(reader, key, path, questions)
+        for (_, thing), row in zip(questions, told, strict=True):
+            found[f"{name_of(key, path)} {thing}"].insert(0, row)
     return found
 
 

@@ -1,14 +1,14 @@
 /** Simulator in three dimensions: boxes for blocks, figures for agents, labels as text on top. */
 
 import {
-  BoxGeometry, BufferAttribute, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight, InstancedMesh,
-  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Matrix4, Mesh, MeshBasicMaterial, MeshLambertMaterial, Quaternion,
-  Raycaster, Scene, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
+  BoxGeometry, BufferAttribute, CapsuleGeometry, Color, ConeGeometry, DirectionalLight, EdgesGeometry, Group, HemisphereLight,
+  Line, LineBasicMaterial, LineDashedMaterial, LineSegments, BufferGeometry, Mesh, MeshLambertMaterial,
+  Raycaster, Scene, ShaderMaterial, SphereGeometry, TorusGeometry, Vector2, Vector3, WebGLRenderer
 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
 import { element } from './elements.js'
 import { apart } from './labels.js'
-import { CHUNK, Kinds, boxedCells, changedChunks, coarser, facesOf } from './surfaces.js'
+import { CHUNK, Kinds, boxesOf, changedChunks, coarser, facesOf } from './surfaces.js'
 import { contentsLabel, shortened, signsText } from './things.js'
 
 const WRONG = 0xd55e00
@@ -23,15 +23,38 @@ const SUN_POWER = 1.6
 const SKY_POWER = 2.2
 const GROUND_LIGHT = 0xb8b0a4
 const FAR = 60
-const DARKER = 0.97
+const DARKER = 0.987
+/** Shader of the corners of blocks' faces; `side` is the normal, and 1 for faces without a chequerboard. */
+const FACE_CORNER = `
+  attribute vec3 color;
+  attribute vec4 side;
+  flat varying vec3 vColor;
+  flat varying float vPlain;
+  varying vec2 vField;
+  void main () {
+    vColor = color;
+    vPlain = side.w;
+    vField = position.xz - 0.5 * side.xz;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }`
+const FACE_PIXEL = `
+  uniform float opacity;
+  flat varying vec3 vColor;
+  flat varying float vPlain;
+  varying vec2 vField;
+  void main () {
+    bool isDark = vPlain < 0.5 && mod(floor(vField.x) + floor(vField.y), 2.0) < 0.5;
+    gl_FragColor = vec4(isDark ? ${DARKER} * vColor : vColor, opacity);
+  }`
 const OPACITY = { solid: 1, clear: 0.35, liquid: 0.6 }
 /** Corners of the two triangles of a rectangle. */
 const CORNERS = [0, 1, 2, 0, 2, 3]
 const CUBE = new BoxGeometry(1, 1, 1)
 const EDGES = new EdgesGeometry(CUBE)
-const BODY = new CapsuleGeometry(0.28, 0.75, 4, 12)
-const HEAD = new SphereGeometry(0.26, 16, 12)
-const NOSE = new ConeGeometry(0.12, 0.32, 10)
+/** Geometries of the parts of an agent: as it is drawn, and with few triangles for pictures from afar that move fast. */
+const BODY = [new CapsuleGeometry(0.28, 0.75, 4, 12), new CapsuleGeometry(0.28, 0.75, 1, 6)]
+const HEAD = [new SphereGeometry(0.26, 16, 12), new SphereGeometry(0.26, 6, 4)]
+const NOSE = [new ConeGeometry(0.12, 0.32, 10), new ConeGeometry(0.12, 0.32, 4)]
 const RING = new TorusGeometry(0.5, 0.045, 8, 32)
 const UNSEEN = new Color('#55535c')
 
@@ -160,45 +183,41 @@ export class Space {
   mergedMeshes (run, blocks, number) {
     const faces = facesOf(blocks, number, (state, isSeen, normal) => litShade(run.states[state], isSeen, normal))
     return ['solid', 'liquid'].filter(part => faces[part].places.length).map(part => {
-      const mesh = merged(faces[part], this.material(`merged ${part}`, () => chequered(OPACITY[part])))
-      mesh.position.set(...run.head.box.low)
+      const mesh = meshOf(run, faces[part], this.material(part, () => faceMaterial(OPACITY[part])))
+      mesh.userData.isMerged = true
       return mesh
     })
   }
 
   boxMeshes (run, blocks, number) {
-    const boxes = { solid: [], clear: [] }
-    for (const cell of boxedCells(blocks, number)) {
-      const block = run.states[blocks.grid[cell]]
-      const isSeen = blocks.seen === null || blocks.seen[cell] === 1
-      const place = run.place(cell)
-      const colour = shadeOf(block, isSeen).clone()
-      if (isSeen && (place[0] + place[2] - run.head.box.low[0] - run.head.box.low[2]) % 2 === 0) colour.multiplyScalar(DARKER)
-      const list = block.glassy && !block.container ? boxes.clear : boxes.solid
-      for (const box of block.boxes) list.push({ box, cell, colour, place })
-    }
-    return ['solid', 'clear'].filter(part => boxes[part].length).map(part => instances(boxes[part], this.material(`boxes ${part}`, () => plainMaterial(OPACITY[part]))))
+    const faces = boxesOf(blocks, number, (state, isSeen, normal, isDark) => litShade(run.states[state], isSeen, normal, isDark))
+    return ['solid', 'clear'].filter(part => faces[part].places.length).map(part => {
+      const mesh = meshOf(run, faces[part], this.material(part, () => faceMaterial(OPACITY[part])))
+      mesh.userData.cells = faces[part].cells
+      return mesh
+    })
   }
 
-  /** Show chunks that are far from the camera with less detail while pictures follow one another quickly. */
+  /** Show what is far from the camera with less detail while pictures follow one another quickly. */
   chooseDetail () {
     if (!this.isLarge) return
+    const isFar = (place, radius) => this.hurried && this.camera.position.distanceTo(place) - radius > FAR
     for (const meshes of this.chunks.values()) {
       for (const mesh of meshes) {
         if (mesh.userData.detail === null) continue
         const { center, radius } = sphereOf(mesh)
-        const isFar = this.hurried && this.camera.position.distanceTo(center) - radius > FAR
-        mesh.visible = (mesh.userData.detail === 'coarse') === isFar
+        mesh.visible = (mesh.userData.detail === 'coarse') === isFar(center, radius)
       }
+    }
+    for (const mesh of this.figures.children) {
+      if (mesh.userData.fine) mesh.geometry = isFar(mesh.position, 0) ? mesh.userData.coarse : mesh.userData.fine
     }
   }
 
   dropMeshes (meshes) {
     for (const mesh of meshes) {
       this.blocks.remove(mesh)
-      // The geometry of single boxes is shared.
-      if (mesh.userData.isMerged) mesh.geometry.dispose()
-      else mesh.dispose()
+      mesh.geometry.dispose()
     }
   }
 
@@ -218,7 +237,7 @@ export class Space {
     for (const each of scene.things.signs) this.addSign(scene, each)
     for (const each of scene.run.head.places ?? []) this.addPlace(scene, each)
     for (const cell of scene.things.wrongBlocks.slice(0, 100)) this.outline(scene.run.place(cell), WRONG)
-    for (const [, , x, y, z] of scene.things.items) this.add(CUBE, '#3fa7a7', [x, y + 0.15, z], { size: 0.22 })
+    for (const [, , x, y, z] of scene.things.items) this.add([CUBE], '#3fa7a7', [x, y + 0.15, z], { size: 0.22 })
     if (scene.ray !== null) this.addRay(scene.ray)
     this.dropTags()
   }
@@ -244,12 +263,12 @@ export class Space {
     }
   }
 
-  add (geometry, colour, [x, y, z], { ghost = false, size = 1, thing = null } = {}) {
+  add ([geometry, coarse = geometry], colour, [x, y, z], { ghost = false, size = 1, thing = null } = {}) {
     const material = this.material(`${colour} ${ghost}`, () => new MeshLambertMaterial({ color: colour, transparent: ghost, opacity: ghost ? 0.45 : 1 }))
     const mesh = new Mesh(geometry, material)
     mesh.position.set(x, y, z)
     mesh.scale.setScalar(size)
-    mesh.userData.thing = thing
+    mesh.userData = { thing, fine: geometry, coarse }
     this.figures.add(mesh)
     return mesh
   }
@@ -266,7 +285,7 @@ export class Space {
     nose.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), new Vector3(dx, dy, dz).normalize())
     const wrong = each.marks.includes('false')
     if (wrong || scene.chosen === thing) {
-      const ring = this.add(RING, wrong ? WRONG : '#2b2a33', [pose.x, pose.y + 0.06, pose.z], {})
+      const ring = this.add([RING], wrong ? WRONG : '#2b2a33', [pose.x, pose.y + 0.06, pose.z], {})
       ring.rotation.x = Math.PI / 2
     }
     const sign = signsText(scene.run, each.marks, each.age)
@@ -365,9 +384,9 @@ export class Space {
   }
 
   /** Return the block or container that a ray hit. @returns {string} */
-  blockAt ({ object, instanceId, point, face }) {
+  blockAt ({ object, faceIndex, point, face }) {
     const run = this.run
-    const cell = object.userData.isMerged ? run.cell(point.clone().addScaledVector(face.normal, -0.5).toArray()) : object.userData.cells[instanceId]
+    const cell = object.userData.isMerged ? run.cell(point.clone().addScaledVector(face.normal, -0.5).toArray()) : object.userData.cells[Math.floor(faceIndex / 2)]
     return `${run.states[this.blocksBuilt.grid[cell]].container ? 'container' : 'block'}-${cell}`
   }
 }
@@ -376,7 +395,7 @@ export class Space {
 function blocksOf ({ run, track, tick, storey, seen }) {
   if (run.kinds?.count !== run.states.length) run.kinds = new Kinds(run.states)
   const top = Math.max(0, Math.min(run.shape[1], storey - run.head.box.low[1] + 2))
-  return { grid: track.grid(tick), shape: run.shape, top, kinds: run.kinds, seen, chunk: CHUNK }
+  return { grid: track.grid(tick), shape: run.shape, top, kinds: run.kinds, seen, chunk: CHUNK, outset: 0 }
 }
 
 /** Return the colour of a block; the next call may return the same object. */
@@ -386,59 +405,44 @@ function shadeOf (block, isSeen) {
   return isSeen ? block.shade : block.unseen
 }
 
-/** Return the colour of a block's face in the light of the scene. @returns {number[]} */
-function litShade (block, isSeen, normal) {
-  const name = `${isSeen} ${normal.join()}`
+/** Return the colour of a block's face in the light of the scene, as screens show it (sRGB). @returns {number[]} */
+function litShade (block, isSeen, normal, isDark = false) {
+  const name = `${isSeen} ${isDark} ${normal.join()}`
   block.lit ??= new Map()
   if (!block.lit.has(name)) {
-    const light = lightOn(normal)
-    block.lit.set(name, shadeOf(block, isSeen).toArray().map((part, at) => part * light[at]))
+    const lit = shadeOf(block, isSeen).clone().multiply(lightOn(normal)).convertLinearToSRGB()
+    block.lit.set(name, lit.multiplyScalar(isDark ? DARKER : 1).toArray())
   }
   return block.lit.get(name)
 }
 
-function plainMaterial (opacity) {
-  return new MeshLambertMaterial({ transparent: opacity < 1, opacity })
-}
-
 /**
  * Return the light that a face of a block reflects, as the lights of the scene shine on a MeshLambertMaterial. Faces of
- * merged blocks look to six sides only, so that their colours include it and no pixel computes it.
- * @returns {number[]} share of each colour
+ * blocks look to six sides only, so that their colours include it and no pixel computes it.
+ * @returns {Color} share of each colour
  */
 function lightOn (normal) {
   const direction = new Vector3(...normal)
   const sky = new Color(GROUND_LIGHT).lerp(new Color(0xffffff), 0.5 * direction.y + 0.5).multiplyScalar(SKY_POWER)
   const sun = SUN_POWER * Math.max(0, direction.dot(SUN.clone().normalize()))
-  return sky.toArray().map(part => (part + sun) / Math.PI)
+  return sky.addScalar(sun).multiplyScalar(1 / Math.PI)
 }
 
-/** Return a material that draws every second block a little darker, as a chequerboard. */
-function chequered (opacity) {
-  const material = new MeshBasicMaterial({ vertexColors: true, transparent: opacity < 1, opacity })
-  material.onBeforeCompile = shader => {
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nattribute float plain;\nvarying float vPlain;\nvarying vec3 vInner;')
-      .replace('#include <begin_vertex>', '#include <begin_vertex>\nvPlain = plain;\nvInner = position - 0.5 * normal;')
-    shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', '#include <common>\nvarying float vPlain;\nvarying vec3 vInner;')
-      .replace('#include <color_fragment>', `#include <color_fragment>\nif (vPlain < 0.5 && mod(floor(vInner.x) + floor(vInner.z), 2.0) < 0.5) diffuseColor.rgb *= ${DARKER};`)
-  }
-  return material
+/** Return the material of faces that have their light in their colours, with every second block a little darker. */
+function faceMaterial (opacity) {
+  return new ShaderMaterial({ vertexShader: FACE_CORNER, fragmentShader: FACE_PIXEL, uniforms: { opacity: { value: opacity } }, transparent: opacity < 1 })
 }
 
-/** Return the mesh of merged faces. */
-function merged ({ places, colours, normals, plain }, material) {
-  const count = plain.length / 4
-  const corners = Uint32Array.from({ length: 6 * count }, (_, at) => 4 * Math.floor(at / 6) + CORNERS[at % 6])
+/** Return the mesh of faces of a run's blocks. */
+function meshOf (run, { places, colours, sides }, material) {
+  const corners = Uint32Array.from({ length: 3 * sides.length / 8 }, (_, at) => 4 * Math.floor(at / 6) + CORNERS[at % 6])
   const geometry = new BufferGeometry()
   geometry.setAttribute('position', new BufferAttribute(new Float32Array(places), 3))
-  geometry.setAttribute('normal', new BufferAttribute(new Int8Array(normals), 3))
   geometry.setAttribute('color', new BufferAttribute(new Float32Array(colours), 3))
-  geometry.setAttribute('plain', new BufferAttribute(new Uint8Array(plain), 1))
+  geometry.setAttribute('side', new BufferAttribute(new Int8Array(sides), 4))
   geometry.setIndex(new BufferAttribute(corners, 1))
   const mesh = new Mesh(geometry, material)
-  mesh.userData.isMerged = true
+  mesh.position.set(...run.head.box.low)
   return mesh
 }
 
@@ -451,19 +455,6 @@ function sphereOf (mesh) {
     mesh.userData.sphere.radius *= mesh.scale.x
   }
   return mesh.userData.sphere
-}
-
-/** Return the mesh of single boxes. */
-function instances (boxes, material) {
-  const mesh = new InstancedMesh(CUBE, material, boxes.length)
-  const still = new Quaternion()
-  mesh.userData.cells = boxes.map(({ cell }) => cell)
-  boxes.forEach(({ box: [x0, y0, z0, x1, y1, z1], colour, place: [x, y, z] }, number) => {
-    const middle = new Vector3(x + (x0 + x1) / 64, y + (y0 + y1) / 64, z + (z0 + z1) / 64)
-    mesh.setMatrixAt(number, new Matrix4().compose(middle, still, new Vector3((x1 - x0) / 32, (y1 - y0) / 32, (z1 - z0) / 32)))
-    mesh.setColorAt(number, colour)
-  })
-  return mesh
 }
 
 export { EYE }

@@ -152,7 +152,6 @@ class Stage {
   }
 }
 
-/** Return the height in the middle of those at which things stand. @returns {number} */
 /** Return the scene of the simulator that is shown beside the chosen one. */
 function besideScene (scene) {
   const { beside, run } = scene
@@ -160,6 +159,7 @@ function besideScene (scene) {
   return { ...scene, track: beside, tick, things: thingsOf(run, beside, tick), seen: null, seenVersion: '', ray: null }
 }
 
+/** Return the height in the middle of those at which things stand. @returns {number} */
 function middleHeight (run, things) {
   const heights = [...things.containers.map(each => each.place[1]), ...things.agents.filter(each => each.pose !== null).map(each => each.pose.y)].sort((a, b) => a - b)
   return heights[Math.floor(heights.length / 2)] ?? run.head.box.low[1] + 1

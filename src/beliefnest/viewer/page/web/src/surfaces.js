@@ -10,15 +10,22 @@ export const CHUNK = 32
 const NONE = 0
 const SOLID = 1
 const LIQUID = 2
+const CLEAR = 3
 const ENOUGH = 4
+/** Outset of coarse faces. It closes the cracks between edges that end at each other, which would glitter while the camera moves. */
+const OUTSET = 0.03
 const LIQUIDS = new Set(['water', 'lava'])
 
-/** Ways in which block states are drawn, by number of the state: 0 as boxes, `SOLID` or `LIQUID` as merged faces. */
+/**
+ * Ways in which block states are drawn, by number of the state: `merged` has `SOLID` or `LIQUID` for those with merged faces,
+ * `boxed` has `SOLID` or `CLEAR` for those with boxes of their own.
+ */
 export class Kinds {
   constructor (states) {
     this.count = states.length
     this.merged = Uint8Array.from(states, mergedAs)
-    this.boxed = Uint8Array.from(states, (each, number) => !each.air && this.merged[number] === NONE ? 1 : 0)
+    this.boxed = Uint8Array.from(states, (each, number) => each.air || this.merged[number] !== NONE ? NONE : each.glassy && !each.container ? CLEAR : SOLID)
+    this.boxes = states.map(each => each.boxes)
   }
 }
 
@@ -37,6 +44,7 @@ function mergedAs ({ name, boxes, glassy }) {
  * @property {Kinds} kinds
  * @property {Uint8Array|null} seen - 1 for cells that are seen; null: all
  * @property {number} chunk - width and depth of its chunks
+ * @property {number} outset - length by which faces of full cubes reach beyond their edges
  */
 
 /** Return the numbers of the chunks of a grid whose pictures differ between two sets of blocks. @returns {number[]} */
@@ -78,7 +86,7 @@ export function cornersOf ({ shape: [width, , depth], top, chunk }, number) {
  */
 export function coarser (blocks, before, numbers) {
   const shape = blocks.shape.map(size => Math.ceil(size / 2))
-  const made = { ...blocks, shape, top: Math.ceil(blocks.top / 2), chunk: blocks.chunk / 2, seen: null, grid: before?.grid ?? new Int16Array(shape[0] * shape[1] * shape[2]).fill(-1) }
+  const made = { ...blocks, shape, top: Math.ceil(blocks.top / 2), chunk: blocks.chunk / 2, outset: OUTSET, seen: null, grid: before?.grid ?? new Int16Array(shape[0] * shape[1] * shape[2]).fill(-1) }
   if (blocks.seen !== null) made.seen = before?.seen ?? new Uint8Array(made.grid.length)
   for (const number of numbers) {
     const [from, to] = cornersOf(made, number)
@@ -119,20 +127,23 @@ function normalOf (axis, side) {
   return normal
 }
 
-/** Merged faces under construction: corners, normals, colours. */
+/** Faces under construction: by corner its place, its colour, and its side: a normal, and 1 without a chequerboard. */
 class Faces {
   constructor () {
     this.places = []
-    this.normals = []
     this.colours = []
-    this.plain = []
+    this.sides = []
+    this.cells = []
   }
 
-  /** Add a rectangle: its corner, its two edges along the axes `u` and `v`, and the side to which it looks. */
-  add (axis, side, corner, [u, wide], [v, high], colour, plain) {
-    const [a, b, c, d] = [[0, 0], [wide, 0], [wide, high], [0, high]].map(([along, up]) => {
+  /**
+   * Add a rectangle: its lowest corner, its two edges along the axes `u` and `v`, and the side to which it looks. It reaches
+   * beyond its edges by the outset.
+   */
+  add (axis, side, corner, [u, wide], [v, high], colour, plain, outset = 0) {
+    const [left, right, below, above] = [-outset, wide + outset, -outset, high + outset]
+    const [a, b, c, d] = [[left, below], [right, below], [right, above], [left, above]].map(([along, up]) => {
       const at = [...corner]
-      at[axis] += side
       at[u] += along
       at[v] += up
       return at
@@ -140,9 +151,8 @@ class Faces {
     const normal = normalOf(axis, side)
     for (const at of side ? [a, b, c, d] : [a, d, c, b]) {
       this.places.push(...at)
-      this.normals.push(...normal)
       this.colours.push(...colour)
-      this.plain.push(plain)
+      this.sides.push(...normal, plain)
     }
   }
 }
@@ -168,11 +178,14 @@ export function facesOf (blocks, number, colourOf) {
         rectangles(mask, wide, high, (along, up, across, tall, key) => {
           const [state, unseen] = [(key - 1) >> 1, (key - 1) & 1]
           const corner = []
-          corner[axis] = slice
+          corner[axis] = slice + side
           corner[u] = from[u] + along
           corner[v] = from[v] + up
-          const faces = merged[state] === LIQUID ? found.liquid : found.solid
-          faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0, normalOf(axis, side)), unseen)
+          const isLiquid = merged[state] === LIQUID
+          const faces = isLiquid ? found.liquid : found.solid
+          // Where transparent faces overlapped, their colour would be darker.
+          const outset = isLiquid ? 0 : blocks.outset
+          faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0, normalOf(axis, side)), unseen, outset)
         })
       }
     }
@@ -230,20 +243,48 @@ function isAll (mask, from, count, key) {
   return true
 }
 
-/** Return the cells of a chunk whose blocks are drawn as boxes and not hidden on all sides. @returns {number[]} */
-export function boxedCells (blocks, number) {
-  const { grid, shape: [width, height, depth], top, kinds } = blocks
+/**
+ * Return the faces of the blocks of a chunk that are drawn as boxes, without those that touch a full cube or the same box
+ * next to them. `cells` of the result has the cell of each face.
+ * @param {Blocks} blocks
+ * @param {number} number - number of the chunk
+ * @param {function(number, boolean, number[], boolean): number[]} colourOf - colour of a state, seen or not, on a side with a
+ *   normal, in a dark field of the chequerboard or not
+ * @returns {{solid: Faces, clear: Faces}}
+ */
+export function boxesOf (blocks, number, colourOf) {
+  const { grid, shape: [width, height, depth], top, kinds, seen } = blocks
   const [from, to] = cornersOf(blocks, number)
-  const isSolid = cell => grid[cell] >= 0 && kinds.merged[grid[cell]] === SOLID
-  const found = []
+  const [strides, limits] = [[height * depth, depth, 1], [width, top, depth]]
+  const found = { solid: new Faces(), clear: new Faces() }
   for (let i = from[0]; i < to[0]; i++) {
     for (let j = 0; j < top; j++) {
       for (let k = from[2]; k < to[2]; k++) {
         const cell = (i * height + j) * depth + k
-        if (grid[cell] < 0 || !kinds.boxed[grid[cell]]) continue
-        const isInside = i > 0 && i < width - 1 && j < top - 1 && k > 0 && k < depth - 1
-        const around = [cell - height * depth, cell + height * depth, cell + depth, cell - 1, cell + 1]
-        if (!isInside || !around.every(isSolid)) found.push(cell)
+        const state = grid[cell]
+        if (state < 0 || kinds.boxed[state] === NONE) continue
+        const place = [i, j, k]
+        const isSeen = seen === null || seen[cell] === 1
+        const isDark = isSeen && (i + k) % 2 === 0
+        const isSolid = kinds.boxed[state] === SOLID
+        const faces = isSolid ? found.solid : found.clear
+        for (const box of kinds.boxes[state]) {
+          for (const axis of [0, 1, 2]) {
+            for (const side of [0, 1]) {
+              const isEdge = place[axis] === (side ? limits[axis] - 1 : 0)
+              const next = isEdge ? -1 : grid[cell + (side ? strides[axis] : -strides[axis])]
+              const touches = box[axis + 3 * side] === 32 * side
+              const goesOn = isSolid && next === state && box[axis] === 0 && box[axis + 3] === 32
+              if (next >= 0 && touches && (kinds.merged[next] === SOLID || goesOn)) continue
+              const corner = place.map((at, n) => at + box[n] / 32)
+              corner[axis] = place[axis] + box[axis + 3 * side] / 32
+              const [u, v] = [(axis + 1) % 3, (axis + 2) % 3]
+              const edges = [u, v].map(along => [along, (box[along + 3] - box[along]) / 32])
+              faces.add(axis, side, corner, ...edges, colourOf(state, isSeen, normalOf(axis, side), isDark), 1)
+              faces.cells.push(cell)
+            }
+          }
+        }
       }
     }
   }
