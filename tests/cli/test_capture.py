@@ -15,9 +15,9 @@ from beliefnest import Nest, Scenario
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios import writing, yaml_reading
-from beliefnest.scenarios.cuboids import cuboids, distinct_cells
 from beliefnest.scenarios.writing import scenario_text
 from beliefnest.world import terrain
+from beliefnest.world.cuboids import cuboids, distinct_cells
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain

@@ -13,10 +13,10 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import BeliefNestError, ScenarioError
-from beliefnest.scenarios.cuboids import cuboids
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, wrapped
 from beliefnest.scenarios.document_form import check_written
 from beliefnest.scenarios.format import FloorEntry, LegendEntry, MapEntry, WrittenFile
+from beliefnest.world.cuboids import cuboids
 from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain

@@ -452,6 +452,12 @@ class Terrain:
             digest.update(chunk.tobytes())
         return digest.digest()
 
+    def count(self, states: Collection[int]) -> int:
+        """Return the number of cells with one of some states."""
+        wanted = list(states)
+        found = [np.isin(chunk[part], wanted).sum() * len(at) for chunk, at, part in self.kinds()]
+        return int(sum(found))
+
     def find(self, states: Collection[int]) -> npt.NDArray[np.intp]:
         """Return the indices (n, 3) of the cells with one of some states, in order."""
         if self.is_dense:
