@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beliefnest.errors import ScenarioError, WorldError
+from beliefnest.errors import InputError, ScenarioError, TemplateError, WorldError
 from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past import over_time
 from beliefnest.scenarios import instances, space
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import read_document
@@ -234,3 +235,29 @@ def test_agents_beyond_the_limit_are_refused_with_file_and_line(tmp_path: Any) -
         ScriptedWorld(((0, 0, 0), (15, 3, 15)), agents=agents)
     del agents["a7"]
     assert len(ScriptedWorld(((0, 0, 0), (15, 3, 15)), agents=agents).agents) == 200
+
+
+def test_prompts_and_exports_refuse_millions_of_blocks_with_what_to_do(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Any
+) -> None:
+    monkeypatch.setattr(over_time, "_MOST_BLOCKS", 999_999)
+    file = tmp_path / "big.yaml"
+    file.write_text(BIG + "static_blocks: [stone]\n")
+    store = tmp_path / "run.bn"
+    with Nest.open(Scenario.load(str(file)), "scripted", store=store) as nest:
+        assert "barrel: (12, 1, 12)" in nest["/ann"].render('{{ branch | blocks(["barrel"]) }}')
+        for template in (
+            "{{ branch | blocks }}",
+            '{{ branch | blocks(["stone", "barrel"]) }}',
+            '{{ branch | block_property("stone") }}',
+            "{{ branch | blocks_and_visibilities }}",
+        ):
+            with pytest.raises(TemplateError) as fault:
+                nest["/ann"].render(template)
+            assert "known blocks to list, most of them stone; at most" in str(fault.value)
+    with Nest.read(store) as nest:
+        with pytest.raises(
+            InputError, match=r"/ann knows 1,00\d,\d\d\d blocks at tick 0"
+        ) as refused:
+            list(nest.over_time("/ann"))
+        assert "at most 999,999: leave the path out" in str(refused.value)

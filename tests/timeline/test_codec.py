@@ -263,8 +263,8 @@ def test_damaged_chunks_are_refused():
         ("do not fill", {"blocks": good["blocks"][:-3]}),
         ("do not fill", {"blocks": b"no zstandard"}),
         ("do not fill", {"blocks": packed(numbers[:-1])}),
-        ("not stored", {"blocks": packed(beyond)}),
-        ("not stored", {"blocks": packed(below)}),
+        ("not there", {"blocks": packed(beyond)}),
+        ("not there", {"blocks": packed(below)}),
         ("at most", {"high": (30_000_000, 30_000_000, 30_000_000)}),
     ):
         with pytest.raises(StoreError, match=fault):

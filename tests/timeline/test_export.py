@@ -71,6 +71,26 @@ def first(registry):
     )
 
 
+def test_very_many_first_blocks_are_told_as_cuboids(registry, tmp_path):
+    stone, sign = registry.state_id("stone"), registry.state_id("oak_sign")
+    draft = Terrain.full((300, 40, 300), registry.air).draft()
+    draft.fill((0, 0, 0), (300, 30, 300), stone)
+    draft[7, 30, 9] = sign
+    box = Box((5, 0, -4), (304, 39, 295))
+    place = (12, 30, 5)
+    snapshot = Snapshot(0, box, draft.terrain(), {}, {}, signs={place: "hi"})
+    out = tmp_path / "out"
+    journal = MemoryJournal()
+    journal.create(MAIN, None, 0)
+    counts = export(journal, "jsonl", out, registry=registry, first=snapshot)
+    assert (counts["cuboids"], counts["blocks"], counts["signs"]) == (2, 1, 1)
+    whole, single = map(json.loads, (out / "cuboids.jsonl").read_text().splitlines())
+    corners = ("x", "y", "z", "x2", "y2", "z2")
+    assert [whole[name] for name in corners] == [5, 0, -4, 304, 29, 295]
+    assert (whole["entry"], whole["block"]) == (-1, "stone")
+    assert [single[name] for name in corners] == [*place, *place]
+
+
 @pytest.fixture
 def journal(registry):
     journal = MemoryJournal()
@@ -129,8 +149,8 @@ def written(request, journal, registry, first, tmp_path):
                 run_row(RUN, [RUN.versions]),
                 program_row(PROGRAM),
                 prompt_row(PROMPT),
-                # Of episodes, of which timelines know nothing.
-                *((name, dict.fromkeys(TABLES[name])) for name in ("rounds", "goals")),
+                # Of episodes, of which timelines know nothing, and of large places.
+                *((name, dict.fromkeys(TABLES[name])) for name in ("rounds", "goals", "cuboids")),
             ]
         ),
     )
@@ -304,7 +324,7 @@ def test_the_documentation_lists_every_column_with_its_type():
         section = text.split(f"\n### {name}\n")[1].split("\n#")[0]
         listed = {
             column: kind
-            for cells, kind in re.findall(r"^\| (`[a-z_` ]+) \| (\w+) \|", section, re.MULTILINE)
+            for cells, kind in re.findall(r"^\| (`[a-z0-9_` ]+) \| (\w+) \|", section, re.MULTILINE)
             for column in re.findall(r"`(\w+)`", cells)
         }
         own = {c: k for c, k in columns.items() if c not in common or c in listed}

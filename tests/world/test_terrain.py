@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beliefnest.world import terrain
-from beliefnest.world.terrain import Draft, Terrain
+from beliefnest.world.terrain import VOLUME, Draft, Terrain
 
 SMALL, LARGE = (20, 4, 20), (41, 50, 45)
 LONG = (400, 8, 400)
@@ -105,3 +105,28 @@ def test_chunks_of_many_edits_are_dropped(edit):
     made = draft.terrain()
     assert made[3, 4, 5] == 1999
     assert len(made.chunks) < 600
+
+
+@pytest.mark.parametrize("dense", [terrain.DENSE, 0], ids=["dense", "chunks"])
+@pytest.mark.parametrize("seed", range(5))
+def test_borders_are_where_layers_differ(seed, dense, monkeypatch):
+    monkeypatch.setattr(terrain, "DENSE", dense)
+    generator = np.random.default_rng(seed)
+    grid = generator.integers(0, 2, size=(4, 3, 5)).astype(np.int32)
+    for axis in range(3):
+        grid = grid.repeat(generator.integers(1, 9, size=grid.shape[axis]), axis=axis)
+    blocks = Terrain.of(grid)
+    for axis, layers in enumerate(blocks.borders):
+        along = np.moveaxis(grid, axis, 0)
+        differ = [i for i in range(len(along)) if i == 0 or (along[i] != along[i - 1]).any()]
+        assert layers.tolist() == differ
+    assert np.array_equal(blocks.sampled(blocks.borders), grid[np.ix_(*blocks.borders)])
+
+
+def test_cubes_that_do_not_fill_a_box_are_refused():
+    rows, states = np.zeros(8, dtype=np.int32), np.zeros(VOLUME, dtype=np.int32)
+    assert Terrain.of_cubes((9, 9, 9), rows, states) == Terrain.full((9, 9, 9), 0)
+    with pytest.raises(ValueError, match="do not fill"):
+        Terrain.of_cubes((9, 9, 9), rows[:7], states)
+    with pytest.raises(ValueError, match="not there"):
+        Terrain.of_cubes((9, 9, 9), rows + 1, states)

@@ -119,7 +119,8 @@ class FileEditor:
         snapshot = source.setting.snapshot
         if snapshot.blocks.size > _LARGEST:
             raise InputError(
-                f"the box has {snapshot.blocks.size} blocks; the editor shows up to {_LARGEST}"
+                f"the box has {snapshot.blocks.size:,} blocks; the editor shows up to "
+                f"{_LARGEST:,}: edit the file as text, or a smaller box"
             )
         # Nobody joins here: people stand where the file puts them.
         alone = replace(source, setting=replace(source.setting, people=frozenset()))

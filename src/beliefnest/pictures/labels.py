@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from beliefnest.pictures.lettering import ASCENT, DESCENT
 from beliefnest.pictures.marks import XY, Bounds
-from beliefnest.pictures.room import Room
+from beliefnest.pictures.room import Room, near
 
 __all__ = ["LINE", "Label", "Put", "leader", "put_labels"]
 
@@ -71,23 +71,31 @@ def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> li
     """Place labels greedily: those in `first`, then always the label with the fewest places."""
     room = free.copy()
     waiting = [*first, *(label for label in labels if label not in first)]
+    # Places only ever become fewer, so each label keeps its list.
+    left = [room.beside(label.icon, *label.size) for label in waiting]
     put: list[Put] = []
     while waiting:
-        places = [room.beside(label.icon, *label.size) for label in waiting]
         chooses = len(put) >= len(first)
         number = (
-            min(range(len(waiting)), key=lambda n: (len(places[n]) or _MANY, n)) if chooses else 0
+            min(range(len(waiting)), key=lambda n: (len(left[n]) or _MANY, n)) if chooses else 0
         )
-        label, found = waiting.pop(number), places[number]
+        label, found = waiting.pop(number), left.pop(number)
         wide, high = label.size
+        at: XY | None
         if found:
-            room.take((*found[0], found[0][0] + wide, found[0][1] + high))
-            put.append(Put(label, found[0], beside=True))
-            continue
-        x0, y0, x1, y1 = label.icon
-        spot = room.spot(((x0 + x1) / 2, (y0 + y1) / 2), wide, high)
-        at = None if spot is None else (spot[0] - wide / 2, spot[1] - high / 2)
-        put.append(Put(label, at, beside=False))
+            at = found[0]
+            room.take((*at, at[0] + wide, at[1] + high))
+        else:
+            x0, y0, x1, y1 = label.icon
+            spot = room.spot(((x0 + x1) / 2, (y0 + y1) / 2), wide, high)
+            at = None if spot is None else (spot[0] - wide / 2, spot[1] - high / 2)
+        put.append(Put(label, at, beside=bool(found)))
+        if at is not None:
+            new = (*at, at[0] + wide, at[1] + high)
+            left = [
+                [(x, y) for x, y in places if not near((x, y, x + size[0], y + size[1]), new)]
+                for places, size in zip(left, (each.size for each in waiting), strict=True)
+            ]
     return put
 
 

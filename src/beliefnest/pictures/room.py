@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from beliefnest.pictures.marks import XY, Bounds
 
-__all__ = ["Room"]
+__all__ = ["Room", "near"]
 
 _GAP = 1.1
 _BESIDE = 1.2
@@ -49,7 +49,7 @@ class Room:
         a0, b0, a1, b1 = self._bounds
         if x0 < a0 or y0 < b0 or x1 > a1 or y1 > b1:
             return False
-        return not any(_touch(bounds, each, _GAP) for each in self._taken)
+        return not any(near(bounds, each) for each in self._taken)
 
     def spot(self, at: XY, width: float, height: float) -> XY | None:
         """Take the nearest free rectangle of a size; return its middle, None if there is none."""
@@ -90,6 +90,11 @@ class Room:
         ]
         free = [(x, y) for x, y in corners if self.is_free((x, y, x + width, y + height))]
         return sorted(free, key=lambda at: self._troubles((*at, at[0] + width, at[1] + height)))
+
+
+def near(a: Bounds, b: Bounds) -> bool:
+    """Return True if two rectangles are too near each other for both to be taken."""
+    return _touch(a, b, _GAP)
 
 
 def _touch(a: Bounds, b: Bounds, gap: float) -> bool:

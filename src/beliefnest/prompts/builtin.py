@@ -15,6 +15,7 @@ from beliefnest.prompts.simulator_view import (
     BranchView,
     belief_of,
     believed_agent,
+    blocks_named,
     blocks_where,
     owner_of,
 )
@@ -227,11 +228,8 @@ def block_property(branch: BranchView, name: str) -> str:
 
     `Not observed` if no such block is known.
     """
-    found = branch.state.blocks.named(frozenset({name}))
-    lines = [
-        f"{text.position(at)}: {text.mapping(parse_state(block)[1])}"
-        for at, block in sorted(found.items())
-    ]
+    found = blocks_named(branch.state, [name])
+    lines = [f"{text.position(at)}: {text.mapping(parse_state(block)[1])}" for at, block in found]
     return "\n".join(lines) or text.NOT_OBSERVED
 
 
@@ -313,7 +311,7 @@ def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[P
         return {name: sorted(grouped[name]) for name in sorted(grouped)}
     wanted = [name.removeprefix("minecraft:") for name in _strings(names)]
     grouped = {name: [] for name in wanted}
-    for at, block in sorted(state.blocks.named(frozenset(wanted)).items()):
+    for at, block in blocks_named(state, wanted):
         grouped[block_name(block)].append(at)
     return grouped
 

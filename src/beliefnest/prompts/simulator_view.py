@@ -1,6 +1,6 @@
 """Read-only view of simulators for prompts: states, and beliefs of agents."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Protocol
 
 from beliefnest.belief.grounds import AgentBelief
@@ -11,7 +11,7 @@ from beliefnest.prompts.text import nearest
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["BranchView", "belief_of", "believed_agent", "blocks_where", "owner_of"]
+__all__ = ["BranchView", "belief_of", "believed_agent", "blocks_named", "blocks_where", "owner_of"]
 
 
 class BranchView(Protocol):
@@ -41,14 +41,44 @@ class BranchView(Protocol):
         """Return the simulator of an agent's belief; for the owner, this simulator itself."""
 
 
+_MOST_LISTED = 250_000
+"""Most blocks in a text; their positions are some megabytes."""
+
+
 def blocks_where(state: State, accepts: Callable[[str], bool]) -> Iterator[tuple[Position, str]]:
-    """Yield the known blocks whose text a function accepts, in order of position."""
+    """Yield the known blocks whose text a function accepts, in order of position.
+
+    Raises:
+        InputError: They are too many for a text.
+    """
+    text_of = Registry.load().text
+    known = [number for number in state.blocks.terrain.states if number >= 0]
+    return _listed(state, [number for number in known if accepts(text_of(number))])
+
+
+def blocks_named(state: State, names: Iterable[str]) -> Iterator[tuple[Position, str]]:
+    """Yield the known blocks with one of some names, in order of position.
+
+    Raises:
+        InputError: They are too many for a text.
+        UnknownNameError: No block has such a name.
+    """
+    registry = Registry.load()
+    return _listed(state, [number for name in names for number in registry.state_ids(name)])
+
+
+def _listed(state: State, wanted: Sequence[int]) -> Iterator[tuple[Position, str]]:
     registry, terrain = Registry.load(), state.blocks.terrain
-    texts = {number: registry.text(number) for number in terrain.states if number >= 0}
-    wanted = [number for number, text in texts.items() if accepts(text)]
+    count = terrain.count(wanted)
+    if count > _MOST_LISTED:
+        often = max(wanted, key=lambda number: terrain.count([number]))
+        raise InputError(
+            f"there are {count:,} known blocks to list, most of them {registry.name(often)}; at "
+            f"most {_MOST_LISTED:,} are possible: name rarer ones, as in blocks(['chest'])"
+        )
     x, y, z = state.box.low
     for i, j, k in terrain.find(wanted).tolist():
-        yield (x + i, y + j, z + k), texts[terrain[i, j, k]]
+        yield (x + i, y + j, z + k), registry.text(terrain[i, j, k])
 
 
 def owner_of(state: State) -> str:

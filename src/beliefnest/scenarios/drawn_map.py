@@ -11,16 +11,15 @@ from functools import cached_property
 from typing import Any
 
 import msgspec
-import numpy as np
 
 from beliefnest.errors import BeliefNestError, ScenarioError
-from beliefnest.scenarios.cuboids import cuboids
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, wrapped
 from beliefnest.scenarios.document_form import check_written
 from beliefnest.scenarios.format import FloorEntry, LegendEntry, MapEntry, WrittenFile
-from beliefnest.world.frames import BlockGrid
-from beliefnest.world.limits import MOST_DENSE, box_fault
+from beliefnest.world.cuboids import cuboids
+from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
 __all__ = ["with_map"]
@@ -233,7 +232,7 @@ class _Drawing:
                 low, high = min(low, floor.bottom - below), max(high, floor.bottom + above - 1)
         far = (x + len(first.rows[0]) - 1, high, z + len(first.rows) - 1)
         box = Box((x, low, z), far)
-        if fault := box_fault(box, MOST_DENSE):
+        if fault := box_fault(box):
             raise self._document.fault((_KEY,), fault)
         return box
 
@@ -340,7 +339,7 @@ class _Drawing:
     def _blocks(self, cells: Sequence[_Cell]) -> list[YamlNode]:
         """Return entries for all blocks, each a cuboid."""
         box = self._drawn_box
-        grid: BlockGrid = np.zeros(box.shape, dtype=np.int32)
+        grid = Terrain.full(box.shape, 0).draft()
         states: list[YamlNode] = [YamlNode(_AIR)]
         numbers: dict[tuple[str, str], int] = {}
 
@@ -357,15 +356,12 @@ class _Drawing:
             level = self._map.origin[1] - 1
             low = box.index((first[0], level, first[2]))
             high = box.index((last[0], level, last[2]))
-            part = tuple(slice(a, b + 1) for a, b in zip(low, high, strict=True))
-            grid[part] = number_of(ground)
+            grid.fill(low, (high[0] + 1, high[1] + 1, high[2] + 1), number_of(ground))
         for cell in cells:
             for at, state in self._stack(cell):
                 grid[box.index(at)] = 0 if state.value == _AIR else number_of(state)
         return [
-            self._fill(states[number], part, box)
-            for number, part in cuboids(grid, grid == 0)
-            if number
+            self._fill(states[number], part, box) for number, part in cuboids(grid.terrain(), 0)
         ]
 
     def _fill(self, state: YamlNode, part: Box, box: Box) -> YamlNode:

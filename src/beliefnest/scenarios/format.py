@@ -35,6 +35,7 @@ __all__ = [
     "ScenarioFile",
     "SignEntry",
     "StepEntry",
+    "TerrainEntry",
     "WrittenFile",
 ]
 
@@ -72,6 +73,16 @@ class BlockEntry(_Entry, frozen=True):
         tuple[Position, Position] | None,
         note("Two inclusive corners; the four vertical sides of the box between them."),
     ] = None
+
+
+class TerrainEntry(_Entry, frozen=True):
+    """All blocks of the box, compressed, as `beliefnest capture` writes them."""
+
+    states: Annotated[list[str], note("Block states: name or name[property=value,...].")]
+    chunks: Annotated[
+        int, msgspec.Meta(ge=0, description="Number of different cubes; 0: it is not cut.")
+    ]
+    cells: Annotated[str, note("Numbers of states, by zstandard and in Base64.")]
 
 
 class ContainerEntry(_Entry, frozen=True):
@@ -444,6 +455,9 @@ class _File(_Entry, frozen=True, kw_only=True):
         dict[str, InstanceEntry | None],
         note("Parameters whose values the seed of a task draws, each with its rules."),
     ] = {}
+    terrain: Annotated[
+        TerrainEntry | None, note("All blocks of the box, compressed; `blocks` replace them.")
+    ] = None
     blocks: Annotated[list[BlockEntry], note("Blocks in the box; the rest is air.")] = []
     containers: Annotated[
         list[ContainerEntry], note("Containers, their initial contents, and their names.")

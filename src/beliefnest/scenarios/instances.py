@@ -21,7 +21,7 @@ from beliefnest.errors import ScenarioError
 from beliefnest.perception.sight import Geometry, Sight
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, plain
-from beliefnest.scenarios.format import InstanceEntry, ParameterEntry
+from beliefnest.scenarios.format import InstanceEntry, ParameterEntry, TerrainEntry
 from beliefnest.scenarios.loading import condition_numbers, scenario_in
 from beliefnest.scenarios.parameters import (
     broken_constraint,
@@ -29,7 +29,9 @@ from beliefnest.scenarios.parameters import (
     choices,
     declared_in,
 )
+from beliefnest.scenarios.terrain_entry import terrain_in
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
 from beliefnest.world.words import counted
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
@@ -213,7 +215,7 @@ class _Scene:
 
     def _is_built_over(self, cell: Position) -> bool:
         """Return True if an entry of `blocks` for more than this cell fills it."""
-        is_filled = False
+        is_filled = self._captured[self._place.box.index(cell)] != self._registry.air
         for entry in self._written.get("blocks", ()):
             part = _part_of(entry)
             if part is not None and cell in part and not _is_inside_walls(entry, part, cell):
@@ -250,6 +252,14 @@ class _Scene:
         first, last = (box.index((x, y, z)) for x, y, z in (low, high))
         part = blocks.cut(first, (last[0] + 1, last[1] + 1, last[2] + 1))
         return self._sight.geometry(part, (low[0], low[1], low[2]))
+
+    @cached_property
+    def _captured(self) -> Terrain:
+        """The blocks of the key `terrain`; air without it."""
+        written, shape = self._written.get("terrain"), self._place.box.shape
+        if written is None:
+            return Terrain.full(shape, self._registry.air)
+        return terrain_in(msgspec.convert(written, TerrainEntry), shape, self._registry)
 
     @cached_property
     def _whole(self) -> Geometry:

@@ -7,6 +7,7 @@ import msgspec
 from beliefnest.scenarios.checks import check_inside, check_items
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
+from beliefnest.scenarios.terrain_entry import terrain_in
 from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.frames import PlainClaims
 from beliefnest.world.limits import box_fault, container_slots
@@ -43,8 +44,15 @@ def build_box(document: Document, file: ScenarioFile) -> Box:
 
 
 def build_blocks(document: Document, file: ScenarioFile, box: Box, registry: Registry) -> Terrain:
-    """Return the block states of the box: air, then the entries in order, then containers."""
-    blocks = Terrain.full(box.shape, registry.air).draft()
+    """Return the block states of the box.
+
+    They are air or those of `terrain`, then the entries in order, then containers and signs.
+    """
+    ground = Terrain.full(box.shape, registry.air)
+    if file.terrain is not None:
+        with document.naming(("terrain",)):
+            ground = terrain_in(file.terrain, box.shape, registry)
+    blocks = ground.draft()
     for number, entry in enumerate(file.blocks):
         path = ("blocks", number)
         if entry.block is None:

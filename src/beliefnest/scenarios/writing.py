@@ -1,20 +1,23 @@
 """Scenario files of places and tasks, written so that people can read and change them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from io import StringIO
 from typing import Any
 
 import numpy as np
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.scalarstring import LiteralScalarString
 
 from beliefnest.errors import InputError, ScenarioError
-from beliefnest.scenarios.cuboids import cuboids
 from beliefnest.scenarios.loading import scenario_in
-from beliefnest.scenarios.yaml_reading import parse_yaml
+from beliefnest.scenarios.terrain_entry import entry_of
+from beliefnest.scenarios.yaml_reading import LONGEST, MAX_VALUES, parse_yaml
+from beliefnest.world.cuboids import cuboids, distinct_cells
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, Position
 
 __all__ = ["content_text", "scenario_text"]
@@ -23,13 +26,16 @@ _VISITOR = "visitor"
 _WIDTH = 100
 _UNBROKEN = 10_000
 """Width at which entries stay on their lines."""
+_MOST_CELLS = 8_000_000
+"""Most different cells that are divided into cuboids; more are not divided."""
 _FULL = 20.0
 
 
 def scenario_text(name: str, description: str, place: Snapshot) -> str:
     """Return the text of a scenario file for a place.
 
-    A place without agents gets an agent `visitor` without items.
+    A place without agents gets an agent `visitor` without items. Blocks are cuboids in the list
+    `blocks`, or compressed in `terrain` if they are more than a file may list.
 
     Args:
         name: Short name of the scenario.
@@ -41,16 +47,25 @@ def scenario_text(name: str, description: str, place: Snapshot) -> str:
     """
     registry = Registry.load()
     agents = place.agents or {_VISITOR: AgentState(_standing(place, registry))}
+    blocks = _blocks(place, registry)
     content = {
         "name": name,
         "description": description,
         "box": [_flow(place.box.low), _flow(place.box.high)],
-        "blocks": list(_blocks(place, registry)),
+        "terrain": _terrain(place, registry) if blocks is None else None,
+        "blocks": blocks,
         "containers": list(_containers(place, registry)),
         "signs": list(_signs(place, registry)),
         "agents": {agent: _agent(state) for agent, state in agents.items()},
     }
-    text = _yaml({key: value for key, value in content.items() if value})
+    if _values(_filled(content)) > MAX_VALUES:
+        content |= {"terrain": _terrain(place, registry), "blocks": []}
+    text = _yaml(_filled(content))
+    if len(text) > LONGEST:
+        raise InputError(
+            f"the place needs {len(text):,} bytes as a scenario; at most {LONGEST:,} are possible: "
+            "capture a smaller place"
+        )
     _check(text, place)
     return text
 
@@ -77,14 +92,42 @@ def _by_line(value: Any) -> Any:
     return _flow(value)
 
 
-def _blocks(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
-    skipped = np.isin(place.blocks, [registry.air])
+def _blocks(place: Snapshot, registry: Registry) -> list[CommentedMap] | None:
+    """Return entries of all blocks but containers and signs; None: they are too many for a file."""
+    draft = place.blocks.draft()
     for position in [*place.containers, *_sign_places(place, registry)]:
-        skipped[place.box.index(position)] = True
-    for state, part in cuboids(place.blocks.dense(), skipped):
+        draft[place.box.index(position)] = registry.air
+    blocks = draft.terrain()
+    if distinct_cells(blocks) > _MOST_CELLS:
+        return None
+    entries, values = [], 0
+    for state, part in cuboids(blocks, registry.air):
         low, high = (_at(place.box, corner) for corner in (part.low, part.high))
         where: dict[str, Any] = {"at": low} if low == high else {"fill": _flow([low, high])}
-        yield _flow({"block": registry.text(state), **where})
+        entries.append(_flow({"block": registry.text(state), **where}))
+        values += _values(entries[-1])
+        if values > MAX_VALUES:
+            return None
+    return entries
+
+
+def _terrain(place: Snapshot, registry: Registry) -> CommentedMap:
+    entry = entry_of(place.blocks, registry)
+    cells = LiteralScalarString(entry["cells"])
+    return CommentedMap({**entry, "states": _flow(entry["states"]), "cells": cells})
+
+
+def _filled(content: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in content.items() if value}
+
+
+def _values(content: Any) -> int:
+    """Return the number of values and keys that a reader of a content counts."""
+    if isinstance(content, Mapping):
+        return 1 + sum(1 + _values(value) for value in content.values())
+    if isinstance(content, list | tuple):
+        return 1 + sum(map(_values, content))
+    return 1
 
 
 def _containers(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
@@ -117,22 +160,41 @@ def _agent(state: AgentState) -> Any:
 
 def _standing(place: Snapshot, registry: Registry) -> tuple[float, float, float]:
     """Return the lowest place to stand; of several, the nearest to the middle."""
-    full = {s: _fills(registry, s) for s in place.blocks.states}
-    empty = np.isin(place.blocks, [s for s in full if not registry.boxes(s)])
-    floor = np.isin(place.blocks, [s for s, fills in full.items() if fills])
-    free = floor[:, :-2] & empty[:, 1:-1] & empty[:, 2:]
-    if free.size == 0 or not free.any():
-        raise InputError(
-            "there is no agent in the box, and no place for one; choose a box that contains a "
-            "floor with two free blocks above it"
-        )
-    middle = [side / 2 for side in place.box.shape]
-    i, j, k = min(
-        np.argwhere(free).tolist(),
-        key=lambda at: (at[1], (at[0] - middle[0]) ** 2 + (at[2] - middle[2]) ** 2),
+    states = place.blocks.states
+    empty = [s for s in states if not registry.boxes(s)]
+    floor = [s for s in states if _fills(registry, s)]
+    if found := _above_floor(place.blocks, floor, empty):
+        x, y, z = _at(place.box, found)
+        return (x + 0.5, y + 1.0, z + 0.5)
+    raise InputError(
+        "there is no agent in the box, and no place for one; choose a box that contains a floor "
+        "with two free blocks above it"
     )
-    x, y, z = _at(place.box, (i, j + 1, k))
-    return (x + 0.5, float(y), z + 0.5)
+
+
+def _above_floor(
+    blocks: Terrain, floor: Sequence[int], empty: Sequence[int]
+) -> tuple[int, int, int] | None:
+    """Return the index of the block of the lowest floor that is nearest to the middle.
+
+    Args:
+        blocks: The blocks.
+        floor: States on which agents stand.
+        empty: States of the two blocks above.
+    """
+    width, height, depth = blocks.shape
+    # Above a floor the layer is another one.
+    for layer in (blocks.borders[1] - 1).tolist():
+        if not 0 <= layer < height - 2:
+            continue
+        stack = blocks.cut((0, layer, 0), (width, layer + 3, depth))
+        free = np.isin(stack[:, 0], floor) & np.isin(stack[:, 1:], empty).all(axis=1)
+        cells = np.argwhere(free)
+        if len(cells):
+            far = ((cells - np.array([width / 2, depth / 2])) ** 2).sum(axis=1)
+            i, k = cells[far.argmin()].tolist()
+            return (i, layer, k)
+    return None
 
 
 def _fills(registry: Registry, state: int) -> bool:

@@ -18,11 +18,12 @@ from beliefnest.files import decode_json, read_regular_text
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.document import MAX_DEPTH, Document, KeyPath, YamlNode
 
-__all__ = ["parse_yaml", "read_yaml", "template_text", "templates_file"]
+__all__ = ["LONGEST", "MAX_VALUES", "parse_yaml", "read_yaml", "template_text", "templates_file"]
 
-_LONGEST = 4 * 2**20
+MAX_VALUES = 50_000
+"""Greatest number of values and keys of a scenario file."""
+LONGEST = 16 * 2**20
 """Greatest size of a scenario file in bytes."""
-_MAX_VALUES = 50_000
 _NO_KEY = "a key is no text; put it into quotes"
 _FLOW = ("while parsing a flow mapping", "while parsing a flow sequence")
 _IN_BRACES = (
@@ -30,7 +31,7 @@ _IN_BRACES = (
     "write a program as 'program: |' with its lines below, each key on a line of its own"
 )
 _TOO_MUCH = (
-    f"holds more than {_MAX_VALUES} values or is nested more than {MAX_DEPTH} deep, "
+    f"holds more than {MAX_VALUES} values or is nested more than {MAX_DEPTH} deep, "
     "aliases counted in"
 )
 
@@ -112,7 +113,7 @@ def _text(path: Path) -> str:
     if path.is_dir():
         raise ScenarioError(f"{path} is a folder; give a .yaml file")
     try:
-        return read_regular_text(path, _LONGEST)
+        return read_regular_text(path, LONGEST)
     except OSError as error:
         raise ScenarioError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
@@ -143,7 +144,7 @@ class _Composer(Composer):
     def compose_node(self, parent: Any, index: Any) -> Any:
         self._values += 1
         self._depth += 1
-        if self._values > _MAX_VALUES or self._depth > MAX_DEPTH:
+        if self._values > MAX_VALUES or self._depth > MAX_DEPTH:
             mark = self.parser.peek_event().start_mark
             raise ComposerError(None, None, f"it {_TOO_MUCH}", mark)
         node = super().compose_node(parent, index)
@@ -177,7 +178,7 @@ class _Conversion:
 
     def node(self, value: object, line: int, depth: int) -> YamlNode:
         self._values += 1
-        if self._values > _MAX_VALUES or depth > MAX_DEPTH:
+        if self._values > MAX_VALUES or depth > MAX_DEPTH:
             raise ScenarioError(f"{self._source}:{line}: {_TOO_MUCH}")
         if isinstance(value, CommentedMap):
             lines = value.lc.data or {}

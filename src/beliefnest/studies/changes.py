@@ -5,9 +5,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 from jinja2 import Environment, TemplateSyntaxError
 
 from beliefnest.errors import InputError
+from beliefnest.scenarios.format import TerrainEntry
+from beliefnest.scenarios.terrain_entry import numbers_in, packed_entry
 from beliefnest.studies.program_rewriting import Rewriting, rewritten
 from beliefnest.studies.scene_changes import Kind
 from beliefnest.studies.symmetry import Placing
@@ -57,7 +60,15 @@ class MovedBySymmetry:
             ),
             "text": self._told,
             "template": lambda value: _in_template(value, self._told),
+            "terrain": self._terrain,
         }
+
+    def _terrain(self, value: Any) -> Any:
+        entry = msgspec.convert(value, TerrainEntry)
+        numbers = numbers_in(entry, self.placing.box.shape)
+        symmetry = self.placing.symmetry
+        states = [symmetry.block_state(text, self.registry) for text in entry.states]
+        return packed_entry(self.placing.terrain(numbers), states)
 
     def _facing(self, value: Any) -> Any:
         if isinstance(value, str):

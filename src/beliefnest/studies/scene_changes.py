@@ -26,7 +26,7 @@ Kind = str
 """Kind of a value: `keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`,
 `state`, `program`, `text` (read by models), `label` (read only by people), `agent`, `item`, `path`,
 `wanted` (a partial block state: only written properties count), `static` (a block's name, or a
-position), `template` (Jinja2 text)."""
+position), `template` (Jinja2 text), `terrain` (the key `terrain`)."""
 
 
 class SceneChange(Protocol):
@@ -155,6 +155,7 @@ _SHAPE: Mapping[str, Any] = {
     "description": "label",
     "reported_by": "keep",
     "box": _CORNERS,
+    "terrain": "terrain",
     "blocks": _BLOCKS,
     "containers": _Each(
         {"at": "block", "block": "state", "items": _ITEMS, "label": "label", "looks": "text"}

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.registry import Registry, parse_state
+from beliefnest.world.terrain import States, Terrain
 from beliefnest.world.values import Box
 
 __all__ = ["SYMMETRIES", "Placing", "Symmetry", "symmetry_named"]
@@ -157,6 +158,10 @@ class Placing:
         new_x, _, new_z = self.point((x + 0.5, y, z + 0.5))
         return math.floor(new_x), y, math.floor(new_z)
 
+    def terrain(self, terrain: Terrain) -> Terrain:
+        """Return the new blocks of the box, each with its old state."""
+        return Terrain.of(_Moved(self.symmetry, terrain))
+
     def point(self, point: tuple[float, float, float]) -> tuple[float, float, float]:
         """Return the new position of a point."""
         x, y, z = point
@@ -169,3 +174,31 @@ class Placing:
             i, k = depth - k, i
             width, depth = depth, width
         return i + low[0], y, k + low[2]
+
+
+@dataclass(frozen=True, slots=True)
+class _Moved:
+    """Blocks of a terrain at their new positions, computed in slabs."""
+
+    symmetry: Symmetry
+    terrain: Terrain
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        x, y, z = self.terrain.shape
+        return (z, y, x) if self.symmetry.turns % 2 else (x, y, z)
+
+    def __getitem__(self, layers: slice, /) -> States:
+        first, last, _ = layers.indices(self.shape[0])
+        mirrored, turns = self.symmetry.mirrored, self.symmetry.turns
+        # A quarter turn clockwise leads from (x, z) to (depth - z, x).
+        x_is_reversed = mirrored != (turns in (2, 3))
+        z_is_reversed = turns in (1, 2)
+        x, y, z = self.terrain.shape
+        low, high = [0, 0, 0], [x, y, z]
+        axis, is_reversed = (2, z_is_reversed) if turns % 2 else (0, x_is_reversed)
+        side = high[axis]
+        low[axis], high[axis] = (side - last, side - first) if is_reversed else (first, last)
+        cells = self.terrain.cut((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+        cells = cells[:: -1 if x_is_reversed else 1, :, :: -1 if z_is_reversed else 1]
+        return cells.transpose(2, 1, 0) if turns % 2 else cells

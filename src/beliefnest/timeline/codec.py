@@ -12,14 +12,13 @@ from typing import Any, Literal, TypeVar, cast
 
 import msgspec
 import numpy as np
-import numpy.typing as npt
-import zstandard
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import Edit, Entry
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.limits import box_fault
-from beliefnest.world.terrain import SIDE, VOLUME, Lattice, Terrain
+from beliefnest.world.packing import packed, unpacked
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, Position
 
 __all__ = [
@@ -204,10 +203,7 @@ def _blocks_to(terrain: Terrain) -> tuple[bytes, int]:
     """Return `blocks` and `chunks` of `_SnapshotBody`."""
     if terrain.is_dense:
         return terrain.dense().astype("<i4").tobytes(), 0
-    plain = terrain.canonical()
-    numbers = np.concatenate([plain.rows, *(chunk.ravel() for chunk in plain.chunks)])
-    packed = zstandard.ZstdCompressor(level=_COMPRESSION).compress(numbers.astype("<i4").tobytes())
-    return packed, len(plain.chunks)
+    return packed(terrain, _COMPRESSION)
 
 
 def _blocks_from(body: _SnapshotBody, box: Box) -> Terrain:
@@ -217,27 +213,10 @@ def _blocks_from(body: _SnapshotBody, box: Box) -> Terrain:
     if not body.chunks or (fault := box_fault(box)):
         told = f": {fault}" if body.chunks else ""
         raise StoreError(f"stored grid of {len(body.blocks)} bytes does not fill {box}{told}")
-    places = math.prod(Lattice(box.shape, is_one=False).counts)
-    numbers = _unpacked(body.blocks, places + body.chunks * VOLUME)
-    if not 0 < body.chunks <= places or numbers is None:
-        raise StoreError(f"{body.chunks} stored chunks do not fill {box}")
-    rows, states = numbers[:places], numbers[places:]
-    if rows.min() < 0 or rows.max() >= body.chunks:
-        raise StoreError(f"stored blocks of {box} refer to chunks that are not stored")
-    found = Terrain(box.shape, rows, list(states.reshape(-1, SIDE, SIDE, SIDE)))
-    # The greatest size of a box of one chunk may have changed since.
-    return Terrain.of(found.dense()) if Lattice.of(box.shape).is_one else found
-
-
-def _unpacked(packed: bytes, size: int) -> npt.NDArray[np.int32] | None:
-    """Return compressed numbers; None if the bytes do not hold `size` of them."""
     try:
-        if zstandard.frame_content_size(packed) != 4 * size:
-            return None
-        body = zstandard.ZstdDecompressor().decompress(packed)
-    except zstandard.ZstdError:
-        return None
-    return np.frombuffer(body, "<i4").astype(np.int32, copy=False)
+        return unpacked(body.blocks, box.shape, body.chunks)
+    except ValueError as damage:
+        raise StoreError(f"stored blocks of {box} are damaged: {damage}") from damage
 
 
 def _decoded(decoder: msgspec.msgpack.Decoder[T], data: bytes | msgspec.Raw, what: str) -> T:

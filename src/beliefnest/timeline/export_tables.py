@@ -13,6 +13,7 @@ import numpy as np
 from beliefnest.timeline.journal import Edit, Entry, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
 from beliefnest.world.claims import Claim, claims_from_plain, claims_written
+from beliefnest.world.cuboids import cuboids
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
@@ -111,6 +112,14 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
             "inventory": "object",
         },
         "blocks": {**_PLACE, **_CELL, "block": "text", "edited": "text"},
+        "cuboids": {
+            **_PLACE,
+            **_CELL,
+            "x2": "integer",
+            "y2": "integer",
+            "z2": "integer",
+            "block": "text",
+        },
         "signs": {**_PLACE, **_CELL, "text": "text", "claims": "object", "edited": "text"},
         "containers": {**_PLACE, **_CELL, "items": "object", "edited": "text"},
         "items": {
@@ -182,8 +191,11 @@ TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
 )
 """Types of the columns by table and column, in output order."""
 
-IF_ANY = frozenset({"signs", "rounds", "goals"})
+IF_ANY = frozenset({"cuboids", "signs", "rounds", "goals"})
 """Tables that are written only if they have a row."""
+
+_MOST_BLOCKS = 2_000_000
+"""Most blocks of a first state that have a row each."""
 
 FIRST_ENTRY = -1
 """Entry number of the rows that describe the first state of a timeline."""
@@ -230,13 +242,31 @@ def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) 
 
 
 def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
-    """Yield the rows of a timeline's first state; air has no rows."""
+    """Yield the rows of a timeline's first state; air has no rows.
+
+    If there are very many blocks, only those with a text have rows of their own; cuboids tell all.
+    """
     place = _place(key, FIRST_ENTRY, snapshot.tick)
     claims = {at: claims_from_plain(plain) for at, plain in snapshot.sign_claims.items()}
-    yield from _block_rows(place, _solid(snapshot, registry), claims, registry, None)
+    blocks: Iterable[tuple[Position, Block]] = _solid(snapshot, registry)
+    if snapshot.blocks.size - snapshot.blocks.count([registry.air]) > _MOST_BLOCKS:
+        blocks = [(at, snapshot.block(at)) for at in sorted(snapshot.signs)]
+        yield from _cuboid_rows(place, snapshot, registry)
+    yield from _block_rows(place, blocks, claims, registry, None)
     yield from _container_rows(place, snapshot.containers.items(), None)
     yield from _agent_rows(place, snapshot.agents.items())
     yield from _item_rows(place, snapshot.items.items())
+
+
+def _cuboid_rows(place: Mapping[str, Any], snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
+    for state, part in cuboids(snapshot.blocks, registry.air):
+        low, high = (
+            [int(i) + first for i, first in zip(corner, snapshot.box.low, strict=True)]
+            for corner in (part.low, part.high)
+        )
+        row = {**place, **dict(zip("xyz", low, strict=True))}
+        row |= {f"{axis}2": value for axis, value in zip("xyz", high, strict=True)}
+        yield "cuboids", {**row, "block": registry.text(state)}
 
 
 def _solid(snapshot: Snapshot, registry: Registry) -> Iterator[tuple[Position, Block]]:

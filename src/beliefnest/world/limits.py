@@ -21,7 +21,6 @@ __all__ = [
     "FARTHEST",
     "LATEST_TICK",
     "MOST_AGENTS",
-    "MOST_DENSE",
     "WORN_SLOTS",
     "agent_name_fault",
     "agents_fault",
@@ -49,9 +48,6 @@ WORN_SLOTS = 5
 
 _MOST_BLOCKS = 2**30
 """Most blocks of a box: with its margin, numbers of 32 bits count them."""
-
-MOST_DENSE = 8_000_000
-"""Most blocks of a part of space that is read or drawn block by block."""
 
 _LONGEST_SIDE = 4096
 _CHUNK_BYTES = 50
@@ -81,13 +77,8 @@ def agents_fault(count: int) -> str | None:
     )
 
 
-def box_fault(box: Box, most: int = _MOST_BLOCKS) -> str | None:
-    """Return the fault of a box, or None.
-
-    Args:
-        box: The box.
-        most: Greatest number of its blocks.
-    """
+def box_fault(box: Box) -> str | None:
+    """Return the fault of a box, or None."""
     for corner in (box.low, box.high):
         if fault := point_fault(corner):
             return fault
@@ -95,8 +86,11 @@ def box_fault(box: Box, most: int = _MOST_BLOCKS) -> str | None:
     if min(sides) < 1:
         return f"the box {box.low} to {box.high} is empty; give its lower corner first"
     volume = math.prod(sides)
-    if volume > most:
-        return f"the box holds {volume:,} blocks; at most {most:,} are possible: make it smaller"
+    if volume > _MOST_BLOCKS:
+        return (
+            f"the box holds {volume:,} blocks; at most {_MOST_BLOCKS:,} are possible: "
+            "make it smaller"
+        )
     if max(sides) > _LONGEST_SIDE:
         return (
             f"the box is {max(sides):,} blocks long; at most {_LONGEST_SIDE:,} are possible: "

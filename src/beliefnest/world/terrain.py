@@ -13,13 +13,14 @@ from dataclasses import dataclass
 from functools import cached_property
 from hashlib import blake2b
 from itertools import product
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 __all__ = [
     "DENSE",
+    "MARGIN",
     "SIDE",
     "VOLUME",
     "Change",
@@ -28,6 +29,8 @@ __all__ = [
     "Draft",
     "Index",
     "Lattice",
+    "Layers",
+    "Slabs",
     "States",
     "Terrain",
     "chunks_of",
@@ -49,10 +52,15 @@ Index = tuple[int, int, int]
 States = npt.NDArray[np.int32]
 """Block state ids along x, y, z."""
 
+Layers = tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.intp]]
+"""Numbers of layers along x, y, z, each in order."""
+
 Counts = Callable[[States, States], npt.NDArray[np.bool_]]
 Change = Callable[[States, States], npt.NDArray[np.signedinteger[Any]]]
 
-_MARGIN = 1
+MARGIN = 1
+"""Number of cells that chunks have before and behind the box on every side."""
+
 _SPARE = 256
 _MOST_LISTED = 1 << 16
 
@@ -87,13 +95,13 @@ class Lattice:
         if self.is_one:
             return (1, 1, 1)
         x, y, z = self.shape
-        return chunks_of((x + 2 * _MARGIN, y + 2 * _MARGIN, z + 2 * _MARGIN))
+        return chunks_of((x + 2 * MARGIN, y + 2 * MARGIN, z + 2 * MARGIN))
 
     def slot(self, index: Index) -> tuple[int, Index]:
         """Return the number of a cell's chunk and the cell's index in the chunk."""
         if self.is_one:
             return 0, index
-        i, j, k = (part + _MARGIN for part in index)
+        i, j, k = (part + MARGIN for part in index)
         _, ny, nz = self.counts
         number = ((i // SIDE) * ny + j // SIDE) * nz + k // SIDE
         return number, (i % SIDE, j % SIDE, k % SIDE)
@@ -104,7 +112,7 @@ class Lattice:
             return (0, 0, 0)
         _, ny, nz = self.counts
         i, j, k = number // (ny * nz), number // nz % ny, number % nz
-        return i * SIDE - _MARGIN, j * SIDE - _MARGIN, k * SIDE - _MARGIN
+        return i * SIDE - MARGIN, j * SIDE - MARGIN, k * SIDE - MARGIN
 
     def starts(self, numbers: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         """Return the indices (n, 3) of the first cells of some chunks of a box in chunks."""
@@ -137,7 +145,7 @@ class Lattice:
             return [[(0, a, b)] if a < b else [] for a, b in zip(low, high, strict=True)]
         found = []
         for a, b in zip(low, high, strict=True):
-            first, last = a + _MARGIN, b + _MARGIN
+            first, last = a + MARGIN, b + MARGIN
             numbers = range(first // SIDE, -(-last // SIDE)) if a < b else range(0)
             found.append(
                 [(n, max(first - n * SIDE, 0), min(last - n * SIDE, SIDE)) for n in numbers]
@@ -147,7 +155,7 @@ class Lattice:
     def around(self, cells: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
         """Return the numbers of the chunks, margins included, that hold cells or touch them."""
         steps = np.array([(0, 0, 0), *np.eye(3, dtype=int), *-np.eye(3, dtype=int)])
-        near = (cells[:, None] + steps + _MARGIN).reshape(-1, 3) // SIDE
+        near = (cells[:, None] + steps + MARGIN).reshape(-1, 3) // SIDE
         return np.unique(np.ravel_multi_index(tuple(near.T), self.counts))
 
     def clipped(self, cells: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
@@ -155,6 +163,17 @@ class Lattice:
         inside = ((cells >= 0) & (cells < np.array(self.shape))).all(axis=1)
         cells = cells[inside]
         return cells[np.lexsort(cells.T[::-1])]
+
+
+class Slabs(Protocol):
+    """Grid of block states that computes slabs along x when they are asked for."""
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Shape of the grid."""
+
+    def __getitem__(self, layers: slice, /) -> npt.NDArray[np.signedinteger[Any]]:
+        """Return the states of some layers along x."""
 
 
 class Terrain:
@@ -184,12 +203,12 @@ class Terrain:
         return cls(shape, np.zeros(int(np.prod(lattice.counts)), dtype=np.int32), [chunk])
 
     @classmethod
-    def of(cls, grid: npt.NDArray[np.signedinteger[Any]]) -> "Terrain":
-        """Return the terrain of a dense grid of states (nx, ny, nz)."""
+    def of(cls, grid: "npt.NDArray[np.signedinteger[Any]] | Slabs") -> "Terrain":
+        """Return the terrain of a grid of states (nx, ny, nz); it is read in slabs along x."""
         nx, ny, nz = grid.shape
         lattice = Lattice.of((nx, ny, nz))
         if lattice.is_one:
-            chunk = np.array(grid, dtype=np.int32, order="C")
+            chunk = np.array(grid[:nx], dtype=np.int32, order="C")
             chunk.setflags(write=False)
             return cls(lattice.shape, np.zeros(1, dtype=np.int32), [chunk])
         known: dict[bytes, int] = {}
@@ -204,6 +223,29 @@ class Terrain:
                     chunks.append(chunk)
                 rows.append(row)
         return cls(lattice.shape, np.array(rows, dtype=np.int32), chunks)
+
+    @classmethod
+    def of_cubes(
+        cls, shape: tuple[int, int, int], rows: npt.NDArray[np.int32], states: States
+    ) -> "Terrain":
+        """Return the terrain of a box that is cut into cubes, also if it would be one chunk.
+
+        Args:
+            shape: Shape of the box.
+            rows: By chunk of `Lattice(shape, is_one=False)`, the number of its cube.
+            states: States of the cubes, one cube after the other; they must not change any more.
+
+        Raises:
+            ValueError: The cubes do not fill the box.
+        """
+        places = int(np.prod(Lattice(shape, is_one=False).counts))
+        if len(rows) != places or len(states) % VOLUME:
+            raise ValueError(f"{len(rows)} cubes do not fill a box with {places} places for them")
+        if rows.min() < 0 or rows.max() >= len(states) // VOLUME:
+            raise ValueError("some places name cubes that are not there")
+        states.setflags(write=False)
+        found = cls(shape, rows, list(states.reshape(-1, SIDE, SIDE, SIDE)))
+        return cls.of(found.dense()) if Lattice.of(shape).is_one else found
 
     @classmethod
     def of_one(cls, grid: States) -> "Terrain":
@@ -236,7 +278,7 @@ class Terrain:
         x, y, z = (max(b - a, 0) for a, b in zip(low, high, strict=True))
         found = np.empty((x, y, z), dtype=np.int32)
         _, ny, nz = self.lattice.counts
-        shift = [_MARGIN + part for part in low]
+        shift = [MARGIN + part for part in low]
         for (i, a, b), (j, c, d), (k, e, f) in product(*self.lattice.ranges(low, high)):
             at = (i * SIDE - shift[0], j * SIDE - shift[1], k * SIDE - shift[2])
             found[at[0] + a : at[0] + b, at[1] + c : at[1] + d, at[2] + e : at[2] + f] = (
@@ -253,7 +295,7 @@ class Terrain:
             return found
         (_, ny, nz), (_, high, deep) = self.shape, self.lattice.counts
         i, j, k = (
-            part.astype(np.int64) + _MARGIN
+            part.astype(np.int64) + MARGIN
             for part in (cells // (ny * nz), cells // nz % ny, cells % nz)
         )
         rows = self.rows[(i // SIDE * high + j // SIDE) * deep + k // SIDE]
@@ -272,8 +314,50 @@ class Terrain:
         """Yield the box in parts along x: number of the first layer, and states of the layers."""
         _, y, z = self.shape
         for number, first, last in self.lattice.ranges((0, 0, 0), self.shape)[0]:
-            start = 0 if self.is_dense else number * SIDE - _MARGIN
+            start = self._begin(number)
             yield start + first, self.cut((start + first, 0, 0), (start + last, y, z))
+
+    def sampled(self, layers: Layers) -> States:
+        """Return the states of the cells that lie in one of some layers along each axis."""
+        x, y, z = layers
+        found = np.empty((len(x), len(y), len(z)), dtype=np.int32)
+        for first, part in self.slabs():
+            wanted = np.flatnonzero((x >= first) & (x < first + len(part)))
+            found[wanted] = part[np.ix_(x[wanted] - first, y, z)]
+        return found
+
+    @cached_property
+    def borders(self) -> Layers:
+        """The layers along x, y, z that differ from the layer before; the first one is there."""
+        changed = [np.zeros(size, dtype=np.bool_) for size in self.shape]
+        counts = self.lattice.counts
+        # Numbers of the first and of the last layer of each chunk along each axis; equal ones are
+        # equal layers.
+        sides = np.full((3, 2, int(np.prod(counts))), -1, dtype=np.int64)
+        known: dict[bytes, int] = {}
+        for chunk, places, inside in self.kinds():
+            at = np.unravel_index(places, counts)
+            for axis in range(3):
+                part = np.moveaxis(chunk[inside], axis, 0)
+                layers = part.reshape(len(part), -1)
+                differs = (layers[1:] != layers[:-1]).any(axis=1)
+                for number in np.unique(at[axis]).tolist():
+                    first = self._begin(number) + inside[axis].start
+                    changed[axis][first + 1 : first + len(layers)] |= differs
+                for side in (0, 1):
+                    layer = layers[-side].tobytes()
+                    sides[axis, side, places] = known.setdefault(layer, len(known))
+        for axis, parts in enumerate(self.lattice.ranges((0, 0, 0), self.shape)):
+            first, last = (np.moveaxis(each.reshape(counts), axis, 0) for each in sides[axis])
+            for number, start, _ in parts:
+                differ = number == 0 or (first[number] != last[number - 1]).any()
+                changed[axis][self._begin(number) + start] = differ
+        x, y, z = (np.flatnonzero(each) for each in changed)
+        return x, y, z
+
+    def _begin(self, number: int) -> int:
+        """Return the layer of the box at which the chunks of a number along an axis begin."""
+        return 0 if self.is_dense else number * SIDE - MARGIN
 
     def dense(self) -> States:
         """Return the states of all cells, read-only; takes 4 bytes for each cell of the box."""
@@ -393,6 +477,12 @@ class Terrain:
         for chunk in plain.chunks:
             digest.update(chunk.tobytes())
         return digest.digest()
+
+    def count(self, states: Collection[int]) -> int:
+        """Return the number of cells with one of some states."""
+        wanted = list(states)
+        found = [np.isin(chunk[part], wanted).sum() * len(at) for chunk, at, part in self.kinds()]
+        return int(sum(found))
 
     def find(self, states: Collection[int]) -> npt.NDArray[np.intp]:
         """Return the indices (n, 3) of the cells with one of some states, in order."""
@@ -582,16 +672,16 @@ def _distinct(
 
 
 def _layers(
-    lattice: Lattice, grid: npt.NDArray[np.signedinteger[Any]]
+    lattice: Lattice, grid: npt.NDArray[np.signedinteger[Any]] | Slabs
 ) -> Iterator[npt.NDArray[np.int32]]:
     """Yield the chunks of each layer along x as rows of `VOLUME` states."""
     (nx, ny, nz), (count, high, deep) = lattice.shape, lattice.counts
     for layer in range(count):
         cells = np.zeros((SIDE, high * SIDE, deep * SIDE), dtype=np.int32)
-        first = layer * SIDE - _MARGIN
+        first = layer * SIDE - MARGIN
         begin, end = max(first, 0), min(first + SIDE, nx)
         if begin < end:
-            inner = cells[begin - first : end - first, _MARGIN:, _MARGIN:]
+            inner = cells[begin - first : end - first, MARGIN:, MARGIN:]
             inner[:, :ny, :nz] = grid[begin:end]
         cubes = cells.reshape(SIDE, high, SIDE, deep, SIDE).transpose(1, 3, 0, 2, 4)
         yield cubes.reshape(-1, VOLUME)

@@ -237,13 +237,21 @@ def test_what_memory_has_no_room_for_is_refused_before_it_is_made(monkeypatch):
         make(nested=40)
     make(nested=3).close()
     agents = {name: {"position": [at + 0.5, 1, 0.5]} for at, name in enumerate(("ann", "bob"))}
-    hall = {"name": "hall", "box": [[0, 0, 0], [999, 99, 999]], "agents": agents}
+    hall = {"name": "hall", "box": [[0, 0, 0], [499, 99, 999]], "agents": agents}
     with pytest.raises(bn.InputError) as fault:
         parallel_env(Scenario.from_mapping(hall))
     assert str(fault.value) == (
-        "observations as arrays need at least 2,401 MB, 401 MB for each of 2 agents and 0 nested "
-        "beliefs, in a box of 1000 x 100 x 1000 blocks. This process may use 300 MB, a test's "
+        "observations as arrays need at least 1,201 MB, 201 MB for each of 2 agents and 0 nested "
+        "beliefs, in a box of 500 x 100 x 1000 blocks. This process may use 300 MB, a test's "
         "limit: choose observations='dict', or take fewer agents or a smaller box"
+    )
+    hall["box"] = [[0, 0, 0], [999, 99, 999]]
+    with pytest.raises(bn.InputError) as fault:
+        parallel_env(Scenario.from_mapping(hall))
+    assert str(fault.value) == (
+        "an observation as arrays would have 401 MB in a box of 1000 x 100 x 1000 blocks, new for "
+        "each agent and step; at most 256 MB are possible: choose observations='dict', or take a "
+        "smaller box"
     )
     env = parallel_env(Scenario.from_mapping(hall), observations="dict", max_steps=2)
     env.reset(seed=1)

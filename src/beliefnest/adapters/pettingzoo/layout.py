@@ -147,7 +147,8 @@ class ObservationLayout:
         found["me"][...] = 0 if state.owner is None else self.agents.index(state.owner)
         self._tell_agents(found, state)
         self._tell_containers(found, state)
-        found["blocks"] = state.blocks.grid.astype(np.int32)
+        for first, states in state.blocks.terrain.slabs():
+            found["blocks"][first : first + len(states)] = states
         for name in ("levers", "buttons"):
             for row, place in enumerate(getattr(self, name)):
                 found[name][row] = _power(state, place)

@@ -13,6 +13,8 @@ from beliefnest.world.memory import MEGABYTE
 
 __all__ = ["check_arrays", "check_nested"]
 
+_MOST_BYTES = 256_000_000
+"""Greatest size of one observation."""
 _BOUNDS = 2
 """Arrays of bounds that a space has: the least and the greatest value of each number."""
 
@@ -46,9 +48,15 @@ def check_arrays(
     shapes = layout.shapes().values()
     each = sum(math.prod(shape) * np.dtype(kind).itemsize for shape, kind, _, _ in shapes)
     limit, needed = context.memory, each * (acting * (1 + _BOUNDS) + nested)
+    sides = " x ".join(map(str, layout.box.shape))
+    if each > _MOST_BYTES:
+        raise InputError(
+            f"an observation as arrays would have {_megabytes(each)} in a box of {sides} blocks, "
+            f"new for each agent and step; at most {_megabytes(_MOST_BYTES)} are possible: choose "
+            "observations='dict', or take a smaller box"
+        )
     if limit is None or needed <= limit.bytes:
         return
-    sides = " x ".join(map(str, layout.box.shape))
     raise InputError(
         f"observations as arrays need at least {_megabytes(needed)}, {_megabytes(each)} for each "
         f"of {acting} agents and {nested} nested beliefs, in a box of {sides} blocks. This process "

@@ -25,6 +25,8 @@ from beliefnest.worlds.servers.realtime import RealtimeWorld
 __all__ = ["Embodying"]
 
 _REALITY: BeliefPath = ()
+_RADII = (8, 32, 64)
+"""Distances in blocks within which a place to stand is searched, one after the other."""
 
 
 @dataclass
@@ -156,19 +158,26 @@ class Embodying:
     def _stand(self, reading: NodeView) -> Position:
         """Return the free position nearest to the middle of the agents.
 
-        If no agent's position is known, it is the one nearest to the middle of the box.
+        If no agent's position is known, it is the one nearest to the middle of the box; if there
+        is none near, the middle itself.
         """
         box = self._recording.box
         space = BodySpace(self._recording.context.registry, box, reading.terrain)
         places = [each.position for each in reading.agents.values() if each.position is not None]
         taken = {block_at(place) for place in places}
         middle = np.array(places or [box.low, box.high], dtype=float).mean(axis=0)
-        cells = np.argwhere(np.ones(box.shape, dtype=np.bool_)) + box.low
-        near = np.linalg.norm(cells + 0.5 - middle, axis=1).argsort(kind="stable")
-        for number in near:
-            x, y, z = map(int, cells[number])
-            if (x, y, z) not in taken and space.heights((x, y, z)):
-                return x, y, z
+        for radius in _RADII:
+            # All cells within the radius are in the part.
+            low = np.maximum(np.floor(middle - radius).astype(int), box.low)
+            high = np.minimum(np.floor(middle + radius).astype(int), box.high)
+            cells = np.argwhere(np.ones(np.maximum(high - low + 1, 0), dtype=np.bool_)) + low
+            distances = np.linalg.norm(cells + 0.5 - middle, axis=1)
+            for number in distances.argsort(kind="stable"):
+                if distances[number] > radius:
+                    break
+                x, y, z = map(int, cells[number])
+                if (x, y, z) not in taken and space.heights((x, y, z)):
+                    return x, y, z
         return block_at(middle)
 
     def _shown(self, path: BeliefPath, standing: _Embodied) -> tuple[Shown, int]:

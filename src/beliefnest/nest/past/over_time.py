@@ -4,9 +4,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from beliefnest.belief.view import State
+from beliefnest.errors import InputError
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
-from beliefnest.world.paths import BeliefPath
+from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
@@ -32,6 +33,10 @@ class Moment:
     blocks: Mapping[Position, str | None]
 
 
+_MOST_BLOCKS = 2_000_000
+"""Most known blocks at the first tick of a timeline."""
+
+
 def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
     """Yield the moments of a simulator: first ticks of timelines, and all ticks with an entry.
 
@@ -46,8 +51,22 @@ def over_time(recording: Recording, path: BeliefPath) -> Iterator[Moment]:
         before = Terrain.full(box.shape, -1)
         for tick, entries in _places(recording.journal, info).items():
             state = recording.history.state(info.key, path, entries, tick)
+            if not before.count([number for number in before.states if number >= 0]):
+                _check_first(state)
             yield Moment(info.key, tick, state, _changed(before, state.terrain, box, registry))
             before = state.terrain
+
+
+def _check_first(state: State) -> None:
+    """Raise InputError if a state knows too many blocks to list them."""
+    terrain = state.blocks.terrain
+    count = terrain.count([number for number in terrain.states if number >= 0])
+    if count > _MOST_BLOCKS:
+        raise InputError(
+            f"{path_text(state.path)} knows {count:,} blocks at tick {state.tick}; states over "
+            f"time list at most {_MOST_BLOCKS:,}: leave the path out, or read single blocks of "
+            "nest.at(tick)[path].state"
+        )
 
 
 def each_tick(

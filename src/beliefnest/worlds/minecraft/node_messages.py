@@ -1,5 +1,6 @@
 """Conversion of the channel's messages to Python values and back (design/channel.md)."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -11,7 +12,7 @@ import numpy.typing as npt
 from beliefnest.errors import BeliefNestError, BodyError
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.frames import BlockGrid, Frame, Snapshot
-from beliefnest.world.terrain import SIDE, Terrain
+from beliefnest.world.terrain import MARGIN, SIDE, VOLUME, Lattice, Terrain
 from beliefnest.world.values import (
     AgentState,
     Block,
@@ -25,6 +26,8 @@ from beliefnest.world.values import (
 from beliefnest.worlds.protocol import Aim, Called, Fault, ProgramResult, Sensed, Unfinished
 
 __all__ = [
+    "CUT",
+    "Cubes",
     "agent_message",
     "blocks_message",
     "contents_message",
@@ -39,7 +42,11 @@ __all__ = [
     "snapshot_message",
     "snapshot_of",
     "terrain_changes",
+    "terrain_of_cubes",
 ]
+
+CUT = {"side": SIDE, "margin": MARGIN}
+"""Cut of a box into the cubes of `Terrain`, for requests."""
 
 
 class _Frame(msgspec.Struct, frozen=True):
@@ -52,6 +59,15 @@ class _Frame(msgspec.Struct, frozen=True):
     events: list[Event] = []
 
 
+class Cubes(msgspec.Struct, frozen=True):
+    """Blocks of a box in cubes, as Node sends them if it is asked for `CUT`."""
+
+    side: int
+    counts: tuple[int, int, int]
+    rows: bytes
+    states: bytes
+
+
 class _Snapshot(msgspec.Struct, frozen=True):
     tick: int
     containers: list[tuple[int, int, int, dict[str, int]]]
@@ -59,7 +75,7 @@ class _Snapshot(msgspec.Struct, frozen=True):
     items: dict[int, DroppedItem] = {}
     internal_state: bytes = b""
     signs: list[tuple[int, int, int, str]] = []
-    blocks: bytes | None = None
+    blocks: bytes | Cubes | None = None
     changes: list[tuple[int, int, int, int]] = []
 
 
@@ -159,6 +175,8 @@ def runs_of(numbers: npt.NDArray[np.int32]) -> bytes:
 
 
 def _terrain_of(got: _Snapshot, box: Box, before: Terrain | None) -> Terrain:
+    if isinstance(got.blocks, Cubes):
+        return terrain_of_cubes(got.blocks, box)
     if got.blocks is not None:
         return Terrain.of(_blocks_of(got.blocks, box))
     if before is None:
@@ -171,20 +189,40 @@ def _terrain_of(got: _Snapshot, box: Box, before: Terrain | None) -> Terrain:
     return blocks.terrain()
 
 
+def terrain_of_cubes(told: Cubes, box: Box) -> Terrain:
+    """Return the terrain of a box in cubes.
+
+    Raises:
+        BodyError: The cubes do not fill the box.
+    """
+    lattice = Lattice(box.shape, is_one=False)
+    if told.side != SIDE or told.counts != lattice.counts:
+        raise BodyError(f"Node sent {told.counts} cubes of side {told.side} for {box}")
+    rows = _expanded(told.rows, math.prod(told.counts), box)
+    states = _expanded(told.states, (int(rows.max()) + 1) * VOLUME, box)
+    try:
+        return Terrain.of_cubes(box.shape, rows, states)
+    except ValueError as fault:
+        raise BodyError(f"Node sent blocks that do not fill {box}: {fault}") from fault
+
+
 def _blocks_of(runs: bytes, box: Box) -> BlockGrid:
     """Return the blocks of a box from a message as `runs_of` makes it.
 
     Raises:
         BodyError: The runs have not as many blocks as the box.
     """
-    size = box.shape[0] * box.shape[1] * box.shape[2]
+    return _expanded(runs, math.prod(box.shape), box).reshape(box.shape)
+
+
+def _expanded(runs: bytes, size: int, box: Box) -> npt.NDArray[np.int32]:
     rows = np.frombuffer(runs, dtype="<i4", count=len(runs) // 8 * 2).reshape(-1, 2)
     states, counts = rows.astype(np.int32).T
     if len(runs) % 8 or (counts < 1).any() or counts.sum(dtype=np.int64) != size:
         raise BodyError(
-            f"Node sent runs of {counts.sum(dtype=np.int64)} blocks for a box of {size}"
+            f"Node sent runs of {counts.sum(dtype=np.int64)} blocks where {box} needs {size}"
         )
-    return np.repeat(states, counts).reshape(box.shape)
+    return np.repeat(states, counts)
 
 
 def signs_message(signs: Mapping[Position, str]) -> dict[str, Any]:

@@ -9,10 +9,9 @@ import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.frames import BlockGrid, Snapshot
-from beliefnest.world.limits import MOST_DENSE, box_fault
+from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign, sign_fault
-from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Items, Position
 from beliefnest.worlds.minecraft import node_messages
 from beliefnest.worlds.minecraft.channel import Channel
@@ -49,7 +48,7 @@ class _Found(msgspec.Struct, frozen=True):
 class _Place(msgspec.Struct, frozen=True):
     shape: tuple[int, int, int]
     palette: list[str]
-    blocks: bytes
+    blocks: node_messages.Cubes
     containers: list[tuple[int, int, int, dict[str, int]]]
     signs: list[tuple[int, int, int, str]]
     special: list[_Placed]
@@ -66,10 +65,10 @@ def capture_server(address: ServerAddress, box: Box) -> Captured:
         BodyError: The server cannot be read; the message says what to do.
         InputError: The box is too large, or outside the world.
     """
-    if fault := box_fault(box, MOST_DENSE):
+    if fault := box_fault(box):
         raise InputError(fault)
     channel, _ = joined(address, 0, ProcessLimits())
-    told = _asked(channel, "capture", box=[box.low, box.high])
+    told = _asked(channel, "capture", box=[box.low, box.high], cut=node_messages.CUT)
     found = msgspec.convert(told, _Found)
     snapshot, left_out = _said(node_messages.snapshot_of(told, box), Registry.load())
     if found.unread:
@@ -99,15 +98,16 @@ def capture_file(data: bytes, corner: Position) -> Captured:
         InputError: The place does not fit into a world there.
     """
     channel, _ = started(0, ProcessLimits())
-    place = msgspec.convert(_asked(channel, "read_place", bytes=data), _Place)
+    told = _asked(channel, "read_place", bytes=data, cut=node_messages.CUT)
+    place = msgspec.convert(told, _Place)
     high = tuple(low + side - 1 for low, side in zip(corner, place.shape, strict=True))
     box = Box(corner, (high[0], high[1], high[2]))
-    if fault := box_fault(box, MOST_DENSE):
+    if fault := box_fault(box):
         raise InputError(f"the file has a bad box: {fault}")
     registry = Registry.load()
     states, unknown = _states(place.palette, registry)
-    cells = np.frombuffer(place.blocks, dtype="<i4").reshape(box.shape)
-    blocks = Terrain.of(states[cells])
+    numbers = node_messages.terrain_of_cubes(place.blocks, box)
+    blocks = numbers.mapped(lambda chunk: states[chunk])
 
     def there(at: Sequence[int]) -> Position:
         return (at[0] + corner[0], at[1] + corner[1], at[2] + corner[2])

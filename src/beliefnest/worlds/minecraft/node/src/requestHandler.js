@@ -55,7 +55,7 @@ class RequestHandler {
       case 'run': return this.runner.run(request.region, request.programs, request.timeout_ticks, request.senses, rulesOf(request))
       case 'apply': return this.regions.apply(request)
       case 'snapshot': return this.regions.snapshot(this.regions.get(request.region))
-      case 'read_place': return readPlace(request.bytes)
+      case 'read_place': return readPlace(request.bytes, request.cut)
       case 'shutdown': return null
       default: throw new BadRequest(`there is no operation ${request.op}`)
     }

@@ -87,7 +87,7 @@ for (const box of BOXES) {
 
       it('tells where blocks of a kind are', () => {
         const found = new Set()
-        new Ground(SERVER, { box, origin: { x: 0, z: 0 } }, Terrain.read(blocks, box)).find(state => state === 2, (x, y, z, state) => {
+        Terrain.read(blocks, box).find(state => state === 2, (x, y, z, state) => {
           assert.equal(state, 2)
           found.add(box.index(x, y, z))
         })

@@ -5,6 +5,7 @@ const assert = require('node:assert/strict')
 const { test } = require('node:test')
 const { Vec3 } = require('vec3')
 const { Box } = require('../src/regions/box')
+const { Terrain } = require('../src/regions/terrain')
 const { BlockMapping } = require('../src/remote/versions')
 const { Scene } = require('../src/remote/scene')
 const { Witness } = require('../src/remote/witness')
@@ -24,7 +25,7 @@ function place () {
   const recorder = { blockChanged () {}, event: ({ kind, actor, detail }) => told.push([kind, actor, detail.open]) }
   const region = { box, recorder, tick: 0, followed: 0, toServer: ([x, y, z]) => new Vec3(x, y, z), emit () {} }
   const scene = new Scene(region, new BlockMapping(registry, registry), {}, {}, async () => null)
-  scene.settle(Int32Array.from([half('lower', false), half('upper', false)]))
+  scene.settle(Terrain.of(Int32Array.from([half('lower', false), half('upper', false)]), box))
   const witness = new Witness('sally', region, scene, Item)
   witness.bot = { entity: { position: new Vec3(0.5, 0, 0.5) } }
   scene.witnesses.set('sally', witness)

@@ -4,41 +4,42 @@
  * game's own structure files (`.nbt`). Blocks are returned as the texts of the file: names and properties.
  */
 const zlib = require('node:zlib')
-const nbt = require('prismarine-nbt')
 const { BadRequest } = require('../channel/errors')
+const { Assembly } = require('../regions/assembly')
+const { Box } = require('../regions/box')
 const { signTextIn, stacksIn, totals } = require('./held')
+const { readNbt } = require('./nbt')
 
-const MOST_BLOCKS = 8_000_000
+// As in world/limits.py.
+const MOST_BLOCKS = 2 ** 30
 const MOST_BYTES = 256 * 2 ** 20
 const GZIP = [0x1f, 0x8b]
 const SHORT = 0xffff
 const LONGEST_VARINT = 5
 
 /**
- * Read a place from the bytes of a file.
+ * Read a place from the bytes of a file. It takes the memory of the unpacked file and of the place's different cubes.
  * @param {Uint8Array} bytes content of the file
- * @returns {Promise<{shape: number[], palette: string[], blocks: Uint8Array, containers: Array, signs: Array, special:
- *   Array}>} `blocks` are indices of the palette as Int32, x slowest, z fastest; `containers` [x, y, z, ITEMS] and
- *   `signs` [x, y, z, text] list all block entities with items or texts; `special` [x, y, z] lists those whose items
- *   have more than a name and count; positions count from the lowest corner
+ * @param {{side: number, margin: number}} cut how the place is cut into cubes (Assembly)
+ * @returns {{shape: number[], palette: string[], blocks: object, containers: Array, signs: Array, special:
+ *   Array}} `blocks` are BLOCKS of the channel in cubes, with numbers of the palette in place of states; `containers`
+ *   [x, y, z, ITEMS] and `signs` [x, y, z, text] list all block entities with items or texts; `special` [x, y, z] lists
+ *   those whose items have more than a name and count; positions count from the lowest corner
  * @throws {BadRequest} if the file is neither
  */
-async function readPlace (bytes) {
-  const data = dataOf(Buffer.from(bytes))
+function readPlace (bytes, cut) {
+  const data = dataOf(Buffer.from(bytes.buffer, bytes.byteOffset, bytes.byteLength))
   const root = data.Schematic ?? data
   if (root.Materials !== undefined) throw new BadRequest('it is a schematic from before Minecraft 1.13, with numbers instead of block names; save it again as .schem')
-  const place = Array.isArray(root.size) ? structure(root) : sponge(root)
+  const place = Array.isArray(root.size) ? structure(root, cut) : sponge(root, cut)
   const found = { containers: [], signs: [], special: [] }
   for (const { position, entity } of place.entities) readEntity(found, position, entity)
-  return { shape: place.shape, palette: place.palette, blocks: new Uint8Array(place.blocks.buffer), ...found }
+  return { shape: place.shape, palette: place.palette, blocks: place.blocks, ...found }
 }
 
-/**
- * Parse a file that may be packed with gzip, once: `nbt.parse` would unpack further layers without a bound.
- */
 function dataOf (bytes) {
   try {
-    return nbt.simplify(nbt.parseUncompressed(unpacked(bytes), 'big'))
+    return readNbt(unpacked(bytes))
   } catch (error) {
     if (error instanceof BadRequest) throw error
     throw new BadRequest(`it is not a file of the game's data format: ${error.message}`)
@@ -62,21 +63,36 @@ function requireShape (shape) {
   return size
 }
 
+/** Return an empty assembly of a place. */
+const assemblyOf = (shape, cut, blank) => new Assembly(new Box([0, 0, 0], shape.map(length => length - 1)), cut, blank)
+
 /** Return a palette with air added, for cells that a file does not mention. */
 const withAir = texts => ({ palette: [...texts, 'minecraft:air'], air: texts.length })
 
-function structure ({ size, palette, palettes, blocks }) {
+function structure ({ size, palette, palettes, blocks }, cut) {
   const shape = size.map(Number)
   const { palette: texts, air } = withAir((palette ?? palettes?.[0] ?? []).map(stateText))
-  const cells = new Int32Array(requireShape(shape)).fill(air)
+  requireShape(shape)
+  const assembly = assemblyOf(shape, cut, air)
+  const cubes = new Map()
   const entities = []
+  const { side, margin } = cut
   for (const { pos: position, state, nbt: entity } of blocks ?? []) {
     requireInside(shape, position)
     requireKnown(texts, state)
-    cells[cellOf(shape, position)] = state
+    const cells = position.map(value => value + margin)
+    const cube = cells.map(value => Math.floor(value / side))
+    const key = cube.join()
+    if (!cubes.has(key)) {
+      assembly.requireRoom(cubes.size)
+      cubes.set(key, { cube, states: new Int32Array(assembly.volume).fill(air) })
+    }
+    const [x, y, z] = cells.map(value => value % side)
+    cubes.get(key).states[(x * side + y) * side + z] = state
     if (entity !== undefined) entities.push({ position, entity })
   }
-  return { shape, palette: texts, blocks: cells, entities }
+  for (const { cube, states } of cubes.values()) assembly.put(cube, states)
+  return { shape, palette: texts, blocks: assembly.terrain().message(), entities }
 }
 
 function stateText ({ Name: name, Properties: properties = {} }) {
@@ -84,7 +100,7 @@ function stateText ({ Name: name, Properties: properties = {} }) {
   return inner === '' ? String(name) : `${name}[${inner}]`
 }
 
-function sponge (root) {
+function sponge (root, cut) {
   const shape = [root.Width, root.Height, root.Length].map(side => side & SHORT)
   const size = requireShape(shape)
   const { Palette: palette, Data: data, BlockEntities: entities = [] } = root.Blocks ??
@@ -92,17 +108,58 @@ function sponge (root) {
   if (palette === undefined || data === undefined) throw new BadRequest('it has no blocks: neither a schematic nor a structure')
   const texts = []
   for (const [text, number] of Object.entries(palette)) texts[number] = text
-  const cells = new Int32Array(size)
-  const [width, , length] = shape
+  const layers = new Layers(shape, cut)
   let count = 0
-  for (const number of varints(data)) {
+  eachVarint(data, number => {
     requireKnown(texts, number)
-    const [x, z] = [count % width, Math.floor(count / width) % length]
-    if (count < size) cells[cellOf(shape, [x, Math.floor(count / (width * length)), z])] = number
+    if (count < size) layers.add(number)
     count += 1
-  }
+  })
   if (count !== size) throw new BadRequest(`it has ${count} blocks of ${size}: it is damaged`)
-  return { shape, palette: Array.from(texts, text => text ?? 'minecraft:air'), blocks: cells, entities: entities.map(entity => placed(shape, entity)) }
+  return { shape, palette: Array.from(texts, text => text ?? 'minecraft:air'), blocks: layers.terrain().message(), entities: entities.map(entity => placed(shape, entity)) }
+}
+
+/** Assembly of a place whose blocks come in the order of schematics: x fastest, y slowest. It holds one layer of cubes. */
+class Layers {
+  constructor (shape, cut) {
+    const { side, margin } = cut
+    this.shape = shape
+    this.cut = cut
+    this.assembly = assemblyOf(shape, cut, 0)
+    const { counts: [wide, , deep], volume } = this.assembly
+    this.cells = new Int32Array(wide * deep * volume)
+    // The index of a cell in the layer is a sum of one part for each axis.
+    const parts = (length, whole, step) => Array.from({ length }, (_, at) => Math.floor((at + margin) / side) * whole + (at + margin) % side * step)
+    this.parts = [parts(shape[0], deep * volume, side * side), parts(shape[1], 0, side), parts(shape[2], volume, 1)]
+    this.at = [0, 0, 0]
+  }
+
+  /** Set the next block. */
+  add (number) {
+    const { at, shape, parts, cells } = this
+    cells[parts[0][at[0]] + parts[1][at[1]] + parts[2][at[2]]] = number
+    if (++at[0] < shape[0]) return
+    at[0] = 0
+    if (++at[2] < shape[2]) return
+    at[2] = 0
+    at[1] += 1
+    if (at[1] === shape[1] || (at[1] + this.cut.margin) % this.cut.side === 0) this.end()
+  }
+
+  /** End a layer of cubes. */
+  end () {
+    const { assembly, cells, cut: { side, margin } } = this
+    const { counts: [wide, , deep], volume } = assembly
+    const layer = Math.floor((this.at[1] - 1 + margin) / side)
+    for (let i = 0, start = 0; i < wide; i++) {
+      for (let k = 0; k < deep; k++, start += volume) assembly.put([i, layer, k], cells.subarray(start, start + volume))
+    }
+    cells.fill(0)
+  }
+
+  terrain () {
+    return this.assembly.terrain()
+  }
 }
 
 function placed (shape, { Pos: position, Data: data, ...more }) {
@@ -110,14 +167,15 @@ function placed (shape, { Pos: position, Data: data, ...more }) {
   return { position: [...position], entity: data ?? more }
 }
 
-function * varints (bytes) {
+/** Call `visit(number)` for each number of variable length in some bytes. */
+function eachVarint (bytes, visit) {
   let value = 0
   let length = 0
   for (const byte of bytes) {
     value |= (byte & 127) << (7 * length)
     if (++length > LONGEST_VARINT) throw new BadRequest('its blocks are not numbers of the schematic format')
     if ((byte & 128) !== 0) continue
-    yield value
+    visit(value)
     value = length = 0
   }
 }
@@ -127,11 +185,9 @@ function requireKnown (texts, number) {
 }
 
 function requireInside (shape, position) {
-  const isInside = position?.length === 3 && [...position].every((value, axis) => value >= 0 && value < shape[axis])
-  if (!isInside) throw new BadRequest(`it has a block at ${[...position ?? []].join(', ')}, which is outside its ${shape.join(' x ')} blocks`)
+  const isInside = Array.isArray(position) && position.length === 3 && position.every((value, axis) => Number.isInteger(value) && value >= 0 && value < shape[axis])
+  if (!isInside) throw new BadRequest(`it has a block at ${[position].flat().join(', ')}, which is outside its ${shape.join(' x ')} blocks`)
 }
-
-const cellOf = ([, height, length], [x, y, z]) => (x * height + y) * length + z
 
 function readEntity ({ containers, signs, special }, position, entity) {
   if (Array.isArray(entity.Items)) {

@@ -76,13 +76,16 @@ function rowsOf (bytes) {
 
 /** Return the runs of block states, as the channel sends them. @returns {Uint8Array} */
 function runsOf (states) {
-  const runs = []
-  for (let first = 0, index = 1; index <= states.length; index++) {
+  let count = states.length > 0 ? 1 : 0
+  for (let index = 1; index < states.length; index++) if (states[index] !== states[index - 1]) count += 1
+  const runs = new Int32Array(2 * count)
+  for (let first = 0, index = 1, at = 0; index <= states.length; index++) {
     if (index < states.length && states[index] === states[first]) continue
-    runs.push(states[first], index - first)
+    runs[at++] = states[first]
+    runs[at++] = index - first
     first = index
   }
-  return new Uint8Array(Int32Array.from(runs).buffer)
+  return new Uint8Array(runs.buffer)
 }
 
 module.exports = { Box, expanded, runsOf, statesOf }

@@ -11,7 +11,7 @@ const { Ground } = require('./ground')
 function buildColumns (serv, region, terrain) {
   region.ground = new Ground(serv, region, terrain)
   serv.grounds.add(region.ground)
-  region.ground.find(state => serv.containers.holds(state), (x, y, z) => serv.containers.stand(region.toServer([x, y, z])))
+  terrain.find(state => serv.containers.holds(state), (x, y, z) => serv.containers.stand(region.toServer([x, y, z])))
 }
 
 function dropColumns (serv, { ground }) {

@@ -68,36 +68,6 @@ class Ground {
     return (x, z) => present.get(`${x},${z}`) ?? this.column(x, z)
   }
 
-  /** Call `visit(x, y, z, state)` for the blocks (scenario) whose state is one that `wanted` accepts, in no order. */
-  find (wanted, visit) {
-    const { terrain } = this
-    const accepted = new Map()
-    const isWanted = state => {
-      if (!accepted.has(state)) accepted.set(state, state > 0 && wanted(state))
-      return accepted.get(state)
-    }
-    const has = terrain.chunks.map((states, row) => !this.empty[row] && states.some(isWanted))
-    if (!has.includes(true)) return
-    terrain.eachChunk(this.box, (row, from, to) => {
-      if (has[row]) this.eachBlock(row, from, to, (x, y, z, state) => { if (isWanted(state)) visit(x, y, z, state) })
-    })
-  }
-
-  /** Call `visit(x, y, z, state)` for the blocks of a part of a chunk that are not air or unknown. */
-  eachBlock (row, from, to, visit) {
-    const { terrain } = this
-    const states = terrain.chunks[row]
-    for (let x = from[0]; x <= to[0]; x++) {
-      for (let y = from[1]; y <= to[1]; y++) {
-        let index = terrain.within(x, y, from[2])
-        for (let z = from[2]; z <= to[2]; z++) {
-          const state = states[index++]
-          if (state > 0) visit(x, y, z, state)
-        }
-      }
-    }
-  }
-
   /** Return the part of the box in a column (server); null if there is none. @returns {Box | null} */
   part (box, chunkX, chunkZ) {
     const [x, z] = [chunkX * CHUNK - this.origin.x, chunkZ * CHUNK - this.origin.z]
@@ -126,7 +96,7 @@ class Ground {
     const place = { x: 0, y: 0, z: 0 }
     this.terrain.eachChunk(part, (row, from, to) => {
       if (this.empty[row]) return
-      this.eachBlock(row, from, to, (x, y, z, state) => {
+      this.terrain.eachBlock(row, from, to, (x, y, z, state) => {
         place.x = (x + x0) & 15
         place.y = y
         place.z = (z + z0) & 15

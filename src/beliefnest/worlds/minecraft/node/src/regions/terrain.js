@@ -5,7 +5,7 @@
  */
 const { BadRequest } = require('../channel/errors')
 const { CHUNK } = require('./allotment')
-const { expanded, statesOf } = require('./box')
+const { expanded, runsOf, statesOf } = require('./box')
 
 // A shift by so many bits turns all indices of a box that is one chunk into chunk 0.
 const ONE_CHUNK = 30
@@ -62,6 +62,18 @@ class Terrain {
     const terrain = new Terrain(box, { first: box.low, shift: ONE_CHUNK, sizes: box.shape, counts: [1, 1, 1] }, new Int32Array(1), [states])
     terrain.own.add(0)
     return terrain
+  }
+
+  /**
+   * Return the terrain as the channel sends it.
+   * @returns {Uint8Array | object} BLOCKS of the channel
+   */
+  message () {
+    const { first, sizes: [side], counts, rows, chunks, volume } = this
+    if (this.isOne) return runsOf(chunks[0])
+    const states = new Int32Array(chunks.length * volume)
+    chunks.forEach((chunk, row) => states.set(chunk, row * volume))
+    return { first, side, counts, rows: runsOf(rows), states: runsOf(states) }
   }
 
   /** True if the whole box is one chunk. */
@@ -123,6 +135,35 @@ class Terrain {
         for (let k = from[2]; k <= to[2]; k++) {
           const [x, y, z] = [ends(0, i), ends(1, j), ends(2, k)]
           visit(rows[(i * counts[1] + j) * counts[2] + k], [x[0], y[0], z[0]], [x[1], y[1], z[1]])
+        }
+      }
+    }
+  }
+
+  /** Call `visit(x, y, z, state)` for the blocks whose state is one that `wanted` accepts, neither air nor unknown, in no order. */
+  find (wanted, visit) {
+    const accepted = new Map()
+    const isWanted = state => {
+      if (state <= 0) return false
+      if (!accepted.has(state)) accepted.set(state, wanted(state))
+      return accepted.get(state)
+    }
+    const has = this.chunks.map(states => states.some(isWanted))
+    if (!has.includes(true)) return
+    this.eachChunk(this.box, (row, from, to) => {
+      if (has[row]) this.eachBlock(row, from, to, (x, y, z, state) => { if (isWanted(state)) visit(x, y, z, state) })
+    })
+  }
+
+  /** Call `visit(x, y, z, state)` for the blocks of a part of a chunk that are not air or unknown. */
+  eachBlock (row, from, to, visit) {
+    const states = this.chunks[row]
+    for (let x = from[0]; x <= to[0]; x++) {
+      for (let y = from[1]; y <= to[1]; y++) {
+        let index = this.within(x, y, from[2])
+        for (let z = from[2]; z <= to[2]; z++) {
+          const state = states[index++]
+          if (state > 0) visit(x, y, z, state)
         }
       }
     }

@@ -1,6 +1,6 @@
 'use strict'
 /** Capture of a place on a remote server: reads it and changes nothing. */
-const { Box, runsOf } = require('../regions/box')
+const { Box } = require('../regions/box')
 const { rounded, sorted } = require('../regions/facts')
 const { fromDegrees, wrap } = require('../server/angles')
 const { byPlace, listOf, vecOf } = require('../server/plugins/lib/positions')
@@ -21,10 +21,11 @@ const SPECTATOR = 3
  * @param {object} session result of beginSession, and our `registry`
  * @param {{x: number, z: number}} origin server position of scenario (0, y, 0)
  * @param {number[][]} corners corners of the box, scenario coordinates
+ * @param {{side: number, margin: number}} cut how its blocks are cut into cubes (Assembly)
  * @returns {Promise<object>} SNAPSHOT, with `unread`: [x, y, z] of containers that could not be opened, `unasked`:
  *   names of players of whom only visible equipment is known, and `strange`: names of blocks that our version lacks
  */
-async function capture ({ operator, clock, theirs, registry }, origin, corners) {
+async function capture ({ operator, clock, theirs, registry }, origin, corners, cut) {
   const region = new RemotePlace({ name: 'captured', box: new Box(...corners), origin, tick: 0, known: [] }, clock)
   const mapping = new BlockMapping(registry, theirs)
   const commands = commandsFor(region, state => mapping.textForServer(state), theirs.version)
@@ -33,7 +34,7 @@ async function capture ({ operator, clock, theirs, registry }, origin, corners) 
   return operator.attended(async () => {
     await setup.arrive()
     try {
-      return { ...await look(setup, commands), strange: [...mapping.strange].sort() }
+      return { ...await look(setup, commands, cut), strange: [...mapping.strange].sort() }
     } finally {
       operator.type(commands.load('remove'))
       await operator.settled()
@@ -42,20 +43,20 @@ async function capture ({ operator, clock, theirs, registry }, origin, corners) 
 }
 
 /** Return all contents of the place of a set-up. @returns {Promise<object>} */
-async function look (setup, commands) {
+async function look (setup, commands, cut) {
   const { operator, scene, region } = setup
-  const present = setup.present()
+  const present = operator.readTerrain(region.box, cut, scene.mapping)
   scene.settle(present)
   const found = await contents(setup, present)
   await setup.goAbove()
   return {
-    tick: 0, blocks: runsOf(present), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region)
+    tick: 0, blocks: present.message(), items: {}, internal_state: new Uint8Array(0), signs: signs(operator.bot, scene, present), ...found, ...await players(operator, commands, region)
   }
 }
 
-async function contents (setup, states) {
+async function contents (setup, terrain) {
   const [containers, unread] = [[], []]
-  for (const position of setup.containers(states)) {
+  for (const position of setup.containers(terrain)) {
     const items = await setup.read(position)
     containers.push([...position, sorted(items ?? {})])
     if (items === null) unread.push(position)
@@ -63,10 +64,9 @@ async function contents (setup, states) {
   return { containers: containers.sort(byPlace), unread }
 }
 
-function signs (bot, scene, states) {
+function signs (bot, { states }, terrain) {
   const found = []
-  scene.region.box.forEach((x, y, z, index) => {
-    if (!scene.states.describe(states[index]).name.endsWith('_sign')) return
+  terrain.find(state => states.describe(state).name.endsWith('_sign'), (x, y, z) => {
     const text = textOf(bot.blockAt(vecOf({ x, y, z })))
     if (text !== '') found.push([x, y, z, text])
   })

@@ -3,6 +3,7 @@
 const { setTimeout: sleep } = require('node:timers/promises')
 const { Vec3 } = require('vec3')
 const { EYE_HEIGHT } = require('../../../../../skills/code/lib/sight')
+const { Assembly } = require('../regions/assembly')
 const { NEEDED } = require('./commands')
 const reasons = require('./reasons')
 const { ByCompletions } = require('./settling')
@@ -219,6 +220,30 @@ class Operator {
     return states
   }
 
+  /**
+   * Return the blocks of a box, in our version's numbers; takes memory for its different cubes only.
+   * @param {import('../regions/box').Box} box
+   * @param {{side: number, margin: number}} cut how it is cut into cubes (Assembly)
+   * @param {import('./versions').BlockMapping} mapping
+   * @returns {import('../regions/terrain').Terrain}
+   */
+  readTerrain (box, cut, mapping) {
+    const { world } = this.bot
+    const assembly = new Assembly(box, cut, 0)
+    const { side, first, counts, volume } = assembly
+    const states = new Int32Array(volume)
+    for (let i = 0; i < counts[0]; i++) {
+      for (let k = 0; k < counts[2]; k++) {
+        for (let j = 0; j < counts[1]; j++) {
+          const low = [i, j, k].map((number, axis) => first[axis] + number * side)
+          readCube(world, low, side, box, states, mapping)
+          assembly.put([i, j, k], states)
+        }
+      }
+    }
+    return assembly.terrain()
+  }
+
   /** Resolve when the operator's client is at a position. */
   async go (command, [x, y, z]) {
     const there = new Vec3(x, y, z)
@@ -246,6 +271,22 @@ class Operator {
     const stacks = window.slots.slice(0, window.inventoryStart)
     bot.closeWindow(window)
     return stacks
+  }
+}
+
+/** Read the states of a cube; those outside the box are 0. */
+function readCube (world, low, side, box, states, mapping) {
+  states.fill(0)
+  const from = low.map((value, axis) => Math.max(value, box.low[axis]))
+  const to = low.map((value, axis) => Math.min(value + side - 1, box.high[axis]))
+  for (let x = from[0]; x <= to[0]; x++) {
+    for (let z = from[2]; z <= to[2]; z++) {
+      const column = world.getColumn(x >> CHUNK_BITS, z >> CHUNK_BITS)
+      const place = { x: x & (1 << CHUNK_BITS) - 1, y: from[1], z: z & (1 << CHUNK_BITS) - 1 }
+      for (let index = ((x - low[0]) * side + from[1] - low[1]) * side + z - low[2]; place.y <= to[1]; place.y++, index += side) {
+        states[index] = mapping.fromServer(column.getBlockStateId(place))
+      }
+    }
   }
 }
 

@@ -5,6 +5,7 @@
  */
 const { Exhibit } = require('../exhibits/exhibit')
 const { Place } = require('../regions/place')
+const { Terrain } = require('../regions/terrain')
 const { keyOf, listOf, vecOf } = require('../server/plugins/lib/positions')
 const { slotsIn, slotted } = require('./kinds')
 const { Guide } = require('./guide')
@@ -60,7 +61,7 @@ class RemoteExhibit {
 
   async fill () {
     const { exhibit, scene, setup } = this
-    scene.settle(await setup.build(exhibit.blocks.dense()))
+    scene.settle(Terrain.of(await setup.build(exhibit.blocks.dense()), exhibit.box))
     await setup.stock(setup.containers(scene.blocks).map(position => {
       const items = exhibit.containers.get(position.join())?.items ?? {}
       this.given.set(position.join(), this.stacks(position, items))
@@ -81,7 +82,7 @@ class RemoteExhibit {
   /** Restore everything after the guide or the operator was disconnected. */
   async refresh () {
     await this.setup.arrive()
-    this.scene.settle(this.setup.present())
+    this.scene.settle(Terrain.of(this.setup.present(), this.exhibit.box))
     await this.fill()
     for (const marker of this.markers.values()) if (marker.link.isReady) await marker.begin()
   }
@@ -146,7 +147,7 @@ class RemoteExhibit {
     await Promise.all([...this.markers.values()].map(marker => marker.close()))
     if (guide.link.isHere && guide.operator.link.isHere) {
       if (saved !== null && !server.keep) {
-        scene.settle(await setup.build(saved.states))
+        scene.settle(Terrain.of(await setup.build(saved.states), this.exhibit.box))
         await setup.stock(saved.containers)
       }
       guide.type(this.commands.load('remove'))

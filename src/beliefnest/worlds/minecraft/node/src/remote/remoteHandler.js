@@ -9,7 +9,7 @@ const { beginSession } = require('./session')
 class RemoteHandler extends RealtimeHandler {
   async open (registry, { server }) {
     const session = await beginSession(server, notice => this.send({ notice }))
-    this.capture = corners => capture({ ...session, registry }, { x: server.at[0], z: server.at[1] }, corners)
+    this.capture = ({ box, cut }) => capture({ ...session, registry }, { x: server.at[0], z: server.at[1] }, box, cut)
     const regions = new RemoteRegions(server, session, registry, frame => this.send({ frame }))
     this.exhibits = new RemoteExhibits(regions)
     return regions
@@ -28,7 +28,7 @@ class RemoteHandler extends RealtimeHandler {
   }
 
   async perform (request) {
-    if (request.op === 'capture') return this.capture(request.box)
+    if (request.op === 'capture') return this.capture(request)
     if (request.op === 'people') return { here: this.regions.invite(request.invited) }
     if (request.op === 'run') requireBots(this.regions.invited, Object.keys(request.programs))
     if (request.op === 'exhibit') return this.exhibits.open(request)

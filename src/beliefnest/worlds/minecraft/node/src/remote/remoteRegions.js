@@ -6,7 +6,7 @@
 const { setTimeout: sleep } = require('node:timers/promises')
 const { BadRequest } = require('../channel/errors')
 const { waitFor } = require('../bots/ticking')
-const { Box, runsOf } = require('../regions/box')
+const { Box } = require('../regions/box')
 const { Terrain } = require('../regions/terrain')
 const { Recorder } = require('../regions/recorder')
 const { vecOf } = require('../server/plugins/lib/positions')
@@ -133,8 +133,8 @@ class RemoteRegions {
     if (!this.server.overwrite) setup.requireFree(present, wanted)
     open.saved = await this.save(open, present)
     const built = await setup.build(wanted)
-    scene.settle(built)
-    await setup.stock(withEmpty(setup.containers(built), containers))
+    scene.settle(Terrain.of(built, region.box))
+    await setup.stock(withEmpty(setup.containers(scene.blocks), containers))
     await setup.write(signs)
     await setup.lay(items)
     await open.agents.add(agents, this.server.patience * 1000)
@@ -143,9 +143,9 @@ class RemoteRegions {
   }
 
   async save ({ scene, setup }, present) {
-    scene.settle(present)
+    scene.settle(Terrain.of(present.slice(), scene.region.box))
     const containers = []
-    for (const position of setup.containers(present)) containers.push([...position, await setup.read(position) ?? {}])
+    for (const position of setup.containers(scene.blocks)) containers.push([...position, await setup.read(position) ?? {}])
     return { states: present, containers }
   }
 
@@ -267,9 +267,9 @@ class RemoteRegions {
   }
 
   async change ({ region, scene, setup, agents: present }, { blocks, containers, agents, items, signs }) {
-    const wanted = scene.blocks.slice()
+    const wanted = scene.blocks.dense().slice()
     for (const [x, y, z, state] of blocks) wanted[region.box.index(x, y, z)] = state
-    scene.settle(await setup.build(wanted))
+    scene.settle(Terrain.of(await setup.build(wanted), region.box))
     for (const position of blocks.map(([x, y, z]) => vecOf({ x, y, z }))) scene.replaced(position, scene.at(position))
     await setup.stock(containers.filter(([, , , held]) => held !== null))
     await setup.write(signs)
@@ -308,7 +308,7 @@ class RemoteRegions {
   async putBack ({ scene, setup, saved }) {
     if (!this.server.keep) {
       await setup.lay({})
-      scene.settle(await setup.build(saved.states))
+      scene.settle(Terrain.of(await setup.build(saved.states), scene.region.box))
       await setup.stock(saved.containers)
     }
     this.operator.type(setup.commands.load('remove'))
@@ -319,7 +319,7 @@ class RemoteRegions {
   snapshot ({ tick }) {
     const { scene, agents } = this.open
     return {
-      tick, blocks: runsOf(scene.blocks), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), internal_state: NOTHING, signs: scene.signStates()
+      tick, blocks: scene.blocks.message(), containers: scene.contents.states(), agents: agents.states(), items: scene.items.states(), internal_state: NOTHING, signs: scene.signStates()
     }
   }
 

@@ -57,14 +57,14 @@ class Scene {
     this.serv = servFor(this)
   }
 
-  /** Set the known states of the box. */
-  settle (states) {
-    this.blocks = states.slice()
+  /** Set the known blocks of the box, a terrain that nobody else changes. */
+  settle (terrain) {
+    this.blocks = terrain
   }
 
   at ({ x, y, z }) {
     const { box } = this.region
-    return this.states.describe(box.contains(x, y, z) ? this.blocks[box.index(x, y, z)] : 0)
+    return this.states.describe(box.contains(x, y, z) ? this.blocks.at(x, y, z) : 0)
   }
 
   halvesAt (position) {
@@ -75,11 +75,12 @@ class Scene {
   blockChanged (position, state) {
     const { box, recorder } = this.region
     if (this.blocks === null || !box.contains(position.x, position.y, position.z)) return
-    const index = box.index(position.x, position.y, position.z)
-    if (this.blocks[index] === state) return
-    const before = this.states.describe(this.blocks[index])
+    const { x, y, z } = position
+    const old = this.blocks.at(x, y, z)
+    if (old === state) return
+    const before = this.states.describe(old)
     const after = this.states.describe(state)
-    this.blocks[index] = state
+    this.blocks.set(x, y, z, state)
     if (before.name !== after.name) this.replaced(position, after)
     recorder.blockChanged(this.region.toServer(listOf(position)), state)
     this.attribute(position, before, after)

@@ -4,7 +4,7 @@ const { EYE_HEIGHT } = require('../../../../../skills/code/lib/sight')
 const { BadRequest } = require('../channel/errors')
 const { countByName } = require('../server/plugins/lib/items')
 const { stacksIn, totals } = require('../places/held')
-const { vecOf } = require('../server/plugins/lib/positions')
+const { byPlace, vecOf } = require('../server/plugins/lib/positions')
 const { isDeepStrictEqual } = require('node:util')
 const { sorted } = require('../regions/facts')
 const { halvesAt } = require('../server/plugins/lib/doubleChest')
@@ -158,13 +158,11 @@ class Setup {
     return data === null ? null : totals(stacksIn(data.Items))
   }
 
-  /** Return the positions of all containers in the box. */
-  containers (present) {
+  /** Return the positions of all containers of a terrain, in order. */
+  containers (terrain) {
     const found = []
-    this.region.box.forEach((x, y, z, index) => {
-      if (slotsIn(this.scene.states.describe(present[index]).name) > 0) found.push([x, y, z])
-    })
-    return found
+    terrain.find(state => slotsIn(this.scene.states.describe(state).name) > 0, (x, y, z) => found.push([x, y, z]))
+    return found.sort(byPlace)
   }
 
   /**

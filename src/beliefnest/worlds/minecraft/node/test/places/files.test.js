@@ -4,6 +4,10 @@ const { test } = require('node:test')
 const zlib = require('node:zlib')
 const nbt = require('prismarine-nbt')
 const { readPlace } = require('../../src/places/files')
+const { Box } = require('../../src/regions/box')
+const { Terrain } = require('../../src/regions/terrain')
+
+const CUT = { side: 8, margin: 1 }
 
 const CHEST = 'minecraft:chest[facing=south]'
 const PALETTE = { 'minecraft:stone': 0, [CHEST]: 1, 'minecraft:oak_sign[rotation=4]': 200, 'minecraft:air': 3 }
@@ -43,22 +47,20 @@ function structure (position = [0, 1, 0]) {
 }
 
 /** Return the blocks of a file: text by position, without air. */
-function blocksOf ({ shape: [width, height, length], palette: texts, blocks }) {
-  const numbers = new Int32Array(blocks.buffer)
+function blocksOf ({ shape, palette: texts, blocks }) {
+  const box = new Box([0, 0, 0], shape.map(length => length - 1))
+  const terrain = Terrain.read(blocks, box)
   const found = {}
-  for (let x = 0, index = 0; x < width; x++) {
-    for (let y = 0; y < height; y++) {
-      for (let z = 0; z < length; z++, index++) {
-        if (!texts[numbers[index]].endsWith('air')) found[[x, y, z]] = texts[numbers[index]]
-      }
-    }
-  }
+  box.forEach((x, y, z) => {
+    const text = texts[terrain.at(x, y, z)]
+    if (!text.endsWith('air')) found[[x, y, z]] = text
+  })
   return found
 }
 
 for (const [kind, bytes] of [['version 2', schem2()], ['version 3', schem3()]]) {
-  test(`a Sponge schematic of ${kind} is read`, async () => {
-    const place = await readPlace(bytes)
+  test(`a Sponge schematic of ${kind} is read`, () => {
+    const place = readPlace(bytes, CUT)
     assert.deepEqual(place.shape, [2, 2, 3])
     const found = blocksOf(place)
     assert.equal(Object.values(found).filter(text => text === 'minecraft:stone').length, 6)
@@ -69,13 +71,13 @@ for (const [kind, bytes] of [['version 2', schem2()], ['version 3', schem3()]]) 
   })
 }
 
-test('a structure file is read, and what it does not name is air', async () => {
-  const place = await readPlace(structure())
+test('a structure file is read, and what it does not name is air', () => {
+  const place = readPlace(structure(), CUT)
   assert.deepEqual(blocksOf(place), { '1,0,2': 'minecraft:stone', '0,1,0': 'minecraft:chest[facing=south]' })
   assert.deepEqual(place.containers, [[0, 1, 0, { bread: 3 }]])
 })
 
-test('what is no such file is refused with a sentence', async () => {
+test('what is no such file is refused with a sentence', () => {
   const cases = [
     [Buffer.from('a text'), /not a file of the game's data format/],
     [schem2().subarray(0, 40), /not a file of the game's data format/],
@@ -85,16 +87,61 @@ test('what is no such file is refused with a sentence', async () => {
     [schem2([-1, -1, -1, -1, -1, -1]), /not numbers/],
     [schem2([9]), /number 9, of which its palette/],
     [schem2([0, 0]), /has 2 blocks of 12/],
-    [structure([0, 5, 0]), /outside its 2 x 2 x 3/]
+    [structure([0, 5, 0]), /outside its 2 x 2 x 3/],
+    [file(nbt.comp({ size: nbt.list(nbt.int([4096, 4096, 65])) })), /its sides are 4096 x 4096 x 65 blocks; give a place of at most 1073741824/],
+    // A list of 2 billion empty compounds, a list of as many ends, a text that is cut off.
+    [Buffer.from([10, 0, 0, 9, 0, 1, 97, 10, 127, 255, 255, 255]), /it ends within the list at byte 12/],
+    [Buffer.from([10, 0, 0, 9, 0, 1, 97, 0, 127, 255, 255, 255]), /it ends within the list at byte 12/],
+    [Buffer.from([10, 0, 9, 97]), /it ends within the value at byte 3/],
+    [Buffer.from([10, 0, 0, 99, 0, 0]), /unknown type 99/],
+    [Buffer.concat([Buffer.from([10, 0, 0]), ...Array(1000).fill(Buffer.from([10, 0, 0]))]), /nested more than 512 deep/]
   ]
-  for (const [bytes, said] of cases) await assert.rejects(readPlace(bytes), { message: said, kind: 'bad_request' })
+  for (const [bytes, said] of cases) assert.throws(() => readPlace(bytes, CUT), { message: said, kind: 'bad_request' })
 })
 
-test('a file that unpacks to more than the limit is refused with the limit', async () => {
+test('a file that unpacks to more than the limit is refused with the limit', () => {
   const zeros = zlib.gzipSync(Buffer.alloc(256 * 2 ** 20 + 1), { level: 1 })
-  await assert.rejects(readPlace(zeros), { message: 'it unpacks to more than 256 MiB, the limit for a place; give a file of a smaller place', kind: 'bad_request' })
+  assert.throws(() => readPlace(zeros, CUT), { message: 'it unpacks to more than 256 MiB, the limit for a place; give a file of a smaller place', kind: 'bad_request' })
 })
 
-test('a file that is packed twice is not unpacked twice', async () => {
-  await assert.rejects(readPlace(zlib.gzipSync(schem2())), { message: /not a file of the game's data format/, kind: 'bad_request' })
+test('a file that is packed twice is not unpacked twice', () => {
+  assert.throws(() => readPlace(zlib.gzipSync(schem2()), CUT), { message: /not a file of the game's data format/, kind: 'bad_request' })
+})
+
+test('a place of several cubes is read, and takes the memory of its different cubes', () => {
+  const [width, height, length] = [37, 20, 21]
+  const numberAt = (x, y, z) => y < 12 ? 0 : (x * 7 + y * 5 + z * 3) % 11 === 0 ? 2 : 1
+  const numbers = []
+  for (let y = 0; y < height; y++) {
+    for (let z = 0; z < length; z++) {
+      for (let x = 0; x < width; x++) numbers.push(numberAt(x, y, z))
+    }
+  }
+  const names = ['stone', 'air', 'glass']
+  const place = readPlace(file(nbt.comp({
+    Width: nbt.short(width), Height: nbt.short(height), Length: nbt.short(length), Palette: nbt.comp(Object.fromEntries(names.map((name, number) => [name, nbt.int(number)]))), BlockData: nbt.byteArray(numbers)
+  })), CUT)
+  const box = new Box([0, 0, 0], [width - 1, height - 1, length - 1])
+  const terrain = Terrain.read(place.blocks, box)
+  box.forEach((x, y, z) => assert.equal(place.palette[terrain.at(x, y, z)], names[numberAt(x, y, z)], `${x} ${y} ${z}`))
+  const solid = terrain.rows.filter(row => row === terrain.rows[terrain.place(12, 3, 12)])
+  assert.equal(solid.length, 5 * 3, 'one cube is used for the whole layer of stone')
+})
+
+test('a file of more than 16 million blocks is read', () => {
+  const [width, height, length] = [500, 70, 500]
+  const data = Buffer.alloc(width * height * length, 1)
+  data.fill(0, 0, width * length * 8)
+  const head = nbt.writeUncompressed({ name: '', ...nbt.comp({ Width: nbt.short(width), Height: nbt.short(height), Length: nbt.short(length), Palette: nbt.comp({ stone: nbt.int(0), air: nbt.int(1) }) }) })
+  const named = Buffer.from([7, 0, 9, ...Buffer.from('BlockData'), 0, 0, 0, 0])
+  named.writeInt32BE(data.length, named.length - 4)
+  const place = readPlace(Buffer.concat([head.subarray(0, -1), named, data, Buffer.from([0])]), CUT)
+  const terrain = Terrain.read(place.blocks, new Box([0, 0, 0], [width - 1, height - 1, length - 1]))
+  assert.deepEqual([terrain.at(499, 7, 499), terrain.at(499, 8, 499)], [0, 1])
+  assert.ok(terrain.chunks.length < 100)
+})
+
+test('a name in a file may be any text', () => {
+  const bytes = file(nbt.comp({ __proto__: null, size: nbt.list(nbt.int([1, 1, 1])), ['__proto__']: nbt.comp({ blocks: nbt.int(3) }) }))
+  assert.deepEqual(readPlace(bytes, CUT).shape, [1, 1, 1])
 })

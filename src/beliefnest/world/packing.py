@@ -1,0 +1,55 @@
+"""Terrain as compressed bytes, for files.
+
+The bytes hold 32-bit integers, little endian, compressed by zstandard: of a terrain of one chunk
+the states of all cells, x slowest and z fastest; of others the number of the chunk at each place,
+and then the states of each different chunk (see `world.terrain`).
+"""
+
+import math
+
+import numpy as np
+import zstandard
+
+from beliefnest.world.terrain import VOLUME, Lattice, Terrain
+
+__all__ = ["packed", "unpacked"]
+
+
+def packed(terrain: Terrain, level: int) -> tuple[bytes, int]:
+    """Return the bytes of a terrain, and the number of its different chunks; 0: it is one chunk.
+
+    Args:
+        terrain: The terrain; equal ones have equal bytes.
+        level: Level of compression, 1 to 22.
+    """
+    plain = terrain.canonical()
+    parts = [chunk.ravel() for chunk in plain.chunks]
+    numbers = np.concatenate(parts if plain.is_dense else [plain.rows, *parts])
+    data = zstandard.ZstdCompressor(level=level).compress(numbers.astype("<i4").tobytes())
+    return data, 0 if plain.is_dense else len(plain.chunks)
+
+
+def unpacked(data: bytes, shape: tuple[int, int, int], chunks: int) -> Terrain:
+    """Return the terrain in some bytes.
+
+    Args:
+        data: The bytes.
+        shape: Shape of its box.
+        chunks: Number of its different chunks; 0: it is one chunk.
+
+    Raises:
+        ValueError: The bytes hold no such terrain.
+    """
+    places = math.prod(Lattice(shape, is_one=False).counts)
+    size = places + chunks * VOLUME if chunks else math.prod(shape)
+    try:
+        is_whole = 0 <= chunks <= places and zstandard.frame_content_size(data) == 4 * size
+        body = zstandard.ZstdDecompressor().decompress(data) if is_whole else b""
+    except zstandard.ZstdError:
+        is_whole = False
+    if not is_whole:
+        raise ValueError(f"{len(data)} bytes with {chunks} chunks do not fill {shape}")
+    numbers = np.frombuffer(body, "<i4").astype(np.int32)
+    if not chunks:
+        return Terrain.of(numbers.reshape(shape))
+    return Terrain.of_cubes(shape, numbers[:places], numbers[places:])
