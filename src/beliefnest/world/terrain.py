@@ -116,7 +116,7 @@ class Lattice:
 
     def starts(self, numbers: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         """Return the indices (n, 3) of the first cells of some chunks of a box in chunks."""
-        return np.stack(np.unravel_index(numbers, self.counts), axis=1) * SIDE - _MARGIN
+        return np.stack(np.unravel_index(numbers, self.counts), axis=1) * SIDE - MARGIN
 
     def within(
         self, x: tuple[int, int], y: tuple[int, int], z: tuple[int, int]
