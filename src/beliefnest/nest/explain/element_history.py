@@ -146,7 +146,7 @@ def last_change(
 ) -> Entry | None:
     """Return the last entry of a timeline that changed an element in its own world."""
     path = moment.timeline.path
-    held: object = _bare(value_in(next(history.steps(moment.timeline, path, 0, 0)), path, element))
+    held: object = _bare(value_in(history.shared(moment.timeline, path, 0), path, element))
     last = None
     entries = journal.entries(moment.timeline, 0, moment.entries)
     if element.kind != "agent":

@@ -105,49 +105,60 @@ class _Chunks:
     def beginnings(self, numbers: Sequence[int]) -> Iterator[tuple[Runs, Cells]]:
         """Yield what `GridChanges.beginnings` does.
 
-        A slice of chunks with the same rows in several nodes is looked at once.
+        A slice of chunks is looked at once if it has the same rows in several nodes or places.
         """
         known: dict[tuple[bool, bytes], list[tuple[Runs, Cells]]] = {}
-        slices: dict[tuple[bool, int, bytes], tuple[Runs, Cells]] = {}
+        slices: dict[tuple[bool, int, int, bytes, bytes], tuple[Runs, Cells]] = {}
         across = self._pool.chunks[0]
+        width, height, depth = self._table.context.box.shape
+        first = self._first.reshape(across, -1)
         for number in numbers:
             rows = self._rows[number].reshape(across, -1)
             key = number == 0, rows.tobytes()
             if key not in known:
                 parts = []
                 for at in range(across):
-                    mark = number == 0, at, rows[at].tobytes()
+                    # Chunks begin one cell before the box.
+                    begin, end = max(at * SIDE - 1, 0), min(at * SIDE + SIDE - 1, width)
+                    layers = slice(begin + 1 - at * SIDE, end + 1 - at * SIDE)
+                    whole = number == 0, layers.start, layers.stop
+                    mark = (*whole, rows[at].tobytes(), first[at].tobytes())
                     if mark not in slices:
-                        slices[mark] = self._slice(at, rows[at], is_own=number == 0)
-                    parts.append(slices[mark])
-                runs, cells = zip(*parts, strict=True)
-                known[key] = [(joined(runs), np.concatenate(cells))]
+                        real = None if number == 0 else first[at]
+                        slices[mark] = self._slice(layers, rows[at], real)
+                    runs, cells = slices[mark]
+                    skipped = begin * height * depth
+                    parts.append((runs._replace(starts=runs.starts + skipped), cells + skipped))
+                all_runs, all_cells = zip(*parts, strict=True)
+                known[key] = [(joined(all_runs), np.concatenate(all_cells))]
             yield from known[key]
 
-    def _slice(self, at: int, rows: npt.NDArray[np.int32], *, is_own: bool) -> tuple[Runs, Cells]:
-        """Return the runs and the false cells of one layer of chunks along x."""
-        across = self._pool.chunks[0]
-        first = self._first.reshape(across, -1)[at]
-        if not is_own and np.array_equal(rows, first):
+    def _slice(
+        self, layers: slice, rows: npt.NDArray[np.int32], first: npt.NDArray[np.int32] | None
+    ) -> tuple[Runs, Cells]:
+        """Return the runs and the false cells of a slice of chunks, counted from its first cell.
+
+        Args:
+            layers: Layers of the chunks along x that are in the box.
+            rows: Rows of the chunks in the pool.
+            first: Those that node 0 had there at first; None: these are its own.
+        """
+        if first is not None and np.array_equal(rows, first):
             return _NO_RUNS, _NO_CELLS
-        begin, held = self._flat(at, rows)
+        held = self._flat(layers, rows)
         if not len(held):
             return _NO_RUNS, _NO_CELLS
-        if is_own:
-            return grid_runs(held, None, begin), _NO_CELLS
-        _, real = self._flat(at, first)
-        false = np.flatnonzero(_are_false(held, real)) + begin
-        return grid_runs(held, real, begin), false
+        if first is None:
+            return grid_runs(held, None), _NO_CELLS
+        real = self._flat(layers, first)
+        return grid_runs(held, real), np.flatnonzero(_are_false(held, real))
 
-    def _flat(self, at: int, rows: npt.NDArray[np.int32]) -> tuple[int, States]:
-        """Return the first cell of a layer of chunks along x, and the blocks of its cells."""
-        (width, height, depth), (_, high, deep) = self._table.context.box.shape, self._pool.chunks
+    def _flat(self, layers: slice, rows: npt.NDArray[np.int32]) -> States:
+        """Return the blocks of the cells of a slice of chunks, by their layers along x."""
+        (_, height, depth), (_, high, deep) = self._table.context.box.shape, self._pool.chunks
         cubes = self._blocks[rows].reshape(high, deep, SIDE, SIDE, SIDE)
         cells = cubes.transpose(2, 0, 3, 1, 4).reshape(SIDE, high * SIDE, deep * SIDE)
-        # Chunks begin one cell before the box.
-        begin, end = max(at * SIDE - 1, 0), min(at * SIDE + SIDE - 1, width)
-        inside = cells[begin + 1 - at * SIDE : end + 1 - at * SIDE, 1 : height + 1, 1 : depth + 1]
-        return begin * height * depth, inside.reshape(-1)
+        return cells[layers, 1 : height + 1, 1 : depth + 1].reshape(-1)
 
     def first_states(self, cells: Cells) -> States:
         """Return the blocks that node 0 had at some cells at first."""

@@ -109,22 +109,21 @@ class Runs(NamedTuple):
     states: npt.NDArray[np.int16]
 
 
-def grid_runs(
-    states: npt.NDArray[np.int16], first: npt.NDArray[np.int16] | None, begin: int = 0
-) -> Runs:
+def grid_runs(states: npt.NDArray[np.int16], first: npt.NDArray[np.int16] | None) -> Runs:
     """Return the runs of a part of a grid, without cells that have their first block.
+
+    Cells are counted from its first one.
 
     Args:
         states: The block of each cell; -1 unknown.
         first: The blocks that reality had there at first; None: all cells count.
-        begin: Number of the first cell.
     """
     apart = states if first is None else np.where(states == first, _SAME, states)
     starts = np.append(0, np.flatnonzero(apart[1:] != apart[:-1]) + 1)
     lengths = np.diff(starts, append=len(states))
     told = apart[starts] != _SAME
     starts, lengths = starts[told], lengths[told]
-    return Runs(starts + begin, lengths, states[starts])
+    return Runs(starts, lengths, states[starts])
 
 
 def joined(parts: Sequence[Runs]) -> Runs:
