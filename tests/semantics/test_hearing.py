@@ -197,3 +197,9 @@ def test_a_whisper_needs_two_agents(name, other, hint):
     with pytest.raises(bn.WorldError, match=hint):
         world.whisper(name, other, "hello")
     assert world.now == 0
+
+
+@pytest.mark.parametrize("hearing", [bn.Radius(-3), {"radius": 0}, "radius: 0", "near"])
+def test_3_a_radius_is_above_0(hearing):
+    with pytest.raises(bn.InputError, match="with BLOCKS above 0"):
+        bn.Perception(hearing=hearing)

@@ -598,9 +598,9 @@ class NodeTable:
 
     def present(self) -> npt.NDArray[np.bool_]:
         """Return by node if its owner is present in its parent node (semantics, section 5.1)."""
-        parent, agent = self._rows["parent"][: self.count], self._rows["agent"][: self.count]
-        present: npt.NDArray[np.bool_] = self._rows["current"][parent, agent]
-        present[0] = True
+        present = np.ones(self.count, dtype=np.bool_)
+        parent, agent = (self._rows[name][1 : self.count] for name in ("parent", "agent"))
+        present[1:] = self._rows["current"][parent, agent]
         return present
 
     def is_present(self, node: int) -> bool:

@@ -75,7 +75,9 @@ _SPELLED_RADIUS = re.compile(r"radius:\s*([0-9]+(?:\.[0-9]+)?)")
 
 def _hearing(value: object) -> Hearing:
     match value:
-        case "global" | "sight" | Radius():
+        case "global" | "sight":
+            return value
+        case Radius() if value.blocks > 0:
             return value
         case {"radius": int() | float() as blocks} if blocks > 0:
             return Radius(float(blocks))
@@ -83,7 +85,8 @@ def _hearing(value: object) -> Hearing:
             return Radius(float(spelled[1]))
         case _:
             raise InputError(
-                f"hearing is {value!r}; it must be 'global', 'sight' or {{'radius': BLOCKS}}"
+                f"hearing is {value!r}; it must be 'global', 'sight' or {{'radius': BLOCKS}} "
+                "with BLOCKS above 0"
             )
 
 
@@ -142,7 +145,10 @@ class Perception(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def __post_init__(self) -> None:
         distance = self.max_visible_distance
         if distance is not None and not distance > 0:
-            raise InputError(f"max_visible_distance is {distance!r}; it must be above 0, or None")
+            raise InputError(
+                f"max_visible_distance is {distance!r}; it must be above 0, or null "
+                "(None in Python) for no limit"
+            )
         if not 0 < self.field_of_view <= 360:
             raise InputError(
                 f"field_of_view is {self.field_of_view!r} degrees; it must be above 0 and up to 360"

@@ -122,13 +122,10 @@ class _Builder:
         for number, static in enumerate(file.static_blocks):
             if isinstance(static, str):
                 self.checks.block_name(("static_blocks", number), static)
-            elif static not in self._snapshot.box:
-                raise self._document.fault(
-                    ("static_blocks", number), f"{list(static)} lies outside the box"
-                )
+            else:
+                check_inside(self._document, ("static_blocks", number), static, self._snapshot.box)
         for name, place in file.places.items():
-            if place not in self._snapshot.box:
-                raise self._document.fault(("places", name), f"{list(place)} lies outside the box")
+            check_inside(self._document, ("places", name), place, self._snapshot.box)
         initial = tuple(
             self._initial_belief(n, entry) for n, entry in enumerate(file.initial_beliefs)
         )

@@ -165,6 +165,12 @@ def test_too_far_and_outside_the_field_of_view_is_too_far():
     assert look.view is View.TOO_FAR
 
 
+def test_too_far_and_behind_a_wall_is_too_far():
+    _, nest = nest_of({"a": WEST, "b": EAST}, CLOSED, max_visible_distance=5)
+    (look,) = nest["/a"].explain(agent="b").levels[0].missed.sightings
+    assert (look.view, look.blocker) == (View.TOO_FAR, None)
+
+
 def test_outside_the_field_of_view():
     _, nest = nest_of({"a": (2.5, 0, 5.5), "b": (2.5, 0, 9.5)}, OPEN, field_of_view=90)
     told = nest["/a"].explain(agent="b")

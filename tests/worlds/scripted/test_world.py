@@ -165,6 +165,27 @@ def test_impossible_fills_are_refused(fill, message):
         world_of(fills=[fill])
 
 
+@pytest.mark.parametrize(
+    ("box", "message"),
+    [
+        (((0, 0, 0), (9.5, 3, 9)), "9.5.* is no block position; give three whole numbers"),
+        (((0, 0), (9, 9)), "give three whole numbers"),
+        (((9, 0, 0), (0, 3, 9)), "give its lower corner first"),
+    ],
+)
+def test_impossible_boxes_are_refused(box, message):
+    with pytest.raises(bn.WorldError, match=message):
+        bn.ScriptedWorld(box)
+
+
+def test_a_world_needs_no_agents():
+    world = bn.ScriptedWorld(((0, 0, 0), (3, 3, 3)))
+    with bn.Nest(world) as nest:
+        world.step(2)
+        assert nest["/"].state.agents == {}
+        nest.view()
+
+
 def test_a_snapshot_is_not_changed_by_what_follows():
     world = world_of()
     before = facts(world)

@@ -35,8 +35,8 @@ def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position)
     name = _block_name(reading, box, place)
     x, y, z = place
     centre = (x + 0.5, y + 0.5, z + 0.5)
-    view = _view(reading.geometry, sees)
-    look = Sighting(name or "block", place, view, math.dist(_eye(here), centre))
+    away = math.dist(_eye(here), centre)
+    look = Sighting(name or "block", place, _view(reading.geometry, sees, away), away)
     # The block that is looked at does not block its own rays.
     return _with_blocker(look, reading, box, _eye(here), [centre], place)
 
@@ -54,25 +54,24 @@ def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> S
     x, y, z = seen.position
     centre = (x, y + BODY_CENTRE_HEIGHT, z)
     samples = [centre, *((x, y + height, z) for height in AGENT_SAMPLE_HEIGHTS)]
-    view = _view(reading.geometry, sees)
-    look = Sighting(other, seen.position, view, math.dist(_eye(here), centre))
+    away = math.dist(_eye(here), centre)
+    look = Sighting(other, seen.position, _view(reading.geometry, sees, away), away)
     return _with_blocker(look, reading, box, _eye(here), samples)
 
 
-def _view(geometry: SightLines, sees: _Sees) -> View:
-    """Return the result of a look, found by lifting limits one after the other.
+def _view(geometry: SightLines, sees: _Sees, away: float) -> View:
+    """Return the result of a look at something `away` blocks away.
 
-    The look is `OUTSIDE_VIEW` if it succeeds in all directions, `TOO_FAR` if it succeeds without a
-    limit of distance as well, and `BLOCKED` if it fails even then.
+    What is too far away is `TOO_FAR`, whatever is between. Otherwise the look is `OUTSIDE_VIEW` if
+    it succeeds in all directions, and `BLOCKED` if it fails even then.
     """
     if sees(geometry):
         return View.SEEN
-    all_round = replace(geometry.sight, field_of_view=360.0)
-    if sees(replace(geometry, sight=all_round)):
-        return View.OUTSIDE_VIEW
-    if sees(replace(geometry, sight=replace(all_round, max_visible_distance=None))):
+    far = geometry.sight.max_visible_distance
+    if far is not None and away > far:
         return View.TOO_FAR
-    return View.BLOCKED
+    all_round = replace(geometry.sight, field_of_view=360.0)
+    return View.OUTSIDE_VIEW if sees(replace(geometry, sight=all_round)) else View.BLOCKED
 
 
 def _with_blocker(

@@ -102,12 +102,13 @@ class Pending:
 
 def checked_box(box: tuple[Position, Position]) -> Box:
     """Return the box between two corners; WorldError if they are invalid."""
-    low, high = (tuple(int(value) for value in corner) for corner in box)
-    if len(low) != 3 or len(high) != 3 or any(a > b for a, b in zip(low, high, strict=True)):
-        raise WorldError(
-            f"{box} is no box; give its lower and its upper corner, three numbers each"
-        )
-    made = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    try:
+        low, high = map(whole_position, box)
+    except WorldError as wrong:
+        raise WorldError(f"{box} is no box: {wrong}") from None
+    if any(a > b for a, b in zip(low, high, strict=True)):
+        raise WorldError(f"{box} is no box; give its lower corner first")
+    made = Box(low, high)
     if fault := box_fault(made):
         raise WorldError(fault)
     return made
