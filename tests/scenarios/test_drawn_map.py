@@ -10,6 +10,7 @@ from ruamel.yaml import YAML
 
 import beliefnest as bn
 from beliefnest.errors import ScenarioError
+from beliefnest.scenarios import drawn_map
 from beliefnest.scenarios.json_schema import schema
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import read_document
@@ -232,3 +233,27 @@ def test_a_wrong_map_names_line_row_and_column(tmp_path, old, new, told):
         Scenario.load(file_of(tmp_path, DRAWN.replace(old, new, 1)))
     assert told in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_drawn_map_may_be_as_high_as_a_world(tmp_path):
+    rows = "\n".join("    #" + "." * 299 for _ in range(299))
+    file = tmp_path / "high.yaml"
+    file.write_text(
+        "name: high\nbox: [[-400, 0, -400], [700, 290, 700]]\nmap:\n  origin: [0, 1, 0]\n"
+        "  legend: {'#': bricks, a: {agent: ann}}\n  height: 100\n"
+        f"  floors: |\n    a{'.' * 299}\n{rows}\n"
+    )
+    blocks = Scenario.load(str(file)).setting.snapshot.blocks
+    bricks = Registry.load().state_id("bricks")
+    assert blocks.count([bricks]) == 100 * 299
+    assert [blocks[400, y, 699] for y in (0, 1, 100, 101)] == [0, bricks, bricks, 0]
+
+
+def test_more_characters_than_can_be_resolved_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(drawn_map, "_MOST_DRAWN", 5)
+    file = tmp_path / "wide.yaml"
+    file.write_text("name: wide\nmap:\n  legend: {a: {agent: ann}}\n  floors: |\n    a.....\n")
+    with pytest.raises(
+        ScenarioError, match=r"map.floors: has \d characters; at most 5 are .* draw"
+    ):
+        Scenario.load(str(file))

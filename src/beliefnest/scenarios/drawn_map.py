@@ -43,6 +43,8 @@ _NEEDS: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(_PERSON, ("agent",)),
 }
 """Keys of the legend that only say more about one of other keys."""
+_MOST_DRAWN = 4_000_000
+"""Most characters of a map; each is resolved on its own, in 300 bytes."""
 _THINGS = (*_SOLID, "agent", "place", "floor")
 
 
@@ -193,6 +195,13 @@ class _Drawing:
                     written.append((place, child, _text(entry), self._map.height))
         if not written:
             raise self._document.fault(path, "is empty; draw at least one floor")
+        count = sum(len(text) for _, _, text, _ in written)
+        if count > _MOST_DRAWN:
+            raise self._document.fault(
+                path,
+                f"has {count:,} characters; at most {_MOST_DRAWN:,} are possible: draw a smaller "
+                "part, and give the rest as `blocks`",
+            )
         found: list[_Floor] = []
         bottom = self._map.origin[1]
         for place, child, text, height in written:
