@@ -244,9 +244,9 @@ def test_a_drawn_map_may_be_as_high_as_a_world(tmp_path):
         f"  floors: |\n    a{'.' * 299}\n{rows}\n"
     )
     blocks = Scenario.load(str(file)).setting.snapshot.blocks
-    bricks = Registry.load().state_id("bricks")
+    air, stone, bricks = map(Registry.load().state_id, ("air", "stone", "bricks"))
     assert blocks.count([bricks]) == 100 * 299
-    assert [blocks[400, y, 699] for y in (0, 1, 100, 101)] == [0, bricks, bricks, 0]
+    assert [blocks[400, y, 699] for y in (0, 1, 100, 101)] == [stone, bricks, bricks, air]
 
 
 def test_more_characters_than_can_be_resolved_are_refused(tmp_path, monkeypatch):

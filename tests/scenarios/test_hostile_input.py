@@ -8,6 +8,7 @@ import beliefnest as bn
 from beliefnest.errors import BeliefNestError, InputError, PathError, ScenarioError, WorldError
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.scenarios.yaml_reading import LONGEST
 from beliefnest.world.frames import Snapshot
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -110,7 +111,7 @@ def test_what_cannot_be_is_refused_with_file_and_line(tmp_path, text, line, told
 
 def test_a_file_can_be_too_long(tmp_path):
     with pytest.raises(ScenarioError, match="longer than"):
-        load(tmp_path, BASE + "#" * 5_000_000)
+        load(tmp_path, BASE + "#" * LONGEST)
 
 
 def test_as_much_as_fits_is_taken(tmp_path):
