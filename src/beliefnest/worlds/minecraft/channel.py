@@ -21,7 +21,7 @@ from beliefnest.worlds.process_limits import ProcessLimits
 
 __all__ = ["PROTOCOL", "Channel"]
 
-PROTOCOL = 5
+PROTOCOL = 6
 """Version of the channel's messages; both sides state it."""
 
 _HEADER = struct.Struct(">I")

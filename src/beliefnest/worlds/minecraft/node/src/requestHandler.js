@@ -11,7 +11,7 @@ const { scopeOf } = require('./scope')
 const { BadRequest } = require('./channel/errors')
 const versions = require('./versions')
 
-const PROTOCOL = 5
+const PROTOCOL = 6
 
 class RequestHandler {
   /**

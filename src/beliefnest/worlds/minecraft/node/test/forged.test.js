@@ -26,7 +26,7 @@ describe('forged', () => {
 
   before(async () => {
     handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
-    await perform({ op: 'hello', protocol: 5, seed: 0, minecraft: '1.20.4' })
+    await perform({ op: 'hello', protocol: 6, seed: 0, minecraft: '1.20.4' })
   })
   beforeEach(() => { frames.length = 0 })
 

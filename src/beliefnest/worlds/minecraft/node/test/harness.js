@@ -40,7 +40,7 @@ class Node {
   }
 
   hello (seed = 0) {
-    return this.request('hello', { protocol: 5, seed, minecraft: '1.20.4' })
+    return this.request('hello', { protocol: 6, seed, minecraft: '1.20.4' })
   }
 
   /** End the process as the end of Python would. */

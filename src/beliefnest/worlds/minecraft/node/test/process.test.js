@@ -33,7 +33,7 @@ describe('the process', () => {
     const refused = message => ({ kind: 'bad_request', message })
     await assert.rejects(node.request('step', { region: 'a', ticks: 1 }), refused(/hello/))
     await assert.rejects(node.request('hello', { protocol: 9, seed: 0, minecraft: '1.20.4' }), refused(/protocol 9/))
-    await assert.rejects(node.request('hello', { protocol: 5, seed: 0, minecraft: '1.8' }), refused(/1\.8/))
+    await assert.rejects(node.request('hello', { protocol: 6, seed: 0, minecraft: '1.8' }), refused(/1\.8/))
     await node.hello()
     await assert.rejects(node.request('dance'), refused(/dance/))
     await node.close()

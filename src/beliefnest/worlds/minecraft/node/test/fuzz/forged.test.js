@@ -83,7 +83,7 @@ describe('forged at random', () => {
 
   before(async () => {
     handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
-    await perform({ op: 'hello', protocol: 5, seed: 0, minecraft: '1.20.4' })
+    await perform({ op: 'hello', protocol: 6, seed: 0, minecraft: '1.20.4' })
   })
 
   const perform = request => handler.perform(request)

@@ -51,7 +51,7 @@ describe('random programs', () => {
 
   before(async () => {
     handler = new RequestHandler(clock, ({ frame }) => { if (frame) frames.push(frame) })
-    await perform({ op: 'hello', protocol: 5, seed: 0, minecraft: '1.20.4' })
+    await perform({ op: 'hello', protocol: 6, seed: 0, minecraft: '1.20.4' })
     serv = handler.regions.serv
     worth = worthTable(serv.registry)
     await create('bystanders', 'bystanders', { sally: START.sally })

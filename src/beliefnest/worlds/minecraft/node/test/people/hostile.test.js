@@ -19,7 +19,7 @@ const clients = []
 
 before(async () => {
   node = new Node(HOSTING)
-  await node.request('hello', { protocol: 5, seed: 0, minecraft: '1.20.4', listen: { host: '127.0.0.1', port: 0 } })
+  await node.request('hello', { protocol: 6, seed: 0, minecraft: '1.20.4', listen: { host: '127.0.0.1', port: 0 } })
   ;({ port } = await node.request('people', { invited: ['anne'] }))
   await node.request('create_region', region('/', {
     blocks: floor([[...CHEST, CHEST_STATE]]), containers: [[...CHEST, { diamond: 3 }]], agents: { anne: agent(START), sally: agent([0.5, -51, 0.5]) }

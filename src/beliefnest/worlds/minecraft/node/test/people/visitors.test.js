@@ -21,7 +21,7 @@ const clients = []
 
 before(async () => {
   node = new Node(HOSTING)
-  await node.request('hello', { protocol: 5, seed: 0, minecraft: versions.minecraft, listen: { host: '127.0.0.1', port: 0 } })
+  await node.request('hello', { protocol: 6, seed: 0, minecraft: versions.minecraft, listen: { host: '127.0.0.1', port: 0 } })
   ;({ port } = await node.request('people', { invited: ['anne'] }))
   await node.request('create_region', region('/', { agents: { anne: agent([-4.5, -51, 2.5]), sally: agent([0.5, -51, 0.5]) } }))
   await node.request('exhibit', {

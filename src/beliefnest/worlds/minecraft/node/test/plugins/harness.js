@@ -22,7 +22,7 @@ const LIMIT = 2000
 async function inWorld ({ agents = { sally: agent([0.5, FLOOR, 0.5]) }, blocks = [], containers = [], box = BOX }, body) {
   const frames = []
   const handler = new RequestHandler(clock, ({ frame }) => frames.push(frame))
-  await handler.perform({ op: 'hello', protocol: 5, seed: 0, minecraft: '1.20.4' })
+  await handler.perform({ op: 'hello', protocol: 6, seed: 0, minecraft: '1.20.4' })
   const { regions } = handler
   const { serv } = regions
   const states = blocks.map(([x, y, z, name, properties]) => [x, y, z, serv.blocks.state(name, properties)])
