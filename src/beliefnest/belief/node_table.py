@@ -281,15 +281,20 @@ class NodeTable:
         own, held = grids[node], grids[self.parent(node)]
         differs = np.flatnonzero(held != own)
         shapes = self.context.space.codes
+        own, held = own[differs], held[differs]
         if self.pool is not None:
-            own, held = self.pool.blocks[own[differs]], self.pool.blocks[held[differs]]
+            # A pair of chunks is compared once, wherever it is.
+            size = len(self.pool.blocks)
+            pairs, times = np.unique(own.astype(np.int64) * size + held, return_counts=True)
+            own, held = self.pool.blocks[pairs // size], self.pool.blocks[pairs % size]
             is_pending = np.ones(len(differs), dtype=np.bool_)
+            unlike = np.count_nonzero(shapes[own] != shapes[held], axis=1) @ times
         else:
-            own, held = own[differs], held[differs]
             is_pending = held != UNKNOWN
+            unlike = np.count_nonzero(shapes[own] != shapes[held])
         pending = np.zeros(self._rows["pending"].shape[1] * 64, dtype=np.bool_)
         pending[differs] = is_pending
-        self._rows["unlike"][node] = np.count_nonzero(shapes[own] != shapes[held])
+        self._rows["unlike"][node] = unlike
         self._rows["pending"][node] = np.packbits(pending, bitorder="little").view("<u8")
         self._rows["fresh"][node] |= is_pending.any()
 

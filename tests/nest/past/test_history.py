@@ -1,6 +1,13 @@
 """Nodes that join a head later: folded together, they are as if each was asked for alone."""
 
+from typing import Any
+
+import pytest
+
 import beliefnest as bn
+from beliefnest.belief.forest import Forest
+from beliefnest.nest.past import history
+from beliefnest.nest.past.history import History
 from beliefnest.world.paths import path_text
 
 AGENTS = ("ann", "bob", "carl")
@@ -38,3 +45,41 @@ def test_nodes_of_several_imaginations_are_folded_as_each_alone() -> None:
             assert {n: a.position for n, a in view.agents.items()} == {
                 n: a.position for n, a in wanted.agents.items()
             }
+
+
+def test_beliefs_of_the_past_asked_one_by_one_share_few_forests(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    names = [f"a{number:02}" for number in range(16)]
+    world = bn.ScriptedWorld(
+        box=((0, 0, 0), (20, 3, 20)),
+        agents={name: (i + 0.5, 1, 1.5) for i, name in enumerate(names)},
+    )
+    nest = bn.Nest(world)
+    recording = nest._recording
+    for tick in range(12):
+        with world.tick():
+            world.place_agent("a03", (3.5, 1, tick + 2.5))
+    begun = []
+    whole = history.initial_forest
+
+    def counted(*args: Any) -> Forest:
+        begun.append(whole(*args))
+        return begun[-1]
+
+    monkeypatch.setattr(history, "initial_forest", counted)
+    states = {}
+    for tick in (3, 6, 9):
+        past = nest.at(tick)
+        states[tick] = [past[f"/{name}"].state for name in names]
+    # Groups double; later ticks go on with what is folded.
+    assert len(begun) <= 6
+    kept = recording.history._pasts
+    assert len(kept) <= 4
+    assert len({id(state._forest) for each in states.values() for state in each}) == 1
+    for tick, found in states.items():
+        for name, state in zip(names, found, strict=True):
+            alone = History(recording.journal, recording.setting)
+            key = recording.controller(())
+            moment = recording.moment((name,), tick)
+            assert state == alone.state(key, (name,), moment.entries, tick)

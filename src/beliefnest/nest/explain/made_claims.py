@@ -7,7 +7,6 @@ import numpy as np
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
-from beliefnest.belief.forest import Forest
 from beliefnest.belief.holdings import Holdings
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
@@ -60,6 +59,7 @@ class MadeClaim:
         self.made_in = path_text(key.path)
         self._recording, self._key, self._until = recording, key, until
         self._entry, self._row, self._index = place
+        self._verdicts: dict[BeliefPath, Verdict] = {}
 
     def __repr__(self) -> str:
         to = "" if self.addressee is None else f" to {self.addressee}"
@@ -155,14 +155,12 @@ class MadeClaim:
                 if told is None or self._index >= len(told.verdicts):
                     return Verdict.NOT_HEARD, None
                 return Verdict(told.verdicts[self._index]), told.speaker
-            forest = self._after(names)
-            return forest.verdicts[self._row, self._index][forest.node(names)], self.speaker
-
-    def _after(self, path: BeliefPath) -> Forest:
-        """Return a forest with a node, just after the claim."""
-        steps = self._recording.history.steps(self._key, path, self._entry, self._entry + 1)
-        *_, forest = steps
-        return forest
+            if names not in self._verdicts:
+                paths = self._recording.history.company(self._key, names, self._verdicts)
+                forest = self._recording.history.passed(self._key, paths, self._entry)
+                found = forest.verdicts[self._row, self._index]
+                self._verdicts.update((each, found[forest.node(each)]) for each in paths)
+            return self._verdicts[names], self.speaker
 
     def _read(self, path: BeliefPath) -> Holdings:
         """Return the holdings of a node now, which tell the signs that its owner has read."""
@@ -181,10 +179,10 @@ class MadeClaim:
         with self._recording.turn:
             if self.sign is not None:
                 return self._written in self._read(path).read
-            forest = self._after(path)
-            first = forest.columns.events_until(self._entry)
-            count = forest.count_of_events
-            heard = forest.perceived_events.of(forest.node(path), count)
+            recording = self._recording
+            forest = recording.history.shared(self._key, path, self._entry + 1)
+            first = recording.journal.events_until(self._key, self._entry)
+            heard = forest.perceived_events.of(forest.node(path), forest.count_of_events)
             return bool(np.asarray(heard)[first + self._row])
 
     def _is_contradicted(self, path: BeliefPath) -> bool:

@@ -7,7 +7,7 @@ The name of a checkpoint carries a digest of the setting and of the source files
 setting or another version looks under another name and never finds it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
@@ -79,7 +79,7 @@ class Checkpoints:
         key: TimelineKey,
         position: int,
         events: EventHistory,
-        path: BeliefPath | None = None,
+        paths: Sequence[BeliefPath] | None = None,
         after: int = 0,
     ) -> Forest | None:
         """Return the last saved forest of a timeline that helps to get to a position.
@@ -88,8 +88,8 @@ class Checkpoints:
             key: The timeline.
             position: Number of entries that are to be folded; the checkpoint lies at or before it.
             events: Events of the timeline.
-            path: Node that the forest must hold; only it and its ancestors are restored. None: all
-                saved nodes are.
+            paths: Node that the forest must hold, then nodes that it should hold; only these and
+                their ancestors are restored. None: all saved nodes are.
             after: Position of a forest that the caller has; earlier checkpoints do not help.
 
         Returns:
@@ -98,14 +98,14 @@ class Checkpoints:
         if position - after <= self._pace.lag:
             return None
         found = self._journal.nearest_checkpoint(key, self._name(beliefs=True), position)
-        if path == key.path or (path is None and found is None):
+        if found is None if paths is None else paths[0] == key.path:
             world = self._journal.nearest_checkpoint(key, self._name(beliefs=False), position)
             if found is None or (world is not None and world[0] > found[0]):
                 found = world
         if found is None or found[0] <= after:
             return None
-        forest = restored(self._context, events, found[1], path)
-        if forest is not None and path is None:
+        forest = restored(self._context, events, found[1], paths)
+        if forest is not None and paths is None:
             self._note(key, forest, found[1])
         return forest
 

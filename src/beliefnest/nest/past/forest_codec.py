@@ -1,5 +1,7 @@
 """Codec of forests: their state as bytes, for checkpoints."""
 
+from collections.abc import Sequence
+
 import msgspec
 import zstandard
 
@@ -32,7 +34,10 @@ def saved(forest: Forest) -> bytes:
 
 
 def restored(
-    context: BeliefContext, events: EventHistory, data: bytes, path: BeliefPath | None = None
+    context: BeliefContext,
+    events: EventHistory,
+    data: bytes,
+    paths: Sequence[BeliefPath] | None = None,
 ) -> Forest | None:
     """Return a forest from the bytes of `saved`.
 
@@ -40,18 +45,22 @@ def restored(
         context: The part that all nodes share.
         events: Events of the timeline.
         data: The bytes.
-        path: Node to restore, with its ancestors; None: all nodes.
+        paths: Nodes to restore, with their ancestors, as far as there are any; None: all nodes.
 
     Returns:
-        The forest. None if it has no such node.
+        The forest. None if it lacks the first of `paths`.
 
     Raises:
         StoreError: The bytes are not those of a forest.
     """
     body = codec.decode(data, _Saved)
-    nodes = [node for node in body.nodes if path is None or path[: len(node[0])] == node[0]]
-    if path is not None and all(other != path for other, _ in nodes):
-        return None
+    nodes = body.nodes
+    if paths is not None:
+        held = {path for path, _ in nodes}
+        if paths[0] not in held:
+            return None
+        wanted = {path[:depth] for path in paths if path in held for depth in range(len(path) + 1)}
+        nodes = [node for node in nodes if node[0] in wanted]
     states = (codec.decode(_unpacked(packed), NodeState) for _, packed in nodes)
     return Forest.restored(context, events, body.state, states)
 

@@ -8,10 +8,10 @@ the timeline. All of these are caches: an answer does not depend on the forest t
 """
 
 import functools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
-from itertools import takewhile
+from itertools import accumulate, islice, takewhile
 
 from beliefnest.belief.columns import Columns, cell_of
 from beliefnest.belief.context import BeliefContext
@@ -19,6 +19,7 @@ from beliefnest.belief.first_perceptions import FirstPerceptions
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis, PerceivedEvent
 from beliefnest.belief.initial import Beginning, forked_forest, initial_forest
+from beliefnest.belief.node_memory import most_nodes
 from beliefnest.nest.past.checkpoints import Checkpoints, Pace
 from beliefnest.nest.past.claimed_blocks import ClaimedBlocks
 from beliefnest.nest.past.event_log import EventLog
@@ -35,6 +36,9 @@ from beliefnest.world.values import EventKind, Sign
 __all__ = ["History", "context_of"]
 
 _PASTS = 4
+"""Number of forests of the past that are kept."""
+_PAST_BYTES = 64_000_000
+"""Bytes that they may take together, unless one alone takes more."""
 _STRETCHES = 8
 _CALLS = 8
 """Number of forks, each the base of the next, that are folded by calls within calls."""
@@ -164,13 +168,74 @@ class History:
         self._keep_up(key)
         if position == self._journal.info(key).entries:
             return self._head(key, path, position)
+        beside = self._beside(key, position)
+        paths = self.company(key, path, () if beside is None else beside.paths)
         forest = self._past(key, path, position)
         after = 0 if forest is None else forest.position
-        saved = self._saved(key, position, path, after)
-        forest = saved or forest or self._begun(key, path)
-        pasts = [past for past in self._pasts if past[1] is not forest]
-        self._pasts = [(key, forest), *pasts][:_PASTS]
+        saved = self._saved(key, position, paths, after)
+        forest = saved or forest or self._begun_together(key, paths)
+        self._keep_past(key, forest)
         self.advance(key, forest, position)
+        if beside is None or beside is forest or beside.bytes + forest.bytes > _PAST_BYTES:
+            return forest
+        # One forest of all nodes is folded further at once; many would push each other out.
+        beside.adopt(forest, [folded for folded in forest.paths if folded not in beside])
+        self._pasts = [past for past in self._pasts if past[1] is not forest]
+        self._keep_past(key, beside)
+        return beside
+
+    def _keep_past(self, key: TimelineKey, forest: Forest) -> None:
+        """Keep a forest of the past as the one used last, and drop others to stay within bounds."""
+        pasts = [past for past in self._pasts if past[1] is not forest]
+        sizes = accumulate(past[1].bytes for past in pasts)
+        within = sum(1 for size in sizes if size + forest.bytes <= _PAST_BYTES)
+        self._pasts = [(key, forest), *pasts[:within]][:_PASTS]
+
+    def _beside(self, key: TimelineKey, position: int) -> Forest | None:
+        """Return the kept forest with beliefs that is at a position of a timeline."""
+        at_hand = (f for other, f in self._pasts if other == key and f.position == position)
+        return next((forest for forest in at_hand if forest.has_beliefs), None)
+
+    def _is_far(self, key: TimelineKey) -> bool:
+        """Return True if more forks lead to a timeline than `walk` may follow by calls in calls."""
+        return len(list(islice(self._bases(self._journal.info(key).base), _CALLS))) == _CALLS
+
+    def company(
+        self, key: TimelineKey, path: BeliefPath, held: Container[BeliefPath]
+    ) -> Sequence[BeliefPath]:
+        """Return a node, and those next to it that a caller will probably ask for, too.
+
+        A caller that asks for several beliefs of an owner one after the other goes on with the next
+        agents. To fold them together costs less than one by one. There are as many as were asked
+        for already, so that at most half of all nodes are folded in vain.
+
+        Args:
+            key: The timeline.
+            path: The node.
+            held: Paths that were asked for at this moment of the timeline.
+        """
+        if path == key.path or path in held or self._is_far(key):
+            return [path]
+        agents = self.context.agents
+        first = agents.index(path[-1])
+        order = (*agents[first + 1 :], *agents[:first])
+        others = [(*path[:-1], name) for name in order if path[-2:-1] != (name,)]
+        missing = [other for other in others if other not in held]
+        most, count = most_nodes(self.context), len(others) - len(missing)
+        if most is not None and 4 * (len(path) + count) > most:
+            return [path]
+        return [path, *missing[:count]]
+
+    def passed(self, key: TimelineKey, paths: Sequence[BeliefPath], entry: int) -> Forest:
+        """Return a forest with some nodes that has just folded an entry of a timeline.
+
+        It belongs to the caller, and has the verdicts on the claims of this entry.
+        """
+        self._keep_up(key)
+        forest = self._saved(key, entry, paths)
+        if forest is None or not all(path in forest for path in paths):
+            forest = self._begun_together(key, paths)
+        self.advance(key, forest, entry + 1)
         return forest
 
     def steps(
@@ -228,7 +293,7 @@ class History:
             forest.position == position and all(path in forest for path in paths)
             for forest in at_hand
         ):
-            self._pasts = [(key, self._together(key, paths, position)), *self._pasts][:_PASTS]
+            self._keep_past(key, self._together(key, paths, position))
 
     def _together(self, key: TimelineKey, paths: Sequence[BeliefPath], position: int) -> Forest:
         """Return a new forest of several nodes and their ancestors, after some entries."""
@@ -272,7 +337,7 @@ class History:
 
     def _fold_into(self, key: TimelineKey, head: Forest, missing: Sequence[BeliefPath]) -> None:
         """Add several nodes to a head at once, unless a checkpoint holds them."""
-        if len(missing) > 1 and self._saved(key, head.position, missing[-1]) is None:
+        if len(missing) > 1 and self._saved(key, head.position, missing[-1:]) is None:
             folded = self.walk(key, missing)
             self.advance(key, folded, head.position)
             for path in missing:
@@ -385,8 +450,28 @@ class History:
             # Checkpoint long folds so that later queries of the past are cheap.
             self._checkpoints.keep(key, head)
         if path not in head:
-            _adopt(head, self._folded(key, path, count), key.path, path)
+            paths = self.company(key, path, head.paths)
+            _adopt(head, self._ahead(key, paths, count), key.path, path)
         return head
+
+    def _ahead(self, key: TimelineKey, paths: Sequence[BeliefPath], count: int) -> Forest:
+        """Return a forest at the head of a timeline with a node that its head lacks.
+
+        The head takes over this node alone. The others wait among the forests of the past.
+
+        Args:
+            key: The timeline.
+            paths: The node, then those that will probably be asked for.
+            count: Number of entries of the timeline.
+        """
+        if len(paths) == 1:
+            return self._folded(key, paths[0], count)
+        ahead = self._beside(key, count)
+        if ahead is None or paths[0] not in ahead:
+            ahead = self._saved(key, count, paths) or self._begun_together(key, paths)
+            self.advance(key, ahead, count)
+            self._keep_past(key, ahead)
+        return ahead
 
     def _folded(
         self, key: TimelineKey, path: BeliefPath, position: int, extra: Sequence[int] = ()
@@ -395,21 +480,29 @@ class History:
         self._keep_up(key)
         forest = None
         if not extra:
-            forest = self._saved(key, position, path)
+            forest = self._saved(key, position, [path])
         forest = forest or self._begun(key, path, extra)
         self.advance(key, forest, position)
         return forest
 
     def _saved(
-        self, key: TimelineKey, position: int, path: BeliefPath | None = None, after: int = 0
+        self,
+        key: TimelineKey,
+        position: int,
+        paths: Sequence[BeliefPath] | None = None,
+        after: int = 0,
     ) -> Forest | None:
         """Return the forest of the last usable checkpoint; see `Checkpoints.before`.
 
         A checkpoint is of no use if a cell that claims are about was not tracked in it from the
         beginning.
         """
-        found = self._checkpoints.before(key, position, self._log(key), path, after)
+        found = self._checkpoints.before(key, position, self._log(key), paths, after)
         return found if found is None or self._claimed.cells <= found.since else None
+
+    def _begun_together(self, key: TimelineKey, paths: Sequence[BeliefPath]) -> Forest:
+        """Return a forest of nodes and their ancestors, at a timeline's beginning."""
+        return self._begun(key, paths[0]) if len(paths) == 1 else self.walk(key, paths)
 
     def _begun(self, key: TimelineKey, path: BeliefPath, extra: Sequence[int] = ()) -> Forest:
         """Return a forest of a node and its ancestors, at a timeline's beginning."""
