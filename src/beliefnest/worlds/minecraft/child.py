@@ -21,6 +21,12 @@ _STDERR_BYTES = 1 << 16
 _GRACE_SECONDS = 2.0
 _MEGABYTE = 1 << 20
 
+_HEAP_FULL = "JavaScript heap out of memory"
+_HEAP_ADVICE = (
+    f"{_HEAP_FULL}. Make the box smaller, or allow more with "
+    "`limits=bn.ProcessLimits(heap=MEGABYTES)`"
+)
+
 # With the caller's environment the process would know its keys and obey NODE_OPTIONS.
 _ENVIRONMENT = {"TZ": "UTC"}
 
@@ -118,12 +124,18 @@ class Child(Owned):
             self._lifeline = None
 
     def obituary(self) -> tuple[str, str]:
-        """Return how an ended process ended, and its last lines of output, if any."""
+        """Return how an ended process ended, and its last lines of output, if any.
+
+        Advice takes the place of the stack trace of a process that ran out of memory.
+        """
         status = self._process.returncode
         how = f"with status {status}" if status >= 0 else f"by signal {-status} ({_name(-status)})"
         self._stderr.seek(0, os.SEEK_END)
         self._stderr.seek(max(self._stderr.tell() - _STDERR_BYTES, 0))
-        lines = self._stderr.read().decode(errors="replace").strip().splitlines()
+        text = self._stderr.read().decode(errors="replace").strip()
+        if _HEAP_FULL in text:
+            return how, _HEAP_ADVICE
+        lines = text.splitlines()
         return how, "\n".join(lines[-_STDERR_LINES:])
 
 

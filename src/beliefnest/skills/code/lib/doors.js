@@ -1,7 +1,8 @@
 'use strict'
 /**
- * Walking through doors and gates, which the pathfinder treats as walls. When the pathfinder finds no path, this
- * module plans a path through doors before the bot moves. It uses iron doors only where they are open.
+ * Walking through doors and gates, which the pathfinder treats as walls. When the pathfinder finds no path, or
+ * none in a number of nodes, this module plans a path through doors before the bot moves. It uses iron doors only where
+ * they are open.
  */
 const { answered } = require('./answers')
 const { stepUntil } = require('./stepping')
@@ -29,6 +30,9 @@ function doorsBy (bot, target, { openDoors }) {
     matching: block => passable(block) && block.getProperties().half !== 'upper', maxDistance: FAR, count: MOST
   }).sort((a, b) => length(a) - length(b) || a.x - b.x || a.z - b.z)
 }
+
+/** Return true if the bot knows doors that it may walk through. */
+const knowsDoors = (bot, target, doors) => doorsBy(bot, target, doors).length > 0
 
 async function stepThrough (context, far, near) {
   const { bot } = context
@@ -138,4 +142,4 @@ async function passDoors (context, goal, target, tried, doors) {
   return legs !== null
 }
 
-module.exports = { passDoors }
+module.exports = { knowsDoors, passDoors }

@@ -2,7 +2,7 @@
 /** Walking. Every walk ends at its goal, or in an error that says how far away the bot is. */
 const { until } = require('./waiting')
 const { show } = require('./arguments')
-const { passDoors } = require('./doors')
+const { knowsDoors, passDoors } = require('./doors')
 const { EYE_HEIGHT, hindranceOf, sees, shapesOf } = require('./sight')
 const { stepUntil } = require('./stepping')
 
@@ -13,6 +13,8 @@ const MIDDLE = 0.15
 const STEP_TICKS = 40
 /** Number of times that the pathfinder may get stuck at one place before its path is given up. */
 const MOST_STUCK = 2
+/** Number of nodes after which a search is broken off if the bot knows doors: they cost the same in a box of any size. */
+const MOST_NODES = 10_000
 
 const ANY_DOOR = { openDoors: true, closeDoors: false }
 
@@ -37,19 +39,26 @@ async function settle (context) {
 
 /**
  * Search once for a path and walk along it.
+ * @param {object} context of the skill
+ * @param {object} goal goal of the pathfinder
+ * @param {() => boolean} breaksOff asked once, after MOST_NODES nodes of a search; true to break the search off
  * @returns {Promise<Error | null>} the reason why the walk ended early; null if it did not
  */
-async function attempt (context, goal) {
+async function attempt (context, goal, breaksOff) {
   const { pathfinder } = context.bot
-  const stuck = watchStuck(context, () => pathfinder.setGoal(null))
+  const giveUp = () => pathfinder.setGoal(null)
+  const stuck = watchStuck(context, giveUp)
+  const search = watchSearch(context, breaksOff, giveUp)
   try {
     await pathfinder.goto(goal)
     return null
   } catch (error) {
     if (!(error.name in REASONS)) throw error
+    if (search.isBrokenOff()) return Object.assign(noPath(), { isBrokenOff: true })
     return stuck.isStuck() ? Object.assign(noPath(), { isStuck: true }) : error
   } finally {
     stuck.end()
+    search.end()
     await settle(context)
   }
 }
@@ -67,8 +76,24 @@ function watchStuck (context, giveUp) {
   return { end, isStuck: () => times >= MOST_STUCK }
 }
 
+/** Call a function when a search has taken MOST_NODES nodes and `breaksOff()` is true. */
+function watchSearch (context, breaksOff, giveUp) {
+  let [isLong, isBrokenOff] = [false, false]
+  const ends = [
+    context.listen('path_update', ({ status, visitedNodes }) => {
+      if (isLong || status !== 'partial' || visitedNodes <= MOST_NODES) return
+      isLong = true
+      isBrokenOff = breaksOff()
+    }),
+    // Not earlier: the pathfinder takes up the path of an update after its listeners.
+    context.listen('physicsTick', () => { if (isBrokenOff && context.bot.pathfinder.goal !== null) giveUp() })
+  ]
+  return { end: () => ends.forEach(end => end()), isBrokenOff: () => isBrokenOff }
+}
+
 /**
- * Walk to a goal, through doors if needed; fail if the bot does not arrive.
+ * Walk to a goal, through doors if needed; fail if the bot does not arrive. A search that takes too long is broken off
+ * for a way through doors, and made in full only if there is none.
  * @param {object} context of the skill
  * @param {object} goal goal of the pathfinder
  * @param {() => boolean} arrived true if the bot's true position meets the goal
@@ -81,9 +106,10 @@ async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
   const { bot, fail } = context
   const tried = new Set()
   const centred = new Set()
+  let isFull = false
   let fault = null
   while (!arrived()) {
-    fault = await attempt(context, goal)
+    fault = await attempt(context, goal, () => !isFull && knowsDoors(bot, target, doors))
     if (arrived()) return
     const here = `${bot.entity.position.floored()}`
     if (fault?.isStuck && !centred.has(here)) {
@@ -93,7 +119,9 @@ async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
       continue
     }
     const walled = fault === null || fault.name === 'NoPath'
-    if (!walled || !await passDoors(context, goal, target, tried, doors)) break
+    const hasPassed = walled && await passDoors(context, goal, target, tried, doors)
+    if (!hasPassed && !fault?.isBrokenOff) break
+    isFull = !hasPassed
   }
   if (arrived()) return
   const near = bot.entity.position.distanceTo(target)

@@ -11,7 +11,8 @@ const { CHUNK } = require('../regions/allotment')
  */
 function takeColumns (bot, client, origin) {
   bot.once('inject_allowed', () => {
-    client.on('ground', ({ source }) => {
+    client.on('ground', ({ source, bottom }) => {
+      bot.world.bottom = bottom
       bot.world.async.ground = (x, z) => source(x + origin.x / CHUNK, z + origin.z / CHUNK)
     })
   })

@@ -6,6 +6,9 @@
 // it to a clock never rounds.
 const NODE_MS = 3 / 32
 
+// Block of a search below the box. With air there, a search would look for ground to fall to at all heights below.
+const NOTHING = { safe: false, physical: false, liquid: false, climbable: false, replaceable: false, canFall: false, openable: false }
+
 /**
  * Limit the bot's path searches by their number of nodes, and keep the pathfinder from changing the world: agents walk
  * around walls and do not dig through them. `bot.pathfinder.reset()` undoes the settings of a program.
@@ -97,6 +100,7 @@ function rememberBlocks (movements, bot, unknownAt) {
     const z = Math.floor(place.z + dz)
     const unknown = unknownAt?.(x, y, z, dy < 0)
     if (unknown !== undefined) return unknown
+    if (y < bot.world.bottom) return NOTHING
     const block = bot.world.blockIn(x, y, z)
     if (block === null || block.notedBy !== movements) return noted(place, dx, dy, dz)
     // Reset the height: a search raises a block on which it would place another one.

@@ -43,6 +43,11 @@ class Ground {
     this.made = []
   }
 
+  /** Height of the lowest blocks, those of the walls; below them is only air. */
+  get bottom () {
+    return this.box.grown().low[1]
+  }
+
   /** Return true if a column of the server has a part of the box or of its walls. */
   has (chunkX, chunkZ) {
     const { first, last } = this.span

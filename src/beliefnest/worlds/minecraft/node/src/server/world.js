@@ -39,7 +39,7 @@ module.exports.player = (player, serv) => {
   player.sendColumns = columns => {
     if (player._client instanceof ServerEnd) {
       player.ground = serv.region.ground
-      player._client.write('ground', { source: player.ground.source(serv.overworld) })
+      player._client.write('ground', { source: player.ground.source(serv.overworld), bottom: player.ground.bottom })
     } else {
       for (const [x, z] of columns) player.sendColumn(x, z)
     }
