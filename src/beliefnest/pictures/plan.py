@@ -24,7 +24,7 @@ from beliefnest.pictures.palette import (
     mix,
     parts,
 )
-from beliefnest.pictures.relief import UNKNOWN, Relief
+from beliefnest.pictures.relief import UNKNOWN, Relief, standing_columns
 from beliefnest.pictures.room import Room
 from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, Scene, Store
 from beliefnest.world.registry import Registry
@@ -46,6 +46,8 @@ _MOST_DOTS = 40
 _STEEP = 0.1
 _SLOPES = 3
 """Light on the ground by block that it rises to the south, and the greatest rise that counts."""
+_THINNEST = 0.75
+"""Least thickness of a wall in a relief, in points: more than a pixel of a screen or printer."""
 _SMALLEST = 3.9
 """Least radius of an agent, in points, at which its letters can be read."""
 _KINDS: Mapping[str, str] = {
@@ -263,6 +265,25 @@ class _Sheet:
         unknown = np.argwhere(relief.blocks == UNKNOWN).tolist()
         self._dots([(i, k) for i, k in unknown if i % step == k % step == step // 2], step)
 
+    def _outlines(self, relief: Relief) -> None:
+        """Draw walls, pillars and outlines of houses on a relief, dark at any scale."""
+        columns = np.argwhere(standing_columns(relief, self._scene.height)).tolist()
+        names = {(i, k): relief.names[relief.blocks[i, k]] for i, k in columns}
+        fills = {
+            at: mix(_colour(name, _WALL), INK, 0.35)
+            for at, name in names.items()
+            if _standing(name)
+        }
+        segments: dict[str, list[tuple[XY, XY]]] = {}
+        for i, k, across, down in _strips(fills):
+            x0, y0, _, _ = self._square(i, k)
+            x1, y1 = x0 + across * self._cell, y0 + down * self._cell
+            x, y = (x0 + x1) / 2, (y0 + y1) / 2
+            ends = ((x, y0), (x, y1)) if down > 1 else ((x0, y), (x1, y))
+            segments.setdefault(fills[i, k], []).append(ends)
+        for colour, found in segments.items():
+            self.marks.append(Lines(tuple(found), colour, max(self._cell, _THINNEST)))
+
     def sights(self) -> None:
         """Draw a tint over the blocks that the first agent sees, hatching for other agents."""
         for number, sight in enumerate(self._scene.sights):
@@ -295,6 +316,8 @@ class _Sheet:
 
     def walls(self) -> None:
         """Draw blocks at this height, unknown blocks, and marks on false blocks."""
+        if self._scene.relief is not None:
+            self._outlines(self._scene.relief)
         dots: list[tuple[int, int]] = []
         fills: dict[tuple[int, int], str] = {}
         for i, k, cell in self._cells():
@@ -513,6 +536,23 @@ class _Sheet:
             base, middle = y + ASCENT * size, x + label.size[0] / 2
             self.marks.append(Text(middle, base, text, size, INK, bold, "middle", halo=PAPER))
             y += LINE * size
+
+
+def _strips(fills: Mapping[tuple[int, int], str]) -> Iterator[tuple[int, int, int, int]]:
+    """Yield strips of equal columns, one column wide: first column, row, width, depth."""
+    rest = dict(fills)
+    for i, k in sorted(fills, key=lambda at: at[::-1]):
+        if (i, k) not in rest:
+            continue
+        across = down = 1
+        while rest.get((i + across, k)) == fills[i, k]:
+            across += 1
+        while across == 1 and rest.get((i, k + down)) == fills[i, k]:
+            down += 1
+        for a in range(across):
+            for b in range(down):
+                del rest[i + a, k + b]
+        yield i, k, across, down
 
 
 def _with_height(name: str, above: int) -> str:
