@@ -1,5 +1,6 @@
 """Plans of wide worlds show the ground from above, as one small image."""
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -10,7 +11,7 @@ from tests.pictures.measuring import faults, texts
 
 import beliefnest as bn
 from beliefnest.nest.past.views import visible_from
-from beliefnest.pictures.marks import Lines, Pixels
+from beliefnest.pictures.marks import Circle, Lines, Pixels, Text
 from beliefnest.pictures.relief import NOWHERE, UNKNOWN, Relief, standing_columns
 from beliefnest.pictures.scene import read_scene
 from beliefnest_benchmarks.hills import Hills
@@ -153,3 +154,30 @@ def test_a_wall_is_dark_at_any_scale(width: int) -> None:
     for along in range(middle - 9, middle + 10):
         assert darkest(along, middle) < ground / 2
         assert darkest(middle, along) < ground / 2
+
+
+def test_symbols_of_a_wide_world_stay_at_their_places_and_names_at_their_symbols() -> None:
+    places = {f"a{n:02}": (120.5 + 3 * (n % 4), 1.0, 120.5 + 3 * (n // 4)) for n in range(12)}
+    ends = {"b": (5.5, 1.0, 5.5), "c": (250.5, 1.0, 250.5)}
+    world = bn.ScriptedWorld(((0, 0, 0), (255, 3, 255)), agents=places | ends)
+    with bn.Nest(world) as nest:
+        drawing = nest.figure("/").drawing()
+    mark = pixels(drawing)
+    assert mark.columns == 256
+    discs = [each for each in drawing.marks if isinstance(each, Circle) and each.role == "icon"]
+    true = [
+        (mark.x + x * mark.width / 256, mark.y + z * mark.width / 256)
+        for _, (x, _, z) in sorted((places | ends).items())
+    ]
+    discs = discs[: len(true)]
+    for disc, at in zip(discs, true, strict=True):
+        assert math.dist((disc.x, disc.y), at) <= 2 * disc.radius + 0.01
+    assert any((disc.x, disc.y) != at for disc, at in zip(discs, true, strict=True))
+    assert "moved aside; the line ends at its place" in texts(drawing)
+    names = [each for each in drawing.marks if isinstance(each, Text) and each.text in places]
+    assert len(names) < len(places)
+    for name in names:
+        disc = discs[sorted(places).index(name.text)]
+        assert math.dist((disc.x, disc.y), ((name.left + name.width / 2), name.y)) < 25
+    [rest] = [" ".join(texts(drawing)).partition("too close for a name: ")[2]]
+    assert all(name in rest for name in places.keys() - {each.text for each in names})

@@ -50,6 +50,9 @@ _THINNEST = 0.75
 """Least thickness of a wall in a relief, in points: more than a pixel of a screen or printer."""
 _SMALLEST = 3.9
 """Least radius of an agent, in points, at which its letters can be read."""
+_WIDE_SYMBOLS = 0.6
+"""Size of symbols on the ground of a wide world, relative to those on other plans. Their places
+count there: a symbol covers several blocks."""
 _KINDS: Mapping[str, str] = {
     "glass": "#b8d8e2",
     "ice": "#b0ceec",
@@ -86,6 +89,8 @@ _DYES: Mapping[str, str] = {
 }
 _DYED = ("_wool", "_concrete", "_concrete_powder", "_terracotta", "_carpet")
 _MOST_QUOTED = 24
+_MANY = 16
+"""Number of agents above which lines to distant names would cross."""
 _STORES = ("chest", "barrel", "furnace", "smoker")
 
 
@@ -182,6 +187,7 @@ class _Sheet:
         self._at = at
         self._cell = cell
         self._size = size
+        self._share = 1.0 if scene.relief is None else _WIDE_SYMBOLS
         across, down = scene.size
         inset = 1.0
         self._room = Room(
@@ -442,15 +448,23 @@ class _Sheet:
         return low_x <= point[0] <= low_x + across and low_z <= point[1] <= low_z + down
 
     def _icon(self, point: XY, size: float) -> XY | None:
-        """Return room for an icon at a point, or near it with a line that leads there."""
+        """Return room for an icon at a point, or near it with a line that leads there.
+
+        On the ground of a wide world it is at most its size away, or else on other icons.
+        """
         at = self._place(*point)
-        spot = self._room.spot(at, size, size)
+        is_wide = self._scene.relief is not None
+        spot = self._room.spot(at, size, size, size if is_wide else math.inf)
+        if spot is None and is_wide:
+            return at
         if spot is not None and spot != at:
             self.marks.append(Lines(((at, spot),), INK, 0.5))
+            if is_wide:
+                self.kinds.add("moved")
         return spot
 
     def _store(self, store: Store) -> None:
-        size = max(self._cell * 0.96, 7.5)
+        size = max(self._cell * 0.96, 7.5 * self._share)
         x, _, z = store.position
         spot = self._icon((x + 0.5, z + 0.5), size * (1.3 if store.mark is Mark.FALSE else 1))
         if spot is None:
@@ -464,7 +478,7 @@ class _Sheet:
     def _person(self, person: DrawnAgent) -> None:
         if person.position is None:
             return
-        radius = max(self._cell * 0.5, _SMALLEST)
+        radius = max(self._cell * 0.5, _SMALLEST * self._share)
         size = radius * (2.8 if person.mark is Mark.FALSE else 2)
         spot = self._icon((person.position[0], person.position[2]), size)
         if spot is None:
@@ -521,7 +535,8 @@ class _Sheet:
         """Draw the names, after all icons have their places."""
         for board in self._boards:
             self._room.take(board)
-        for each in put_labels(self._labels, self._room):
+        only_beside = self._scene.relief is not None or len(self._scene.people) > _MANY
+        for each in put_labels(self._labels, self._room, only_beside=only_beside):
             self._write(each)
 
     def _write(self, put: Put) -> None:
