@@ -456,6 +456,8 @@ class _Sheet:
         is_wide = self._scene.relief is not None
         spot = self._room.spot(at, size, size, size if is_wide else math.inf)
         if spot is None and is_wide:
+            half = size / 2
+            self._room.take((at[0] - half, at[1] - half, at[0] + half, at[1] + half))
             return at
         if spot is not None and spot != at:
             self.marks.append(Lines(((at, spot),), INK, 0.5))
