@@ -1,5 +1,6 @@
 """Plans of wide worlds show the ground from above, as one small image."""
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
@@ -10,8 +11,8 @@ from tests.pictures.measuring import faults, texts
 
 import beliefnest as bn
 from beliefnest.nest.past.views import visible_from
-from beliefnest.pictures.marks import Lines, Pixels
-from beliefnest.pictures.relief import NOWHERE, UNKNOWN
+from beliefnest.pictures.marks import Circle, Lines, Pixels, Text
+from beliefnest.pictures.relief import NOWHERE, UNKNOWN, Relief, standing_columns
 from beliefnest.pictures.scene import read_scene
 from beliefnest_benchmarks.hills import Hills
 
@@ -107,3 +108,76 @@ def test_a_view_of_part_of_a_box_is_that_of_the_whole(yaw: float) -> None:
             seen = visible_from(reading, sight, name)
             assert seen.any()
             assert (seen == reading.visible_from(name)).all()
+
+
+def test_walls_pillars_and_outlines_of_houses_stand_and_hills_do_not() -> None:
+    levels = np.fromfunction(lambda x, z: x // 6, (80, 60), dtype=np.int32).astype(np.int32)
+    levels[60:, :] += 3  # A plateau with a steep side.
+    wall, pillar, kerb = np.s_[10:30, 20], np.s_[40, 40], np.s_[10:30, 10]
+    levels[wall] += 2
+    levels[pillar] += 5
+    levels[kerb] += 1
+    levels[40:47, 5:12] += 4
+    blocks = np.zeros_like(levels)
+    blocks[:, 50:] = UNKNOWN
+    stand = standing_columns(Relief(("stone",), blocks, levels), height=99)
+    assert stand[wall].all() and stand[pillar]
+    assert not stand[kerb].any()
+    assert stand[40:47, 5].all() and stand[40, 5:12].all() and not stand[42:45, 7:10].any()
+    stand[wall] = stand[pillar] = stand[40:47, 5:12] = False
+    assert not stand.any()
+
+
+@pytest.mark.parametrize("width", [65, 128, 400])
+def test_a_wall_is_dark_at_any_scale(width: int) -> None:
+    blocks = {(x, 0, z): "stone" for x in range(width) for z in range(width)}
+    middle = width // 2
+    for along in range(middle - 10, middle + 11):
+        blocks |= {(along, y, middle): "bricks" for y in (1, 2)}
+        blocks |= {(middle, y, along): "bricks" for y in (1, 2)}
+    ends = {"ann": (5.5, 1, 5.5), "bob": (width - 5.5, 1, width - 5.5)}
+    world = bn.ScriptedWorld(((0, 0, 0), (width - 1, 3, width - 1)), blocks, ends)
+    with bn.Nest(world) as nest:
+        figure = nest.figure("/")
+        mark, image = pixels(figure.drawing()), figure.image(dpi=150)
+    field = mark.width / mark.columns
+    assert mark.columns == width
+
+    def darkest(x: int, z: int) -> int:
+        left, top = mark.x + (x + 0.5) * field, mark.y + (z + 0.5) * field
+        spot = round(left * 150 / 72), round(top * 150 / 72)
+        near = [(spot[0] + i, spot[1] + k) for i in (-1, 0, 1) for k in (-1, 0, 1)]
+        return min(sum(image.getpixel(each)) for each in near)
+
+    ground = darkest(middle + 5, middle + 5)
+    assert ground > 600
+    for along in range(middle - 9, middle + 10):
+        assert darkest(along, middle) < ground / 2
+        assert darkest(middle, along) < ground / 2
+
+
+def test_symbols_of_a_wide_world_stay_at_their_places_and_names_at_their_symbols() -> None:
+    places = {f"a{n:02}": (120.5 + 3 * (n % 4), 1.0, 120.5 + 3 * (n // 4)) for n in range(12)}
+    ends = {"b": (5.5, 1.0, 5.5), "c": (250.5, 1.0, 250.5)}
+    world = bn.ScriptedWorld(((0, 0, 0), (255, 3, 255)), agents=places | ends)
+    with bn.Nest(world) as nest:
+        drawing = nest.figure("/").drawing()
+    mark = pixels(drawing)
+    assert mark.columns == 256
+    discs = [each for each in drawing.marks if isinstance(each, Circle) and each.role == "icon"]
+    true = [
+        (mark.x + x * mark.width / 256, mark.y + z * mark.width / 256)
+        for _, (x, _, z) in sorted((places | ends).items())
+    ]
+    discs = discs[: len(true)]
+    for disc, at in zip(discs, true, strict=True):
+        assert math.dist((disc.x, disc.y), at) <= 2 * disc.radius + 0.01
+    assert any((disc.x, disc.y) != at for disc, at in zip(discs, true, strict=True))
+    assert "moved aside; the line ends at its place" in texts(drawing)
+    names = [each for each in drawing.marks if isinstance(each, Text) and each.text in places]
+    assert len(names) < len(places)
+    for name in names:
+        disc = discs[sorted(places).index(name.text)]
+        assert math.dist((disc.x, disc.y), ((name.left + name.width / 2), name.y)) < 25
+    [rest] = [" ".join(texts(drawing)).partition("too close for a name: ")[2]]
+    assert all(name in rest for name in places.keys() - {each.text for each in names})

@@ -15,6 +15,8 @@ __all__ = ["agent", "container", "device", "false_sign", "hearsay", "item", "let
 _WOOD, _WOOD_DARK, _WOOD_LIGHT = "#b07a42", "#704822", "#ce9c62"
 _STONE, _STONE_DARK = "#8d8a88", "#4c4a4a"
 _GOOD = "#007a58"
+_MOST_RINGS = 2
+"""Greatest number of rings of a disc; a number at the disc stands for more."""
 _GEMS = ("diamond", "emerald", "amethyst_shard")
 _COLOURS: Mapping[str, str] = {
     "diamond": "#52ced6",
@@ -34,6 +36,8 @@ def letters(at: XY, text: str, room: float, colour: str, *, halo: str | None = N
 
 def agent(at: XY, radius: float, look: AgentLook, yaw: float | None, mark: Mark) -> list[Drawn]:
     """Return a disc with a nose in the direction of the look; dashed for a memory.
+
+    Rings, or a number at the lower right in place of many rings, tell agents of one colour apart.
 
     Args:
         at: Middle of the disc.
@@ -60,10 +64,15 @@ def agent(at: XY, radius: float, look: AgentLook, yaw: float | None, mark: Mark)
         fill = mix(PAPER, look.colour, 0.3)
         drawn.append(Circle(x, y, radius, fill, INK, thick * 1.3, radius * 0.45, "icon"))
         drawn.append(letters(at, look.badge, radius * 1.6, INK))
-    drawn += [
-        Circle(x, y, radius * (0.9 - 0.16 * ring), None, PAPER, thick * 0.7)
-        for ring in range(look.rings)
-    ]
+    if look.rings <= _MOST_RINGS:
+        drawn += [
+            Circle(x, y, radius * (0.9 - 0.16 * ring), None, PAPER, thick * 0.7)
+            for ring in range(look.rings)
+        ]
+    else:
+        # More rings would cover the letters.
+        base = (x + radius * 0.8, y + radius * 1.05)
+        drawn.append(Text(*base, str(look.rings), radius * 0.8, INK, True, "middle", PAPER, "part"))
     if mark is Mark.FALSE:
         drawn += false_sign((x + radius * 0.86, y - radius * 0.86), radius * 0.42)
     return drawn

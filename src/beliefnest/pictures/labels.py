@@ -47,17 +47,18 @@ class Put:
     beside: bool
 
 
-def put_labels(labels: Sequence[Label], room: Room) -> list[Put]:
+def put_labels(labels: Sequence[Label], room: Room, *, only_beside: bool) -> list[Put]:
     """Place labels, as many as possible beside their icons.
 
-    A label without room at its icon goes to the nearest free place. The search is greedy and
+    A label without room at its icon goes to the nearest free place, or nowhere if `only_beside` is
+    True. The search is greedy and
     runs several times: labels that found no room beside their icons are placed first in the next
     try. The best try wins.
     """
     best: list[Put] = []
     first: list[Label] = []
     for number in range(_TRIES):
-        put = _arranged(labels, first, room)
+        put = _arranged(labels, first, room, only_beside=only_beside)
         away = [each.label for each in put if not each.beside]
         if not number or len(away) < sum(not each.beside for each in best):
             best = put
@@ -67,7 +68,9 @@ def put_labels(labels: Sequence[Label], room: Room) -> list[Put]:
     return best
 
 
-def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> list[Put]:
+def _arranged(
+    labels: Sequence[Label], first: Sequence[Label], free: Room, *, only_beside: bool
+) -> list[Put]:
     """Place labels greedily: those in `first`, then always the label with the fewest places."""
     room = free.copy()
     waiting = [*first, *(label for label in labels if label not in first)]
@@ -81,11 +84,11 @@ def _arranged(labels: Sequence[Label], first: Sequence[Label], free: Room) -> li
         )
         label, found = waiting.pop(number), left.pop(number)
         wide, high = label.size
-        at: XY | None
+        at: XY | None = None
         if found:
             at = found[0]
             room.take((*at, at[0] + wide, at[1] + high))
-        else:
+        elif not only_beside:
             x0, y0, x1, y1 = label.icon
             spot = room.spot(((x0 + x1) / 2, (y0 + y1) / 2), wide, high)
             at = None if spot is None else (spot[0] - wide / 2, spot[1] - high / 2)

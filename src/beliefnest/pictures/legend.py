@@ -143,6 +143,13 @@ def _trail(at: XY, wide: float, high: float) -> list[Drawn]:
     return [Polygon(ends, None, QUIET, 0.9, 2.2, closed=False, role="line")]
 
 
+def _moved(at: XY, wide: float, high: float) -> list[Drawn]:
+    x, y = at
+    r = high * 0.3
+    ends = ((x, y + high), (x + wide - r, y + r))
+    return [Lines((ends,), INK, 0.5), Circle(*ends[1], r, mix(PAPER, QUIET, 0.2), INK, 0.5)]
+
+
 def _dropped(at: XY, wide: float, high: float) -> list[Drawn]:
     return icons.item((at[0] + wide / 2, at[1] + high / 2), high, "")
 
@@ -164,5 +171,6 @@ _SIGNS: Mapping[str, tuple[_Sign, str]] = {
     "expected": (_expected, "as expected"),
     "unexpected": (_unexpected, "not as expected"),
     "trail": (_trail, "the way an agent has gone"),
+    "moved": (_moved, "moved aside; the line ends at its place"),
     "dropped item": (_dropped, "dropped item"),
 }

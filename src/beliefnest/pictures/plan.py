@@ -24,7 +24,7 @@ from beliefnest.pictures.palette import (
     mix,
     parts,
 )
-from beliefnest.pictures.relief import UNKNOWN, Relief
+from beliefnest.pictures.relief import UNKNOWN, Relief, standing_columns
 from beliefnest.pictures.room import Room
 from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, Scene, Store
 from beliefnest.world.registry import Registry
@@ -46,8 +46,13 @@ _MOST_DOTS = 40
 _STEEP = 0.1
 _SLOPES = 3
 """Light on the ground by block that it rises to the south, and the greatest rise that counts."""
+_THINNEST = 0.75
+"""Least thickness of a wall in a relief, in points: more than a pixel of a screen or printer."""
 _SMALLEST = 3.9
 """Least radius of an agent, in points, at which its letters can be read."""
+_WIDE_SYMBOLS = 0.6
+"""Size of symbols on the ground of a wide world, relative to those on other plans. Their places
+count there: a symbol covers several blocks."""
 _KINDS: Mapping[str, str] = {
     "glass": "#b8d8e2",
     "ice": "#b0ceec",
@@ -84,6 +89,8 @@ _DYES: Mapping[str, str] = {
 }
 _DYED = ("_wool", "_concrete", "_concrete_powder", "_terracotta", "_carpet")
 _MOST_QUOTED = 24
+_MANY = 16
+"""Number of agents above which lines to distant names would cross."""
 _STORES = ("chest", "barrel", "furnace", "smoker")
 
 
@@ -180,6 +187,7 @@ class _Sheet:
         self._at = at
         self._cell = cell
         self._size = size
+        self._share = 1.0 if scene.relief is None else _WIDE_SYMBOLS
         across, down = scene.size
         inset = 1.0
         self._room = Room(
@@ -263,6 +271,25 @@ class _Sheet:
         unknown = np.argwhere(relief.blocks == UNKNOWN).tolist()
         self._dots([(i, k) for i, k in unknown if i % step == k % step == step // 2], step)
 
+    def _outlines(self, relief: Relief) -> None:
+        """Draw walls, pillars and outlines of houses on a relief, dark at any scale."""
+        columns = np.argwhere(standing_columns(relief, self._scene.height)).tolist()
+        names = {(i, k): relief.names[relief.blocks[i, k]] for i, k in columns}
+        fills = {
+            at: mix(_colour(name, _WALL), INK, 0.35)
+            for at, name in names.items()
+            if _standing(name)
+        }
+        segments: dict[str, list[tuple[XY, XY]]] = {}
+        for i, k, across, down in _strips(fills):
+            x0, y0, _, _ = self._square(i, k)
+            x1, y1 = x0 + across * self._cell, y0 + down * self._cell
+            x, y = (x0 + x1) / 2, (y0 + y1) / 2
+            ends = ((x, y0), (x, y1)) if down > 1 else ((x0, y), (x1, y))
+            segments.setdefault(fills[i, k], []).append(ends)
+        for colour, found in segments.items():
+            self.marks.append(Lines(tuple(found), colour, max(self._cell, _THINNEST)))
+
     def sights(self) -> None:
         """Draw a tint over the blocks that the first agent sees, hatching for other agents."""
         for number, sight in enumerate(self._scene.sights):
@@ -295,6 +322,8 @@ class _Sheet:
 
     def walls(self) -> None:
         """Draw blocks at this height, unknown blocks, and marks on false blocks."""
+        if self._scene.relief is not None:
+            self._outlines(self._scene.relief)
         dots: list[tuple[int, int]] = []
         fills: dict[tuple[int, int], str] = {}
         for i, k, cell in self._cells():
@@ -419,15 +448,25 @@ class _Sheet:
         return low_x <= point[0] <= low_x + across and low_z <= point[1] <= low_z + down
 
     def _icon(self, point: XY, size: float) -> XY | None:
-        """Return room for an icon at a point, or near it with a line that leads there."""
+        """Return room for an icon at a point, or near it with a line that leads there.
+
+        On the ground of a wide world it is at most its size away, or else on other icons.
+        """
         at = self._place(*point)
-        spot = self._room.spot(at, size, size)
+        is_wide = self._scene.relief is not None
+        spot = self._room.spot(at, size, size, size if is_wide else math.inf)
+        if spot is None and is_wide:
+            half = size / 2
+            self._room.take((at[0] - half, at[1] - half, at[0] + half, at[1] + half))
+            return at
         if spot is not None and spot != at:
             self.marks.append(Lines(((at, spot),), INK, 0.5))
+            if is_wide:
+                self.kinds.add("moved")
         return spot
 
     def _store(self, store: Store) -> None:
-        size = max(self._cell * 0.96, 7.5)
+        size = max(self._cell * 0.96, 7.5 * self._share)
         x, _, z = store.position
         spot = self._icon((x + 0.5, z + 0.5), size * (1.3 if store.mark is Mark.FALSE else 1))
         if spot is None:
@@ -441,7 +480,7 @@ class _Sheet:
     def _person(self, person: DrawnAgent) -> None:
         if person.position is None:
             return
-        radius = max(self._cell * 0.5, _SMALLEST)
+        radius = max(self._cell * 0.5, _SMALLEST * self._share)
         size = radius * (2.8 if person.mark is Mark.FALSE else 2)
         spot = self._icon((person.position[0], person.position[2]), size)
         if spot is None:
@@ -498,7 +537,8 @@ class _Sheet:
         """Draw the names, after all icons have their places."""
         for board in self._boards:
             self._room.take(board)
-        for each in put_labels(self._labels, self._room):
+        only_beside = self._scene.relief is not None or len(self._scene.people) > _MANY
+        for each in put_labels(self._labels, self._room, only_beside=only_beside):
             self._write(each)
 
     def _write(self, put: Put) -> None:
@@ -513,6 +553,23 @@ class _Sheet:
             base, middle = y + ASCENT * size, x + label.size[0] / 2
             self.marks.append(Text(middle, base, text, size, INK, bold, "middle", halo=PAPER))
             y += LINE * size
+
+
+def _strips(fills: Mapping[tuple[int, int], str]) -> Iterator[tuple[int, int, int, int]]:
+    """Yield strips of equal columns, one column wide: first column, row, width, depth."""
+    rest = dict(fills)
+    for i, k in sorted(fills, key=lambda at: at[::-1]):
+        if (i, k) not in rest:
+            continue
+        across = down = 1
+        while rest.get((i + across, k)) == fills[i, k]:
+            across += 1
+        while across == 1 and rest.get((i, k + down)) == fills[i, k]:
+            down += 1
+        for a in range(across):
+            for b in range(down):
+                del rest[i + a, k + b]
+        yield i, k, across, down
 
 
 def _with_height(name: str, above: int) -> str:

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
 
 from beliefnest.belief.view import State
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
 
-__all__ = ["NOWHERE", "UNKNOWN", "Relief", "Window", "is_wide", "read_relief"]
+__all__ = ["NOWHERE", "UNKNOWN", "Relief", "Window", "is_wide", "read_relief", "standing_columns"]
 
 WIDE = 64
 """Width or depth in blocks from which plans show the ground in place of one storey. The page has
@@ -18,6 +19,13 @@ the same limit (`web/src/run.js`)."""
 
 NOWHERE, UNKNOWN = -2, -1
 """Values of `Relief.blocks` where there is only air, and where nothing is known."""
+
+_NARROW = 16
+"""Width in blocks from which what stands on the ground is itself ground, such as a plateau."""
+_HIGH = 2
+"""Least height in blocks of a wall above the ground."""
+_DEEP = -(2**20)
+"""Level of columns without a known block: lower than any other."""
 
 _AIR = ("air", "cave_air", "void_air")
 
@@ -87,6 +95,31 @@ def read_relief(
     seen = {name: np.concatenate([each[3][name] for each in columns]) for name in sights}
     names = tuple("air" if n < 0 else registry.text(n) for n in numbers.tolist())
     return Relief(names, blocks, (layers + box.low[1]).astype(np.int32)), seen
+
+
+def standing_columns(relief: Relief, height: int) -> _Mask:
+    """Return the columns of walls and pillars, and the outlines of houses.
+
+    They rise above a known neighbour, and above their surroundings: the white top-hat transform
+    (Serra, 1982), which removes what holds a square of `_NARROW` blocks, such as hills.
+
+    Args:
+        relief: The relief.
+        height: Greatest y of it. What reaches it may go on above and need not be `_HIGH`.
+    """
+    levels = np.where(relief.blocks >= 0, relief.levels, _DEEP)
+    ground = np.pad(levels, _NARROW - 1, constant_values=_DEEP)
+    for axis in (0, 1):
+        ground = sliding_window_view(ground, _NARROW, axis).min(axis=-1)
+    for axis in (0, 1):
+        ground = sliding_window_view(ground, _NARROW, axis).max(axis=-1)
+    # An unknown neighbour may be as high.
+    beside = np.pad(np.where(relief.blocks == UNKNOWN, -_DEEP, levels), 1, constant_values=-_DEEP)
+    # Diagonal neighbours count: walls may cross.
+    lowest = sliding_window_view(beside, (3, 3)).min(axis=(-2, -1))
+    least = np.where(levels == height, 1, _HIGH)
+    stand: _Mask = (relief.blocks >= 0) & (levels - np.maximum(ground, lowest) >= least)
+    return stand
 
 
 def _columns(

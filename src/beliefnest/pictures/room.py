@@ -51,9 +51,18 @@ class Room:
             return False
         return not any(near(bounds, each) for each in self._taken)
 
-    def spot(self, at: XY, width: float, height: float) -> XY | None:
-        """Take the nearest free rectangle of a size; return its middle, None if there is none."""
+    def spot(self, at: XY, width: float, height: float, reach: float = math.inf) -> XY | None:
+        """Take the nearest free rectangle of a size; return its middle, None if there is none.
+
+        Args:
+            at: Middle that it should have.
+            width: Its width.
+            height: Its height.
+            reach: Greatest distance between the two middles.
+        """
         for x, y in _around(at, max(width, height) / 2):
+            if math.dist(at, (x, y)) > reach:
+                break
             bounds = (x - width / 2, y - height / 2, x + width / 2, y + height / 2)
             if self.is_free(bounds):
                 self.take(bounds)
