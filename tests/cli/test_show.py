@@ -88,9 +88,12 @@ def test_a_picture_of_a_belief_and_not_of_the_world(run: Path, tmp_path: Path) -
     assert "in reality" not in drawn[2]
 
 
-def test_pictures_in_several_forms_at_once(run: Path, tmp_path: Path) -> None:
+def test_pictures_in_several_forms_at_once(
+    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     png, pdf = tmp_path / "f.png", tmp_path / "f.pdf"
     assert run_command_line(["show", str(run), "--png", str(png), "--pdf", str(pdf)]) == 0
+    assert capsys.readouterr().out.split() == ["written", "to", str(png), "written", "to", str(pdf)]
     assert pdf.read_bytes().startswith(b"%PDF")
     with Image.open(png) as picture:
         assert picture.width == pytest.approx(84 / 25.4 * 200, abs=1)

@@ -67,15 +67,23 @@ def show_run(options: ShowOptions) -> None:
             _check(options, stores)
     if options.gif is not None:
         _animate(options, stores[0])
+        _tell(options, options.gif)
     if options.figures:
         figure = figure_of([scene for store in stores for scene in _scenes(options, store, stores)])
         for file in options.figures.values():
             figure.save(file)
+            _tell(options, file)
     if options.json or not (options.figures or options.gif):
         for store in stores:
             if len(stores) > 1:
                 stdout().print(f"[bold]{_name_in(store, options.run)}[/bold]", highlight=False)
             (_show_claims if options.claims else _show)(options, store)
+
+
+def _tell(options: ShowOptions, file: Path) -> None:
+    """Tell that a file was written, unless the output is one JSON object."""
+    if not options.json:
+        stdout().print(f"written to {file}", highlight=False, soft_wrap=True)
 
 
 def _check(options: ShowOptions, stores: Sequence[Path]) -> None:

@@ -111,6 +111,7 @@ def test_a_recorded_run_is_read_while_it_goes_on(tmp_path):
             for path in PATHS:
                 assert everything(reading[path].state) == everything(nest[path].state)
                 assert reading[path].tick == nest[path].tick
+            assert reading.tick == nest.tick
             assert not any(hasattr(reading[path], act) for path in PATHS for act in ("run", "edit"))
 
 

@@ -43,6 +43,11 @@ class NestBase(ShownNest, ABC):
         return self._recording.seed
 
     @property
+    def tick(self) -> int:
+        """The latest tick of the real world."""
+        return self._recording.info(()).head
+
+    @property
     def agents(self) -> tuple[str, ...]:
         """The names of all agents, sorted."""
         return self._recording.agents

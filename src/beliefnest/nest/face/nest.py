@@ -188,11 +188,6 @@ class Nest(NestBase):
                 self._engine.close()
 
     @property
-    def tick(self) -> int:
-        """The latest tick of the real world."""
-        return self._recording.info(()).head
-
-    @property
     def scripted_world(self) -> ScriptedWorld:
         """The scripted world that serves as the real world.
 
