@@ -162,7 +162,7 @@ def _standing(place: Snapshot, registry: Registry) -> tuple[float, float, float]
     """Return the lowest place to stand; of several, the nearest to the middle."""
     states = place.blocks.states
     empty = [s for s in states if not registry.boxes(s)]
-    floor = [s for s in states if _fills(registry, s)]
+    floor = [s for s in states if registry.is_full(s)]
     if found := _above_floor(place.blocks, floor, empty):
         x, y, z = _at(place.box, found)
         return (x + 0.5, y + 1.0, z + 0.5)
@@ -195,10 +195,6 @@ def _above_floor(
             i, k = cells[far.argmin()].tolist()
             return (i, layer, k)
     return None
-
-
-def _fills(registry: Registry, state: int) -> bool:
-    return registry.boxes(state) == ((0.0, 0.0, 0.0, 1.0, 1.0, 1.0),)
 
 
 def _at(box: Box, index: Any) -> Position:

@@ -201,6 +201,14 @@ class Registry:
         rows = self.shape_boxes[self.shape_start[shape] : self.shape_start[shape + 1]]
         return tuple((x0, y0, z0, x1, y1, z1) for x0, y0, z0, x1, y1, z1 in rows.tolist())
 
+    def is_full(self, state_id: int) -> bool:
+        """Return True if the collision box of a state is a full cube.
+
+        Raises:
+            UnknownNameError: There is no such state id.
+        """
+        return self.boxes(state_id) == ((0.0, 0.0, 0.0, 1.0, 1.0, 1.0),)
+
     def state_ids(self, name: str) -> range:
         """Return all state ids of a block.
 

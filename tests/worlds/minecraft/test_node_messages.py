@@ -82,5 +82,5 @@ def rows(*values: int) -> bytes:
     "runs", [b"", rows(1, 7), rows(1, 9), rows(1, 8, 0), rows(1, 9, 2, -1), b"\x01" * 7]
 )
 def test_runs_of_another_number_of_blocks_are_a_fault_of_node(runs):
-    with pytest.raises(BodyError, match="for a box of 8"):
+    with pytest.raises(BodyError, match="needs 8"):
         snapshot_of(message(runs), Box((0, 0, 0), (1, 1, 1)))

@@ -166,11 +166,15 @@ class Embodying:
         places = [each.position for each in reading.agents.values() if each.position is not None]
         taken = {block_at(place) for place in places}
         middle = np.array(places or [box.low, box.high], dtype=float).mean(axis=0)
+        # Nobody stands within a full cube.
+        cubes = [s for s in reading.terrain.states if s >= 0 and space.registry.is_full(s)]
         for radius in _RADII:
             # All cells within the radius are in the part.
             low = np.maximum(np.floor(middle - radius).astype(int), box.low)
             high = np.minimum(np.floor(middle + radius).astype(int), box.high)
-            cells = np.argwhere(np.ones(np.maximum(high - low + 1, 0), dtype=np.bool_)) + low
+            (a, b, c), (d, e, f) = low - box.low, np.maximum(high + 1, low) - box.low
+            part = reading.terrain.cut((a, b, c), (d, e, f))
+            cells = np.argwhere(~np.isin(part, cubes)) + low
             distances = np.linalg.norm(cells + 0.5 - middle, axis=1)
             for number in distances.argsort(kind="stable"):
                 if distances[number] > radius:
