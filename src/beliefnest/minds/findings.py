@@ -61,7 +61,7 @@ class Change:
     is_movement: bool = False
 
     def __str__(self) -> str:
-        # Where figures are told as equal, the order does not depend on their last bits.
+        # Rounded as told: last bits, which differ between machines, must not decide the order.
         told = sorted(self.bits.items(), key=lambda pair: -round(pair[1], 2))
         words = ", ".join(f"{name} by {bits:.2f} bits" for name, bits in told if bits >= 0.005)
         return f"tick {self.tick}: the agent {self.text}; this changes {words or 'nothing'}"

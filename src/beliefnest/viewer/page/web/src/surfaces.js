@@ -183,7 +183,7 @@ export function facesOf (blocks, number, colourOf) {
           corner[v] = from[v] + up
           const isLiquid = merged[state] === LIQUID
           const faces = isLiquid ? found.liquid : found.solid
-          // Where transparent faces overlapped, their colour would be darker.
+          // Transparent faces have no outset: overlaps would be darker.
           const outset = isLiquid ? 0 : blocks.outset
           faces.add(axis, side, corner, [u, across], [v, tall], colourOf(state, unseen === 0, normalOf(axis, side)), unseen, outset)
         })
