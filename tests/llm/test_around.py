@@ -83,15 +83,26 @@ def test_a_limit_of_tokens_that_somebody_set_stops_a_free_server_too():
         metered.answer(ASK, Sampling())
 
 
-def test_an_answer_that_cannot_be_used_is_paid_all_the_same(fake, clock):
-    fake.will(fake.refuses, fake.floods)
+def test_every_answer_is_paid_however_it_ended(fake, clock):
+    half_an_emoji = fake.says("go('\ud83d');")
+    fake.will(fake.refuses, fake.says("await go", reason="length"), half_an_emoji)
     budget = RunSpending()
     asked = cached(fake, clock, None, budget=budget)
     for _ in range(2):
-        with pytest.raises(ModelError):
-            asked.answer(ASK, Sampling())
-    assert budget.spent.requests == 2
-    assert budget.spent.tokens > 50_000
+        asked.answer(ASK, Sampling())
+    with pytest.raises(ModelError):
+        asked.answer(ASK, Sampling())
+    assert budget.spent.requests == 3
+    assert budget.spent.tokens == 450
+
+
+def test_the_reason_for_the_end_of_an_answer_is_kept_and_recorded(fake, clock, tmp_path):
+    fake.will(fake.says("await go", reason="length"))
+    cut = cached(fake, clock, tmp_path / "c", record=tmp_path / "r.jsonl").answer(ASK, Sampling())
+    replay = resolve_model(f"replay:{tmp_path / 'r.jsonl'}", {})
+    for again in (cached(fake, clock, tmp_path / "c"), replay):
+        assert again.answer(ASK, Sampling()) == dataclasses.replace(cut, cached=True)
+    assert cut.finish == "length"
 
 
 def test_usage_adds_up_and_an_unknown_price_stays_unknown():

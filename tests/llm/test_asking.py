@@ -1,11 +1,19 @@
 """Programs out of answers, and faults sent back."""
 
+import dataclasses
 from collections import deque
 
 import pytest
 
 from beliefnest.errors import InputError, ModelError
-from beliefnest.llm import NoProgramError, Sampling, Usage, ask_for_program, extract_program
+from beliefnest.llm import (
+    NoProgramError,
+    NoUsableProgramError,
+    Sampling,
+    Usage,
+    ask_for_program,
+    extract_program,
+)
 from beliefnest.llm.messages import Answer
 from beliefnest.llm.recorded_models import ScriptedModel
 
@@ -135,3 +143,16 @@ def test_a_model_s_own_failure_ends_the_asking():
 def test_no_attempts_are_refused():
     with pytest.raises(InputError, match="at least 1"):
         ask_for_program(Listening(), "Do it.", no_fault, attempts=0)
+
+
+@pytest.mark.parametrize(
+    ("finish", "complaint"), [("length", "cut off"), ("content_filter", "refused to answer")]
+)
+def test_a_program_that_the_model_did_not_finish_is_none(finish, complaint):
+    class Cut(Listening):
+        def answer(self, messages, sampling):
+            return dataclasses.replace(super().answer(messages, sampling), finish=finish)
+
+    with pytest.raises(NoUsableProgramError, match=complaint) as caught:
+        ask_for_program(Cut("", fenced("a();")), "Do it.", lambda _: None, attempts=2)
+    assert [each.program for each in caught.value.attempts] == [None, None]

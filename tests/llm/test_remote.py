@@ -115,7 +115,6 @@ def test_any_compatible_server(fake, clock):
 
 
 FAULTS = [
-    ("refuses", r"refused to answer: I will not steal diamonds"),
     ("floods", r"more than 200,000 characters"),
     ("hangs_up", r"dropped the connection"),
     ("drops_halfway", r"dropped the connection"),
@@ -149,13 +148,22 @@ def test_requests_that_cannot_succeed(fake, clock, status, code, message):
     assert not isinstance(caught.value, TransientModelError)
 
 
-def test_an_answer_that_is_empty_or_cut_off(fake, clock):
-    fake.will(fake.says("  \n"), fake.says("await go", reason="length"))
+def test_the_reason_for_the_end_of_an_answer_is_kept(fake, clock):
+    fake.will(
+        fake.says("  \n"),
+        fake.says("await go", reason="length"),
+        fake.refuses,
+        fake.says(PROGRAM, reason="content_filter"),
+    )
     asked = model(fake, clock)
-    with pytest.raises(ModelError, match="empty answer"):
-        asked.answer(ASK, Sampling())
-    with pytest.raises(ModelError, match="max_output_tokens"):
-        asked.answer(ASK, Sampling())
+    answers = [asked.answer(ASK, Sampling()) for _ in range(4)]
+    assert [(each.text, each.finish) for each in answers] == [
+        ("  \n", "stop"),
+        ("await go", "length"),
+        ("I will not steal diamonds.", "content_filter"),
+        (PROGRAM, "content_filter"),
+    ]
+    assert all(each.usage.requests == 1 for each in answers)
 
 
 def test_an_answer_that_drips_is_given_up_by_the_clock(fake, impatient_clock):

@@ -13,7 +13,7 @@ from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.claim_reader import ClaimsFromModel, claims_from_model
 from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.extract import NoProgramError, extract_program
-from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+from beliefnest.llm.messages import Answer, Finish, Message, Model, Sampling, Usage
 from beliefnest.llm.remote import AnswerLimits
 from beliefnest.llm.resolve import Connection, model_names, open_model, resolve_model
 from beliefnest.llm.retrying import RetryPolicy
@@ -26,6 +26,7 @@ __all__ = [
     "ClaimsFromModel",
     "Clock",
     "Connection",
+    "Finish",
     "Message",
     "Model",
     "NoProgramError",

@@ -1,12 +1,12 @@
 """Requests for a program, repeated with an error report until the program passes a check."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.extract import NoProgramError, extract_program
 from beliefnest.llm.failures import excerpt
-from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+from beliefnest.llm.messages import Answer, Finish, Message, Model, Sampling, Usage
 
 __all__ = [
     "Check",
@@ -59,6 +59,12 @@ class ProgramAnswer:
         return sum((attempt.answer.usage for attempt in self.attempts), Usage())
 
 
+_UNFINISHED: Mapping[Finish, str] = {
+    "length": "the answer was cut off at its greatest length",
+    "content_filter": "the model refused to answer",
+}
+
+
 class NoUsableProgramError(ModelError):
     """No round gave a program that passed the check.
 
@@ -104,7 +110,7 @@ def ask_for_program(
     while len(rounds) < attempts:
         messages = _messages(prompt, system, rounds)
         answer = model.answer(messages, sampling or Sampling())
-        program, complaint = _judge(answer.text, check)
+        program, complaint = _judge(answer, check)
         rounds.append(Round(messages, answer, program, complaint))
         if program is not None and complaint is None:
             return ProgramAnswer(program, tuple(rounds))
@@ -114,10 +120,12 @@ def ask_for_program(
     )
 
 
-def _judge(text: str, check: Check) -> tuple[str | None, str | None]:
+def _judge(answer: Answer, check: Check) -> tuple[str | None, str | None]:
     """Return the program of an answer and its fault."""
+    if answer.finish != "stop":
+        return None, _UNFINISHED[answer.finish]
     try:
-        program = extract_program(text)
+        program = extract_program(answer.text)
     except NoProgramError as error:
         return None, str(error)
     return program, check(program)
@@ -131,7 +139,9 @@ def _messages(prompt: Prompt, system: str | None, rounds: list[Round]) -> tuple[
         return (*first, Message("user", prompt(code, error)))
     if last is None:
         return (*first, Message("user", prompt))
-    said = Message("assistant", last.answer.text if last.program else excerpt(last.answer.text))
+    text = last.answer.text if last.program else excerpt(last.answer.text)
+    # Providers refuse empty messages.
+    said = Message("assistant", text or "(no text)")
     return (*last.messages, said, Message("user", _feedback(last)))
 
 

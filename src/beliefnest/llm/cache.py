@@ -57,7 +57,7 @@ class CachedModel:
         if self.mode in ("read", "only"):
             kept = _read(path)
             if kept is not None:
-                return Answer(kept.text, kept.usage, cached=True, date=kept.date)
+                return kept.answer
         answer = self.model.answer(messages, sampling)
         if self.mode != "off":
             exchange = exchange_of(self.name, messages, sampling, answer)

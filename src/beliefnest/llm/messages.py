@@ -6,9 +6,13 @@ from typing import Literal, Protocol
 
 from beliefnest.world.texts import visible
 
-__all__ = ["Answer", "Message", "Model", "Role", "Sampling", "Usage"]
+__all__ = ["Answer", "Finish", "Message", "Model", "Role", "Sampling", "Usage"]
 
 Role = Literal["system", "user", "assistant"]
+
+Finish = Literal["stop", "length", "content_filter"]
+"""Reason for the end of an answer. `stop`: the model ended it. `length`: a limit cut it off.
+`content_filter`: the model or its provider refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,12 +85,14 @@ class Answer:
         usage: Resources that this answer used.
         cached: True if the answer comes from a cache without a request.
         date: Day of the answer (UTC, YYYY-MM-DD); empty: not known, or the same on every day.
+        finish: Reason for its end. The text of a cut or refused answer may be empty.
     """
 
     text: str
     usage: Usage = field(default_factory=Usage)
     cached: bool = False
     date: str = ""
+    finish: Finish = "stop"
 
 
 class Model(Protocol):
@@ -100,6 +106,5 @@ class Model(Protocol):
         """Answer a conversation.
 
         Raises:
-            ModelError: The model is not available, refused or gave no text, or the run reached a
-                limit.
+            ModelError: The model is not available or gave no answer, or the run reached a limit.
         """

@@ -74,8 +74,7 @@ class ReplayModel:
                 f"{self.name} has {known} to this prompt; it differs from the recorded ones, "
                 f"or the run does. The prompt ends: {excerpt(last[-200:])}"
             )
-        exchange = left.popleft()
-        return Answer(exchange.text, exchange.usage, cached=True, date=exchange.date)
+        return left.popleft().answer
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from beliefnest.errors import BeliefNestError, ModelError
 from beliefnest.llm.clock import Clock
 from beliefnest.llm.connecting import TooManyBytesError, bounded_client
 from beliefnest.llm.failures import TransientModelError, UnusableAnswerError, excerpt
-from beliefnest.llm.messages import Answer, Message, Sampling, Usage
+from beliefnest.llm.messages import Answer, Finish, Message, Sampling, Usage
 from beliefnest.llm.providers import Endpoint
 from beliefnest.world.texts import is_well_formed
 
@@ -290,28 +290,19 @@ def _length(event: object) -> int:
 def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Answer:
     text = response.text or ""
     usage = _usage(model, messages, response)
-    if response.finish_reason == "content_filter":
-        words = (response.provider_details or {}).get("refusal") or text
-        told = f": {excerpt(_clean(model, str(words)))}" if words else ""
-        raise UnusableAnswerError(
-            f"{model.name} refused to answer{told}; word the task differently", usage
-        )
-    if response.finish_reason == "length":
-        raise UnusableAnswerError(
-            f"{model.name} was cut off at the limit of output tokens; "
-            "raise max_output_tokens or ask for less",
-            usage,
-        )
+    finish: Finish = "stop"
+    match response.finish_reason:
+        case "length":
+            finish = "length"
+        case "content_filter":
+            finish = "content_filter"
+            text = str((response.provider_details or {}).get("refusal") or text)
     if not is_well_formed(text):
         raise UnusableAnswerError(
             f"{model.name} gave an answer with half a surrogate pair in it; ask again",
             usage,
         )
-    if not text.strip():
-        raise UnusableAnswerError(
-            f"{model.name} gave an empty answer; ask again or use another model", usage
-        )
-    return Answer(text, usage, date=datetime.now(UTC).date().isoformat())
+    return Answer(text, usage, date=datetime.now(UTC).date().isoformat(), finish=finish)
 
 
 def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import msgspec
 
 from beliefnest.files import decode_json
-from beliefnest.llm.messages import Answer, Message, Sampling, Usage
+from beliefnest.llm.messages import Answer, Finish, Message, Sampling, Usage
 
 __all__ = ["Exchange", "decode_exchange", "encode_exchange", "exchange_of", "request_key"]
 
@@ -21,6 +21,7 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_def
         text: Text of the answer.
         usage: Resources that the answer used.
         date: Day of the answer, as in `Answer`; earlier versions did not store it.
+        finish: Reason for its end, as in `Answer`; earlier versions kept complete answers only.
     """
 
     model: str
@@ -29,6 +30,12 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_def
     text: str
     usage: Usage
     date: str = ""
+    finish: Finish = "stop"
+
+    @property
+    def answer(self) -> Answer:
+        """Return the answer as one that needed no request."""
+        return Answer(self.text, self.usage, cached=True, date=self.date, finish=self.finish)
 
 
 def request_key(model: str, messages: Sequence[Message], sampling: Sampling) -> str:
@@ -41,7 +48,15 @@ def exchange_of(
     model: str, messages: Sequence[Message], sampling: Sampling, answer: Answer
 ) -> Exchange:
     """Return the stored form of a request and its answer."""
-    return Exchange(model, tuple(messages), sampling, answer.text, answer.usage, answer.date)
+    return Exchange(
+        model,
+        tuple(messages),
+        sampling,
+        answer.text,
+        answer.usage,
+        answer.date,
+        answer.finish,
+    )
 
 
 def encode_exchange(exchange: Exchange) -> bytes:

@@ -54,6 +54,8 @@ def ask_question(
     prompt = believer.render(template, task=question.question, **asked)
     answer = model.answer((Message("system", system), Message("user", prompt)), sampling)
     found, reason = parse_answer(answer.text, options)
+    if answer.finish != "stop":
+        found = None
     reply = Reply(question.question, options, prompt, answer.text, found, reason)
     return reply, answer.usage
 
