@@ -361,7 +361,17 @@ class StatsOptions:
     study: Annotated[Path, typer.Argument(help="Folder of a study.")]
     by: Annotated[
         list[str] | None,
-        typer.Option(metavar="COLUMN", help="Group rows by this column; can be repeated."),
+        typer.Option(
+            metavar="COLUMN",
+            help="Group rows by this column, for regressions too; can be repeated.",
+        ),
+    ] = None
+    where: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CONDITION",
+            help="Use only rows that hold this, such as 'order == 2 and condition != \"3\"'.",
+        ),
     ] = None
     between: Annotated[
         list[str] | None,

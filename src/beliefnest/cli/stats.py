@@ -16,9 +16,10 @@ from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
-from beliefnest.studies.regression import Effect, Regression
+from beliefnest.studies.regression import Effect
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study import Study
+from beliefnest.world.words import counted
 
 __all__ = ["run_power", "run_stats"]
 
@@ -26,7 +27,7 @@ _Rows = Sequence[Mapping[str, Any]]
 
 
 def run_stats(options: StatsOptions) -> int:
-    """Print the accuracies of a study, and the wanted comparisons, regression and positions.
+    """Print the accuracies of a study, and the wanted comparisons, regressions and positions.
 
     Returns:
         Exit status 0.
@@ -35,20 +36,17 @@ def run_stats(options: StatsOptions) -> int:
         InputError: A column does not exist, or the rows do not allow a statistic.
     """
     result = StudyResult.read(options.study)
+    if options.where is not None:
+        result = result.where(options.where)
     by = options.by or None
     found: dict[str, Any] = {"summary": result.counted(result.checked(by or result.groups))}
     if options.between:
         found["differences"] = {name: result.compared(name, by) for name in options.between}
-    fitted = _fitted(result, options)
-    if fitted is not None:
-        found["regression"] = {
-            "method": fitted.method,
-            "rows": fitted.rows,
-            "variations": fitted.groups,
-            "correlation" if fitted.kind == "gee" else "intercept_sd": fitted.correlation,
-            "references": dict(fitted.references),
-            "terms": fitted.plain(),
-        }
+    fits = _fits(result, options)
+    if options.by and fits:
+        found["regressions"] = fits
+    elif fits:
+        (found["regression"],) = fits
     if options.positions:
         found["positions"] = result.counted_positions(result.checked(by or result.position_groups))
     if options.figure is not None:
@@ -73,11 +71,15 @@ def _draw(result: StudyResult, file: Path, by: list[str] | None) -> None:
         raise InputError(f"{file} cannot be written: {error.strerror}") from None
 
 
-def _fitted(result: StudyResult, options: StatsOptions) -> Regression | None:
+def _fits(result: StudyResult, options: StatsOptions) -> list[dict[str, Any]]:
+    """Return the regression of each group of `--by`, with the group's values."""
     effects: list[Effect] = [
-        tuple(each.split(":")) if ":" in each else each for each in options.effect or () or ()
+        tuple(each.split(":")) if ":" in each else each for each in options.effect or ()
     ]
-    return result.fit(effects, options.kind, options.family) if effects else None
+    if not effects:
+        return []
+    fits = result.fits(effects, options.kind, options.family, options.by or ())
+    return [{**values, **fitted.plain()} for values, fitted in fits]
 
 
 def _print(found: Mapping[str, Any], by: Sequence[str]) -> None:
@@ -85,18 +87,33 @@ def _print(found: Mapping[str, Any], by: Sequence[str]) -> None:
     _show("accuracy, with 95 % intervals", found["summary"], (*by, *shown))
     for column, pairs in found.get("differences", {}).items():
         _show(f"paired differences of accuracy: {column}", pairs)
-    if "regression" in found:
-        told = found["regression"]
-        counts = f"{told['rows']} rows, {told['variations']} variations"
-        references = ", ".join(f"{name} {level}" for name, level in told["references"].items())
-        _show(f"regression of right answers: {counts}; reference {references}", told["terms"])
-        console = stdout()
-        for name in ("correlation", "intercept_sd"):
-            if name in told:
-                console.print(f"{name.replace('_', ' ')}: {told[name]:.3g}", highlight=False)
-        console.print(told["method"], highlight=False, soft_wrap=True)
+    alone = [found["regression"]] if "regression" in found else []
+    for told in found.get("regressions", alone):
+        _print_regression(told, [f"{name} {told[name]}" for name in by] if not alone else [])
     if "positions" in found:
         _show("options chosen, by position of the right one", found["positions"])
+
+
+def _print_regression(told: Mapping[str, Any], group: Sequence[str]) -> None:
+    counts = f"{told['rows']} rows, {counted(told['variations'], 'variation')}"
+    references = ", ".join(f"{name} {level}" for name, level in told["references"].items())
+    within = f" with {', '.join(group)}" if group else ""
+    title = f"regression of right answers{within}: {counts}; reference {references}"
+    _show(title, told["terms"])
+    console = stdout()
+    for name in ("correlation", "intercept_sd"):
+        if told.get(name) is not None:
+            console.print(f"{name.replace('_', ' ')}: {told[name]:.3g}", highlight=False)
+    if told["sound"]:
+        console.print(told["method"], highlight=False, soft_wrap=True)
+        return
+    for line in (title, f"not sound, so without coefficients: {told['note']}"):
+        console.print(escape(printable(line)), highlight=False, soft_wrap=True)
+    other = told["substitute"]
+    if other is not None:
+        _show("in its place", other["terms"])
+        console.print(escape(other["method"]), highlight=False, soft_wrap=True)
+    _show("accuracy at each combination of levels, with 95 % intervals", told["counts"])
 
 
 def _show(title: str, rows: _Rows, columns: Sequence[str] | None = None) -> None:

@@ -2,34 +2,49 @@
 
 import itertools
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from beliefnest.errors import InputError, MissingExtraError
-from beliefnest.studies.counting import Row, judged_rows
+from beliefnest.errors import InputError
+from beliefnest.studies.counting import Row, count_rows, judged_rows
+from beliefnest.studies.fit_checks import (
+    FEWEST,
+    Columns,
+    certainty_fault,
+    level_of,
+    rows_fault,
+    separation_fault,
+    support_fault,
+)
+from beliefnest.studies.fits import Array, Family, Fit, bootstrap, firth, gee, mixed, statsmodels
 from beliefnest.studies.plainframe import Typed, plain_frame
 
 if TYPE_CHECKING:  # pandas is optional, and imported when a table is made.
     import pandas
 
-__all__ = ["FAMILIES", "KINDS", "Effect", "Family", "Kind", "Regression", "fit_rows"]
+__all__ = [
+    "FAMILIES",
+    "KINDS",
+    "Effect",
+    "Family",
+    "Kind",
+    "Regression",
+    "Substitute",
+    "Term",
+    "fit_rows",
+]
 
 Kind = Literal["gee", "mixed"]
-Family = Literal["binomial", "gaussian"]
 KINDS: tuple[Kind, ...] = ("gee", "mixed")
 FAMILIES: tuple[Family, ...] = ("binomial", "gaussian")
 Effect = str | tuple[str, ...]
 """Name of a column, or names of columns that interact."""
 
-_NODES = 31
-"""Nodes of the Gauss-Hermite quadrature."""
-_FARTHEST = 15.0
-
-_Z95 = 1.959963984540054
+_COUNTED = ("variations", "judged", "right", "accuracy", "low", "high", "interval")
+"""Columns of counts, after those of the effects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,18 +55,48 @@ class Term:
         name: `intercept`, or `COLUMN[LEVEL]`; joined by `:` for interactions.
         estimate: Estimate: of the log odds, or of the accuracy (`gaussian`).
         se: Its standard error.
-        p: Two-sided p of the z test.
+        p: Two-sided p.
+        low: Lower bound of the 95 % interval.
+        high: Upper bound.
     """
 
     name: str
     estimate: float
     se: float
     p: float
+    low: float
+    high: float
 
     @property
     def interval(self) -> tuple[float, float]:
         """The 95 % interval."""
-        return self.estimate - _Z95 * self.se, self.estimate + _Z95 * self.se
+        return self.low, self.high
+
+    def plain(self, family: Family) -> dict[str, Any]:
+        """Return the values by name, with the odds ratio for the family `binomial`."""
+        odds = {"odds_ratio": math.exp(self.estimate)} if family == "binomial" else {}
+        return {
+            "term": self.name,
+            "estimate": self.estimate,
+            "low": self.low,
+            "high": self.high,
+            "se": self.se,
+            "p": self.p,
+            **odds,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Substitute:
+    """Sound estimates of another method, in place of a fit that is not sound.
+
+    Attributes:
+        method: The method, in words.
+        terms: Its coefficients, on the same scale.
+    """
+
+    method: str
+    terms: tuple[Term, ...]
 
 
 @dataclass(frozen=True)
@@ -61,73 +106,70 @@ class Regression:
     Attributes:
         kind: `gee` or `mixed`.
         family: `binomial` (logit) or `gaussian` (linear probability).
-        terms: Coefficients; the first level of each column is the reference.
+        sound: True if the rows determine the model, and its fit converged.
+        note: Reason why the fit is not sound; empty if it is.
+        terms: Coefficients; the first level of each column is the reference. Empty if the fit is
+            not sound.
+        substitute: Estimates of a method that is sound for these rows, in place of a fit that is
+            not; None: the fit is sound, or no regression is.
+        counts: Accuracy with its interval for each combination of levels, if the fit is not sound.
         references: Reference level of each column.
         rows: Number of judged rows; copies are left out.
         groups: Number of independent variations.
         correlation: Working correlation within variations (`gee`), or the standard deviation of
-            the variations' intercepts (`mixed`).
-        software: Name and version of the library.
-        raw: Result object of statsmodels or SciPy.
+            the variations' intercepts (`mixed`); None if the fit is not sound.
+        method: The method in words, for a methods section.
+        raw: Result object of statsmodels or SciPy; None if the fit is not sound.
     """
 
     kind: Kind
     family: Family
+    sound: bool
+    note: str
     terms: tuple[Term, ...]
+    substitute: Substitute | None
+    counts: tuple[Mapping[str, Any], ...]
     references: Mapping[str, Any]
     rows: int
     groups: int
-    correlation: float
-    software: str
+    correlation: float | None
+    method: str
     raw: Any
 
-    @property
-    def method(self) -> str:
-        """Return the method in words, for a methods section."""
-        link = "logit link" if self.family == "binomial" else "identity link"
-        if self.kind == "gee":
-            return (
-                f"generalized estimating equations ({self.family}, {link}), exchangeable working "
-                "correlation within variations, bias-reduced robust standard errors (Mancl and "
-                f"DeRouen, 2001); {self.software}"
-            )
-        if self.family == "binomial":
-            return (
-                "logistic mixed model with a random intercept for each variation, fitted by "
-                f"maximum likelihood (Gauss-Hermite quadrature with {_NODES} nodes), Wald "
-                f"intervals; SciPy and {self.software}"
-            )
-        return (
-            "linear mixed model with a random intercept for each variation, fitted by REML; "
-            f"{self.software}"
-        )
-
-    def plain(self) -> list[dict[str, Any]]:
-        """Return the rows of `table` as plain values."""
-        odds = self.family == "binomial"
-        return [
-            {
-                "term": each.name,
-                "estimate": each.estimate,
-                "low": each.interval[0],
-                "high": each.interval[1],
-                "se": each.se,
-                "p": each.p,
-                **({"odds_ratio": math.exp(each.estimate)} if odds else {}),
-            }
-            for each in self.terms
-        ]
+    def plain(self) -> dict[str, Any]:
+        """Return everything but `raw` as plain values."""
+        other = self.substitute
+        return {
+            "sound": self.sound,
+            "note": self.note,
+            "kind": self.kind,
+            "family": self.family,
+            "method": self.method,
+            "rows": self.rows,
+            "variations": self.groups,
+            "correlation" if self.kind == "gee" else "intercept_sd": self.correlation,
+            "references": dict(self.references),
+            "terms": [each.plain(self.family) for each in self.terms],
+            "substitute": other
+            and {
+                "method": other.method,
+                "terms": [each.plain(self.family) for each in other.terms],
+            },
+            "counts": [dict(each) for each in self.counts],
+        }
 
     def table(self) -> "pandas.DataFrame":
         """Return a row for each term: `estimate` with its 95 % interval, `se`, `p`.
 
-        With the family `binomial`, `odds_ratio` is the exponential of the estimate.
+        With the family `binomial`, `odds_ratio` is the exponential of the estimate. If the fit is
+        not sound, the table has no rows.
 
         Raises:
             MissingExtraError: pandas is not installed.
         """
-        rows = self.plain()
-        return plain_frame({name: Typed([row[name] for row in rows]) for name in rows[0]})
+        rows = [each.plain(self.family) for each in self.terms]
+        names = Term("", 0.0, 0.0, 0.0, 0.0, 0.0).plain(self.family)
+        return plain_frame({name: Typed([row[name] for row in rows]) for name in names})
 
 
 def fit_rows(
@@ -141,47 +183,165 @@ def fit_rows(
         kind: `gee` or `mixed`.
         family: `binomial` or `gaussian`.
 
+    Returns:
+        The regression; `sound` is False if the rows do not determine it, and `note` says why.
+
     Raises:
-        InputError: The rows do not determine the model; the message says why.
+        InputError: The kind or family does not exist, or an effect is the column `variation`.
         MissingExtraError: statsmodels is not installed.
     """
+    if kind not in KINDS:
+        raise InputError(f"kind is {kind!r}; give one of {', '.join(KINDS)}")
+    if family not in FAMILIES:
+        raise InputError(f"family is {family!r}; give one of {', '.join(FAMILIES)}")
+    wanted: list[Columns] = [(each,) if isinstance(each, str) else tuple(each) for each in effects]
+    names = list(dict.fromkeys(name for each in wanted for name in each))
+    if "variation" in names:
+        raise InputError("variation is the group of the model; name other effects")
+    statsmodels()
     chosen = judged_rows(rows)
-    names = list(dict.fromkeys(name for each in effects for name in _columns(each)))
-    levels = {name: list(dict.fromkeys(_text(row, name) for row in chosen)) for name in names}
-    _check(chosen, names, levels, kind, family)
-    design, terms = _design(chosen, effects, levels)
-    right = np.array([bool(row["ok"]) for row in chosen], dtype=float)
-    groups = _codes([row["variation"] for row in chosen])
-    fitted = _fit_gee if kind == "gee" else _fit_mixed
-    estimates, errors, tests, correlation, raw = fitted(right, design, groups, family)
-    if not np.isfinite([*estimates, *errors]).all():
-        raise InputError(
-            "the fit has no finite estimates: the data are too few or too uniform for these "
-            "effects; name fewer effects, or use the family gaussian"
-        )
+    fitted, terms, substitute = _fitted(chosen, wanted, names, kind, family)
+    sound = not fitted.fault
     return Regression(
         kind=kind,
         family=family,
-        terms=tuple(
-            Term(name, float(estimate), float(error), p)
-            for name, estimate, error, p in zip(terms, estimates, errors, tests, strict=True)
-        ),
-        references={name: found[0] for name, found in levels.items()},
+        sound=sound,
+        note=fitted.fault,
+        terms=_terms(terms, fitted),
+        substitute=substitute,
+        counts=() if sound else tuple(_counts(chosen, names)),
+        references={name: level_of(chosen[0], name) for name in names} if chosen else {},
         rows=len(chosen),
-        groups=int(groups.max()) + 1,
-        correlation=correlation,
-        software=f"statsmodels {_statsmodels().__version__}",
-        raw=raw,
+        groups=len({row["variation"] for row in chosen}),
+        correlation=fitted.correlation if sound else None,
+        method=_method(kind, family, fitted.told or "exchangeable working correlation"),
+        raw=fitted.raw,
     )
 
 
-def _columns(effect: Effect) -> tuple[str, ...]:
-    return (effect,) if isinstance(effect, str) else effect
+def _terms(names: Sequence[str], fit: Fit) -> tuple[Term, ...]:
+    columns = (fit.estimates, fit.errors, fit.tests, fit.low, fit.high)
+    found = zip(*(each.tolist() for each in columns), strict=True)
+    return tuple(Term(name, *values) for name, values in zip(names, found, strict=False))
 
 
-def _text(row: Row, name: str) -> str:
-    value = row.get(name)
-    return "-" if value is None else str(value)
+def _counts(rows: Sequence[Row], names: Sequence[str]) -> list[dict[str, Any]]:
+    return [
+        {name: group[name] for name in (*names, *_COUNTED)} for group in count_rows(rows, names)
+    ]
+
+
+def _fitted(
+    rows: Sequence[Row],
+    effects: Sequence[Columns],
+    names: Sequence[str],
+    kind: Kind,
+    family: Family,
+) -> tuple[Fit, Sequence[str], Substitute | None]:
+    """Return the fit, the names of its terms, and what is sound in its place."""
+    fault = rows_fault(rows, names)
+    if fault:
+        return Fit.failed(fault), (), None
+    design, terms = _design(rows, effects, names)
+    if np.linalg.matrix_rank(design) < design.shape[1]:
+        told = ", ".join(":".join(each) for each in effects)
+        fault = (
+            f"the effects {told} cannot be told apart: one follows from the others, or some "
+            "combination has no rows; name fewer effects"
+        )
+        return Fit.failed(fault), (), None
+    right = np.array([bool(row["ok"]) for row in rows], dtype=float)
+    groups = _codes([row["variation"] for row in rows])
+    thin = support_fault(rows, effects, design, groups, terms)
+    endless = ""
+    if not thin and family == "gaussian":
+        endless = certainty_fault(right, design)
+    elif not thin:
+        endless = separation_fault(rows, effects, right, design, terms)
+    fault = thin or endless
+    if not fault and kind == "mixed" and int(groups.max()) + 1 == len(rows):
+        fault = (
+            "each variation has one judged row, so that the variance between variations cannot be "
+            "told from that within them"
+        )
+    if not fault:
+        fit = gee if kind == "gee" else mixed
+        found = fit(right, design, groups, family)
+        if not found.fault:
+            return found, terms, None
+        fault = found.fault
+    other = _substitute(right, design, groups, terms, kind, family, solid=not (thin or endless))
+    return Fit.failed(fault), (), other
+
+
+def _substitute(
+    right: Array,
+    design: Array,
+    groups: Any,
+    terms: Sequence[str],
+    kind: Kind,
+    family: Family,
+    *,
+    solid: bool,
+) -> Substitute | None:
+    """Return the estimates of the first other method that is sound.
+
+    Args:
+        right: Answers, as for a fit.
+        design: Design matrix.
+        groups: Numbers of variations.
+        terms: Names of the coefficients.
+        kind: Kind of the regression that is not sound.
+        family: Its family.
+        solid: True if rows of enough variations have each level, and none is separated.
+    """
+    if int(groups.max()) + 1 < FEWEST:
+        return None
+    if solid and kind == "mixed":
+        found = gee(right, design, groups, family)
+        if not found.fault:
+            return Substitute(_method("gee", family, found.told), _terms(terms, found))
+    if family == "binomial":
+        found = firth(right, design, groups)
+        return Substitute(_FIRTH, _terms(terms, found))
+    if solid:
+        found = bootstrap(right, design, groups)
+        if not found.fault:
+            # A coefficient that is the same in all draws has no error.
+            known = tuple(each for each in _terms(terms, found) if each.high - each.low > 1e-9)
+            return Substitute(_BOOTSTRAP, known) if known else None
+    return None
+
+
+_FIRTH = (
+    "logistic regression with Firth's penalty (1993), profile likelihood intervals; rows weigh as "
+    "many independent rows as their intraclass correlation within variations leaves (Rao and "
+    "Scott, 1992)"
+)
+_BOOTSTRAP = (
+    "linear regression by least squares with percentile intervals of the cluster bootstrap over "
+    "variations (2,000 draws; Field and Welsh, 2007)"
+)
+
+
+def _method(kind: Kind, family: Family, told: str) -> str:
+    """Return a method in words."""
+    software = f"statsmodels {statsmodels().__version__}"
+    if kind == "gee":
+        link = "logit link" if family == "binomial" else "identity link"
+        return (
+            f"generalized estimating equations ({family}, {link}), {told} within variations, "
+            f"bias-reduced robust standard errors (Mancl and DeRouen, 2001); {software}"
+        )
+    if family == "binomial":
+        return (
+            "logistic mixed model with a random intercept for each variation, fitted by maximum "
+            f"likelihood (adaptive Gauss-Hermite quadrature), Wald intervals; SciPy and {software}"
+        )
+    return (
+        "linear mixed model with a random intercept for each variation, fitted by REML, Wald "
+        "intervals; SciPy"
+    )
 
 
 def _codes(values: Sequence[object]) -> "np.ndarray[Any, Any]":
@@ -189,145 +349,23 @@ def _codes(values: Sequence[object]) -> "np.ndarray[Any, Any]":
     return np.array([numbers[value] for value in values])
 
 
-def _check(
-    rows: Sequence[Row],
-    names: Sequence[str],
-    levels: Mapping[str, Sequence[str]],
-    kind: Kind,
-    family: Family,
-) -> None:
-    """Refuse rows from which the model cannot be estimated."""
-    if kind not in KINDS:
-        raise InputError(f"kind is {kind!r}; give one of {', '.join(KINDS)}")
-    if family not in FAMILIES:
-        raise InputError(f"family is {family!r}; give one of {', '.join(FAMILIES)}")
-    if len({row["variation"] for row in rows}) < 3:
-        raise InputError("fewer than three variations have judged rows; play more variations")
-    if len({row["ok"] for row in rows}) == 1:
-        told = "right" if rows[0]["ok"] else "wrong"
-        raise InputError(f"all {len(rows)} judged rows are {told}, so there is nothing to explain")
-    for name in names:
-        if name == "variation":
-            raise InputError("variation is the group of the model; name other effects")
-        if len(levels[name]) < 2:
-            raise InputError(f"{name} is {levels[name][0]} in all judged rows; leave it out")
-        if family == "binomial":
-            for level in levels[name]:
-                found = {row["ok"] for row in rows if _text(row, name) == level}
-                if len(found) == 1:
-                    told = "right" if found == {True} else "wrong"
-                    raise InputError(
-                        f"all rows with {name} {level} are {told}, so that its odds have no finite "
-                        "estimate; use the family gaussian (differences of accuracies)"
-                    )
-
-
 def _design(
-    rows: Sequence[Row], effects: Sequence[Effect], levels: Mapping[str, Sequence[str]]
-) -> tuple["np.ndarray[Any, Any]", list[str]]:
+    rows: Sequence[Row], effects: Sequence[Columns], names: Sequence[str]
+) -> tuple[Array, list[str]]:
     """Return the design matrix in treatment coding, and the names of its columns."""
+    levels = {name: list(dict.fromkeys(level_of(row, name) for row in rows)) for name in names}
     dummies = {
         name: {
-            f"{name}[{level}]": np.array([_text(row, name) == level for row in rows], dtype=float)
+            f"{name}[{level}]": np.array(
+                [level_of(row, name) == level for row in rows], dtype=float
+            )
             for level in found[1:]
         }
         for name, found in levels.items()
     }
     columns = {"intercept": np.ones(len(rows))}
     for effect in effects:
-        for parts in itertools.product(*(dummies[name].items() for name in _columns(effect))):
+        for parts in itertools.product(*(dummies[name].items() for name in effect)):
             term = ":".join(name for name, _ in parts)
             columns[term] = np.prod([values for _, values in parts], axis=0)
-    matrix = np.column_stack(list(columns.values()))
-    if np.linalg.matrix_rank(matrix) < matrix.shape[1]:
-        told = ", ".join(":".join(_columns(each)) for each in effects)
-        raise InputError(
-            f"the effects {told} cannot be told apart: one follows from the others, or some "
-            "combination has no rows; name fewer effects"
-        )
-    return matrix, list(columns)
-
-
-_Fit = tuple[Sequence[float], Sequence[float], Sequence[float], float, Any]
-
-
-def _fit_gee(right: Any, design: Any, groups: Any, family: Family) -> _Fit:
-    api = _statsmodels()
-    chosen = api.families.Binomial() if family == "binomial" else api.families.Gaussian()
-    single = len(set(groups)) == len(groups)
-    # With one row in each group there is no correlation to estimate.
-    covariance = api.cov_struct.Independence() if single else api.cov_struct.Exchangeable()
-    model = api.GEE(right, design, groups=groups, family=chosen, cov_struct=covariance)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        result = model.fit(cov_type="bias_reduced")
-    correlation = 0.0 if single else float(covariance.dep_params)
-    tests = [_p(e, s) for e, s in zip(result.params, result.bse, strict=True)]
-    return list(result.params), list(result.bse), tests, correlation, result
-
-
-def _fit_mixed(right: Any, design: Any, groups: Any, family: Family) -> _Fit:
-    if family == "binomial":
-        return _fit_logistic_mixed(right, design, groups)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        result = _statsmodels().MixedLM(right, design, groups=groups).fit(reml=True)
-    estimates, errors = list(result.fe_params), list(result.bse_fe)
-    spread = math.sqrt(max(0.0, float(np.asarray(result.cov_re).ravel()[0])))
-    tests = [_p(e, s) for e, s in zip(estimates, errors, strict=True)]
-    return estimates, errors, tests, spread, result
-
-
-def _fit_logistic_mixed(right: Any, design: Any, groups: Any) -> _Fit:
-    """Fit a logistic model with a normal random intercept by maximum likelihood.
-
-    The likelihood of a group integrates over its intercept, by Gauss-Hermite quadrature.
-    statsmodels has this model only with approximations of its posterior: the mode, at which the
-    variance of the intercepts collapses to 0, and mean-field variational Bayes, whose standard
-    deviations are too small.
-    """
-    api = _statsmodels()
-    from scipy.optimize import minimize
-    from statsmodels.tools.numdiff import approx_hess
-
-    nodes, weights = np.polynomial.hermite.hermgauss(_NODES)
-    signs = 2 * right - 1
-    starts = np.flatnonzero(np.diff(np.sort(groups), prepend=-1))
-    order = np.argsort(groups, kind="stable")
-
-    def negative(values: Any) -> float:
-        fixed = design @ values[:-1]
-        # One column for each node; the deviation may have any sign, as the likelihood is even.
-        linear = fixed[:, None] + values[-1] * math.sqrt(2) * nodes[None, :]
-        logs = -np.logaddexp(0, -signs[:, None] * linear)
-        sums = np.add.reduceat(logs[order], starts, axis=0)
-        return -float(
-            np.logaddexp.reduce(sums + np.log(weights / math.sqrt(math.pi)), axis=1).sum()
-        )
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        begin = api.Logit(right, design).fit_regularized(alpha=1e-3, disp=0).params
-        result = minimize(negative, np.append(begin, 0.5), method="BFGS")
-        try:
-            errors = np.sqrt(np.diag(np.linalg.inv(approx_hess(result.x, negative))))
-        except np.linalg.LinAlgError:
-            errors = np.full(len(result.x), math.nan)
-    # Beyond these log odds, the likelihood hardly changes: some level has no finite estimate.
-    if not (np.abs(result.x) < _FARTHEST).all():
-        errors[:] = math.nan
-    estimates, own = list(result.x[:-1]), list(errors[:-1])
-    tests = [_p(e, s) for e, s in zip(estimates, own, strict=True)]
-    return estimates, own, tests, abs(float(result.x[-1])), result
-
-
-def _p(estimate: float, error: float) -> float:
-    return math.erfc(abs(estimate) / error / math.sqrt(2)) if error > 0 else math.nan
-
-
-def _statsmodels() -> Any:
-    try:
-        from statsmodels import api
-    except ModuleNotFoundError:
-        raise MissingExtraError("regressions of studies need statsmodels", "stats") from None
-    return api
+    return np.column_stack(list(columns.values())), list(columns)

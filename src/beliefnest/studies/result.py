@@ -4,7 +4,7 @@ import os
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import InputError
 from beliefnest.studies.archive import write_zip
@@ -114,16 +114,57 @@ class StudyResult(StudyRecord):
             family: `binomial`: logit, estimates are log odds. `gaussian`: linear probability,
                 estimates are differences of accuracies.
 
+        Returns:
+            The regression. If the rows do not determine it, `sound` is False, `note` says why, and
+            `substitute` and `counts` hold what these rows do say.
+
         Raises:
-            InputError: A column does not exist, or the rows do not determine the model.
+            InputError: A column does not exist.
+            MissingExtraError: statsmodels is not installed (`beliefnest[stats]`).
+        """
+        ((_, fitted),) = self.fits(effects, kind, family, by=())
+        return fitted
+
+    def fits(
+        self,
+        effects: Sequence[Effect] | str,
+        kind: Kind = "gee",
+        family: Family = "binomial",
+        by: Sequence[str] | str = (),
+    ) -> list[tuple[dict[str, Any], Regression]]:
+        """Fit a regression in each group of rows.
+
+        Args:
+            effects: As for `fit`.
+            kind: As for `fit`.
+            family: As for `fit`.
+            by: Columns of `frame` that define the groups; empty: one group of all rows.
+
+        Returns:
+            The group's values of `by`, by name, and its regression.
+
+        Raises:
+            InputError: A column does not exist, or is both an effect and in `by`.
             MissingExtraError: statsmodels is not installed (`beliefnest[stats]`).
         """
         wanted: list[Effect] = [effects] if isinstance(effects, str) else list(effects)
         if not wanted:
             raise InputError("effects is empty; name at least one column")
+        groups = self.checked(by)
         for each in wanted:
-            self.checked(each if isinstance(each, str) else list(each))
-        return fit_rows(self.rows, wanted, kind, family)
+            for name in self.checked(each if isinstance(each, str) else list(each)):
+                if name in groups:
+                    raise InputError(
+                        f"{name} is an effect and defines groups, in which it does not vary; leave "
+                        "it out of one of both"
+                    )
+        rows: dict[tuple[Any, ...], list[dict[str, Any]]] = {} if groups else {(): self.rows}
+        for row in self.rows if groups else ():
+            rows.setdefault(tuple(row.get(name) for name in groups), []).append(row)
+        return [
+            (dict(zip(groups, values, strict=True)), fit_rows(own, wanted, kind, family))
+            for values, own in rows.items()
+        ]
 
     def positions(self, by: Sequence[str] | str | None = None) -> "pandas.DataFrame":
         """Return how often each position was chosen for each position of the right option.
@@ -228,7 +269,7 @@ class StudyResult(StudyRecord):
                 cannot be written, or the folder is that of an earlier version.
         """
         path = Path(file)
-        write_zip(bundled(self, os.environ, runs=runs), path)
+        write_zip(bundled(self.whole, os.environ, runs=runs), path)
         return path
 
     def methods(self, form: Format = "markdown") -> str:
@@ -240,7 +281,7 @@ class StudyResult(StudyRecord):
         Raises:
             InputError: The format does not exist, or a file of the folder is damaged.
         """
-        return methods_text(study_facts(self), form)
+        return methods_text(study_facts(self.whole), form)
 
     def reproduce(self, jobs: int = 1) -> Reproduction:
         """Play all cells with a result again, without any model, and compare all rows.
@@ -261,7 +302,7 @@ class StudyResult(StudyRecord):
             MissingExtraError: pyarrow is not installed; `rows.csv` is written.
         """
         csv, parquet = self.folder.path / "rows.csv", self.folder.path / "rows.parquet"
-        columns = self.typed()
+        columns = self.whole.typed()
         write_csv(columns, csv)
         write_parquet(columns, parquet)
         return csv, parquet

@@ -1,7 +1,7 @@
 """Recorded study: its rows, and statistics of them as plain values."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
@@ -14,6 +14,7 @@ from beliefnest.studies.plainframe import Typed
 from beliefnest.studies.positions import choices_of, count_positions
 from beliefnest.studies.power import Source
 from beliefnest.studies.power_sources import recorded_sources
+from beliefnest.studies.row_filter import RowFilter
 from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table, variation_columns
@@ -32,9 +33,11 @@ class StudyRecord:
 
     Attributes:
         folder: Folder of the study.
+        kept: Condition that all rows hold; None: all rows of the study.
     """
 
     folder: StudyFolder
+    kept: RowFilter | None = None
 
     @classmethod
     def read(cls, path: str | Path) -> Self:
@@ -66,7 +69,33 @@ class StudyRecord:
     @cached_property
     def rows(self) -> list[dict[str, Any]]:
         """Return the rows of `frame` as plain values."""
+        rows = self._every_row
+        return rows if self.kept is None else self.kept.kept(rows)
+
+    @cached_property
+    def _every_row(self) -> list[dict[str, Any]]:
         return list(self.table.rows(self.folder, self._plan))
+
+    def where(self, condition: str) -> Self:
+        """Return the results of the rows that hold a condition.
+
+        Statistics, figures and the page of what is returned are about these rows. Its tables in
+        files, supplement and methods are those of the whole study.
+
+        Args:
+            condition: The condition, such as `order == 2 and condition != "3"`; see `RowFilter`.
+
+        Raises:
+            InputError: The text is no condition, names an unknown column, or no row holds it.
+        """
+        found = replace(self, kept=RowFilter.parse(condition, self.columns))
+        found.rows  # noqa: B018 - refuse a condition that no row holds
+        return found
+
+    @property
+    def whole(self) -> Self:
+        """Return the results of all rows."""
+        return self if self.kept is None else replace(self, kept=None)
 
     @property
     def invalid(self) -> list[dict[str, Any]]:
@@ -149,15 +178,16 @@ class StudyRecord:
     def choices(self) -> list[dict[str, Any]]:
         """Return the answers to questions with options, see `choices_of`; copies are left out."""
         rows: dict[str, list[dict[str, Any]]] = {}
-        for row in self.rows:
+        for row in self._every_row:
             rows.setdefault(row["cell"], []).append(row)
         found = ((own, self.folder.cell(name)) for name, own in rows.items())
-        return [
+        choices = [
             choice
             for own, cell in found
             if cell is not None and cell["error"] is None and own[0]["copy_of"] is None
             for choice in choices_of(own, cell)
         ]
+        return choices if self.kept is None else [each for each in choices if self.kept.holds(each)]
 
     @property
     def position_groups(self) -> tuple[str, ...]:
