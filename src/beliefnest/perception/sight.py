@@ -13,7 +13,6 @@ angle are inclusive, with a tolerance of 1e-9. The kernels are compiled on first
 """
 
 import functools
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -154,12 +153,6 @@ class SightLines(ABC):
             raise InputError(f"block positions are of type {rows.dtype}; give integers")
         cells = rows.astype(np.int64) + (1 - np.array(self.origin))
         return eye_loops.seen_blocks(self._scene, self._eye(eye, yaw, pitch), cells)
-
-    def has_free_line(self, eye: Point, position: Position) -> bool:
-        """Return True if an eye that looks straight at the middle of a block sees the block."""
-        x, y, z = (part + 0.5 - at for part, at in zip(position, eye, strict=True))
-        yaw, pitch = math.atan2(-x, -z), math.atan2(y, math.hypot(x, z))
-        return bool(self.sees_blocks(eye, yaw, pitch, [position])[0])
 
     def sees_points(self, eye: Point, yaw: float, pitch: float, points: npt.ArrayLike) -> BoolArray:
         """Return a mask of the visible points among `points` (n, 3): bool (n,).

@@ -243,8 +243,6 @@ class Sensed:
         items: Dropped items by number, at their last seen positions.
         heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
         signs: Known texts of signs, by position; all other signs are blank.
-        has_free_line: Function of eyes and a block that returns whether no known block hides it;
-            None if nothing is ever hidden.
     """
 
     blocks: Terrain
@@ -252,11 +250,7 @@ class Sensed:
     items: Mapping[int, DroppedItem] = field(default_factory=dict)
     heard: tuple[tuple[str, str, str | None], ...] = ()
     signs: Mapping[Position, str] = field(default_factory=dict)
-    has_free_line: "FreeLine | None" = None
 
-
-FreeLine = Callable[[Point, Position], bool]
-"""Function of eyes and a block that returns whether the block can be seen from there."""
 
 Sense = Callable[[], Sensed]
 """Function that returns what a program may read, as of the latest tick that has ended."""

@@ -101,15 +101,24 @@ class SkillActing:
         ticks: Ticks of a step; None: a step lasts until all actions have ended.
         timeout_ticks: Ticks after which actions are stopped, if `ticks` is None.
         senses: Knowledge with which skills look for ways, containers and other agents.
+        speech_ticks: Ticks per utterance, as in programs.
     """
 
-    def __init__(self, nest: Nest, ticks: int | None, timeout_ticks: int, senses: Senses) -> None:
+    def __init__(
+        self,
+        nest: Nest,
+        ticks: int | None,
+        timeout_ticks: int,
+        senses: Senses,
+        speech_ticks: int,
+    ) -> None:
         world = nest.scripted_world
         self._nest = nest
         self._world = world
         self._senses = senses
         self._ticks = ticks
         self._timeout_ticks = timeout_ticks
+        self._speech_ticks = speech_ticks
         self._doing: dict[str, Doing] = {}
         self._spoken = False
         self._grounds: dict[str, tuple[Terrain, Ground]] = {}
@@ -147,6 +156,7 @@ class SkillActing:
             others=lambda: self._others(agent),
             signs=lambda: self._signs(agent),
             ground=self._real_ground,
+            speech_ticks=self._speech_ticks,
         )
         self._doing[agent] = perform(hand, call)
         # Run the skill up to its first tick: it checks its arguments and has no effect yet.
@@ -178,12 +188,12 @@ class SkillActing:
         return known[1]
 
     def _others(self, agent: str) -> Mapping[str, AgentState]:
-        agents = self._world.agents
+        others = {name: each for name, each in self._world.agents.items() if name != agent}
         if self._senses == "world":
-            return agents
+            return others
         seen = self._nest[path_text((agent,))].state.agents
         # An agent that is perceived now is believed to be where it really is.
-        return {name: each for name, each in agents.items() if seen[name].current or name == agent}
+        return {name: each for name, each in others.items() if seen[name].current}
 
     def _signs(self, agent: str) -> Mapping[Position, str]:
         if self._senses == "world":

@@ -300,7 +300,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             nest.play()
         senses, timeout = chosen.senses or "world", chosen.timeout_ticks or _TIMEOUT_TICKS
         if chosen.actions == "skills" and chosen.world == "scripted":
-            return SkillActing(nest, chosen.step_ticks, timeout, senses)
+            speech = source.setting.perception.speech_ticks
+            return SkillActing(nest, chosen.step_ticks, timeout, senses, speech)
         return ProgramActing(nest, timeout, senses)
 
     def _rearrange(self, task: Task) -> None:

@@ -22,7 +22,7 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BeliefNestError, PathError
 from beliefnest.nest.past.embodiable import embodiable, with_chests
 from beliefnest.perception.sight import Sight, SightLines
-from beliefnest.skills.calls import OPEN_CONTAINER, Call
+from beliefnest.skills.calls import Call
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import AIR, Registry
@@ -373,8 +373,6 @@ class Imagination:
                 ground=self._standing,
                 speech_ticks=self._speech_ticks,
                 stride=lambda: self._stride,
-                # Other skills walk to where the line is free; their walks need not know the place.
-                has_free_line=self._has_free_line if call.skill == OPEN_CONTAINER.name else None,
             )
             try:
                 doing = perform(hand, call)
@@ -404,9 +402,6 @@ class Imagination:
             return False
         agents = self.world.agents
         return all(agents[each].position == self._feet.get(each) for each in (name, self.root[-1]))
-
-    def _has_free_line(self, eye: Point, block: Position) -> bool:
-        return self._looking().has_free_line(eye, block)
 
     def _looking(self) -> SightLines:
         blocks = self.world.terrain

@@ -8,7 +8,7 @@ from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import AgentState, EventKind, Point, Position
+from beliefnest.world.values import AgentState, EventKind
 from beliefnest.worlds.protocol import Sensed
 
 __all__ = ["Sensing", "believer_of"]
@@ -101,9 +101,4 @@ class Sensing:
             if event.kind is EventKind.CHAT
         )
 
-        def has_free_line(eye: Point, block: Position) -> bool:
-            return seen.geometry.has_free_line(eye, block)
-
-        return Sensed(
-            self._blocks(seen, entries), agents, dict(seen.items), heard, seen.texts, has_free_line
-        )
+        return Sensed(self._blocks(seen, entries), agents, dict(seen.items), heard, seen.texts)

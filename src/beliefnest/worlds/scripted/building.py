@@ -65,6 +65,7 @@ def place_item(hand: Hand, name: Any, position: Any) -> Doing:
     if not hand.world.agents[hand.name].inventory.get(item, 0):
         raise SkillError(f"there is no {item} in the inventory")
     yield from walk(hand, place, hand.reach(place, beside=True), "the position")
+    hand.check_touch(place, "the position")
     yield 0
     hand.world.put(hand.name, item, place)
 

@@ -1,7 +1,7 @@
 """Paths on foot in the scripted world: from one free cell to the next, one step a tick."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +16,7 @@ from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, feet_in
 from beliefnest.worlds.scripted.footing import Footing, Window
+from beliefnest.worlds.scripted.free_lines import can_touch, can_use
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.worlds.scripted.footpath_kernels import Aim, Trail
@@ -48,35 +49,34 @@ class Near:
 
 @dataclass(frozen=True, slots=True)
 class InReach:
-    """Goal of standing where a hand reaches a block.
+    """Goal of standing where a hand is near enough to a block; `Ground.meets` tests free lines.
 
     Attributes:
         block: Position of the block.
         reach: Largest distance between the eyes and the block's middle.
         beside: True if feet and head must be outside the block.
-        has_free_line: Function of eyes and a block that returns whether the line between them is
-            free; None if lines are always free.
     """
 
     block: Position
     reach: float
     beside: bool = False
-    has_free_line: Callable[[Point, Position], bool] | None = None
 
     def is_met(self, cell: Position) -> bool:
-        """Return True if a block can be reached from a cell."""
+        """Return True if a block is near enough to a cell."""
         if self.beside and self._is_within(cell):
             return False
-        x, y, z = feet_in(cell)
-        eye = (x, y + EYE_HEIGHT, z)
         middle = (self.block[0] + 0.5, self.block[1] + 0.5, self.block[2] + 0.5)
-        if math.dist(eye, middle) > self.reach:
-            return False
-        return self.has_free_line is None or self.has_free_line(eye, self.block)
+        return math.dist(eye_in(cell), middle) <= self.reach
 
     def _is_within(self, cell: Position) -> bool:
         x, y, z = self.block
         return cell in ((x, y, z), (x, y - 1, z))
+
+
+def eye_in(cell: Position) -> Point:
+    """Return the place of the eye of an agent that stands in the middle of a cell."""
+    x, y, z = feet_in(cell)
+    return (x, y + EYE_HEIGHT, z)
 
 
 Goal = Near | InReach
@@ -111,6 +111,7 @@ class Ground:
         self._footing = Footing(registry, box, blocks, opens=opens)
         self.has_doors = self._footing.has_doors
         self.has_doorways = self._footing.has_doorways
+        self._lines: dict[tuple[Position, Position], bool] = {}
         self._ways: dict[tuple[Position, Goal], tuple[Position, ...] | None] = {}
         self._areas: list[_Area] = []
         self._met: dict[tuple[int, Goal], bool] = {}
@@ -154,9 +155,7 @@ class Ground:
         Returns:
             The cells after `start`, in order; None if there is no path.
         """
-        # Do not cache by what an agent knows of free lines: it changes, and does not belong to the
-        # ground.
-        if avoiding or (isinstance(goal, InReach) and goal.has_free_line is not None):
+        if avoiding:
             return self._found_way(start, goal, avoiding)
         wanted = (start, goal)
         if wanted not in self._ways:
@@ -209,13 +208,29 @@ class Ground:
         """Search for a path; see `way`."""
         window = self._footing.window(start)
         if window is None:
-            return () if goal.is_met(start) else None
+            return () if self.meets(goal, start) else None
         search = _Search(self._footing, window, start, avoiding)
-        has_free_line = isinstance(goal, InReach) and goal.has_free_line is not None
         while (end := search.next(goal)) is not None:
-            if not has_free_line or goal.is_met(search.window.cell(end)):
+            if isinstance(goal, Near) or self._has_line(search.window.cell(end), goal.block):
                 return search.way(end)
         return None
+
+    def meets(self, goal: Goal, cell: Position) -> bool:
+        """Return True if a cell meets a goal; a hand also needs a free line to its block."""
+        return goal.is_met(cell) and (isinstance(goal, Near) or self._has_line(cell, goal.block))
+
+    def can_touch(self, eye: Point, block: Position) -> bool:
+        """Return True if nothing solid lies between an eye and some point of a block."""
+        return can_touch(self._box, self._blocks, eye, block)
+
+    def _has_line(self, cell: Position, block: Position) -> bool:
+        asked = (cell, block)
+        known = self._lines.get(asked)
+        if known is None:
+            if len(self._lines) >= _MOST_WAYS:
+                self._lines.clear()
+            known = self._lines[asked] = can_use(self._box, self._blocks, eye_in(cell), block)
+        return known
 
     def _first_area(self, start: Position) -> int | None:
         """Return the number of the first known area that contains a cell; None: there is none."""

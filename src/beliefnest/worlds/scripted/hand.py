@@ -14,8 +14,8 @@ from typing import Any
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
 from beliefnest.world.registry import AIR, Registry
-from beliefnest.world.values import AgentState, Point, Position, block_at, feet_in
-from beliefnest.worlds.protocol import NO_WAY, FreeLine
+from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position, block_at, feet_in
+from beliefnest.worlds.protocol import NO_WAY
 from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -37,6 +37,8 @@ __all__ = [
 
 _SHORTEST_STRIDE = 3
 REACH = 4.0
+"""Distance, in blocks, between the eyes and the middle of a block to which skills walk."""
+_ARM = 6.0
 """Largest distance, in blocks, between the eyes and the middle of a block in use."""
 Doing = Generator[int, None, Any]
 """Skill in progress, advanced once in each tick until it returns; it yields ticks to skip, or 0."""
@@ -72,8 +74,6 @@ class Hand:
         speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
         mouth: Utterances that it is about to make, in order.
         heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
-        has_free_line: Function of eyes and a block that returns whether no known block lies
-            between; None if the agent reaches through everything.
         stride: Function that returns the number of ticks, from the current one on, in which nothing
             but this agent acts and nobody watches. Steps of so many ticks are taken at once, and
             the walk then yields the number of ticks to skip.
@@ -88,17 +88,39 @@ class Hand:
     speech_ticks: int = 0
     mouth: list[object] = field(default_factory=list)
     heard: list[tuple[str, str, str | None]] = field(default_factory=list)
-    has_free_line: FreeLine | None = None
     stride: Callable[[], int] = _one_tick
 
     def reach(self, place: Position, *, beside: bool = False) -> InReach:
         """Return the goal of standing where the agent reaches a block; `beside` as in `InReach`."""
-        return InReach(place, REACH, beside, self.has_free_line)
+        return InReach(place, REACH, beside)
+
+    def check_touch(self, place: Position, what: str) -> None:
+        """Raise SkillError if the body cannot use a block from where it stands."""
+        eye, middle = self.eye, tuple(part + 0.5 for part in place)
+        far = math.dist(eye, middle)
+        if far > _ARM:
+            fault = f"it is {far:.1f} blocks away, an arm reaches {_ARM:g}"
+        elif not self.ground().can_touch(eye, place):
+            fault = "no free line of sight"
+        else:
+            return
+        raise SkillError(f"{what} at {place} cannot be reached from here: {fault}")
 
     @property
     def feet(self) -> Point:
         """Position of the feet."""
         return self.world.agent(self.name).position
+
+    def can_throw_to(self, other: str) -> bool:
+        """Return True if nothing solid lies between the eyes and another agent's body."""
+        x, y, z = block_at(self.world.agent(other).position)
+        return any(self.ground().can_touch(self.eye, (x, y + up, z)) for up in (0, 1))
+
+    @property
+    def eye(self) -> Point:
+        """Place of the eyes."""
+        x, y, z = self.feet
+        return (x, y + EYE_HEIGHT, z)
 
     @property
     def cell(self) -> Position:
@@ -107,8 +129,9 @@ class Hand:
 
 
 def walk_to_use(hand: Hand, place: Position) -> Doing:
-    """Walk to where a block can be used."""
+    """Walk to where a block can be used, as far as the agent knows; fail if its body cannot."""
     yield from walk(hand, place, hand.reach(place), "the block")
+    hand.check_touch(place, "the block")
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +194,7 @@ def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_D
     """Walk until the goal is met, one cell a tick; return True if the agent walked."""
     moved = False
     bumped: set[Position] = set()
-    while not goal.is_met(hand.cell):
+    while not hand.known().meets(goal, hand.cell):
         way = _way(hand, goal, doors, bumped)
         if way is None:
             far = math.dist(hand.feet, target)

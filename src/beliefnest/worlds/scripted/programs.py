@@ -12,11 +12,10 @@ from typing import Any
 from beliefnest.errors import BeliefNestError
 from beliefnest.skills.calls import callables
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import AgentState, Box, Event, EventKind, Point, Position
+from beliefnest.world.values import AgentState, Box, Event, EventKind, Point
 from beliefnest.worlds.protocol import (
     Aim,
     Fault,
-    FreeLine,
     ProgramResult,
     RunRules,
     Sense,
@@ -223,7 +222,6 @@ def _begun(
         others=lambda: sense().agents,
         signs=lambda: sense().signs,
         ground=ground,
-        has_free_line=_free_line(sense) if agent in senses else None,
         speech_ticks=rules.speech_ticks,
     )
     past = rules.past.get(agent)
@@ -235,14 +233,6 @@ def _begun(
     program.start()
     _take_calls(run)
     return run
-
-
-def _free_line(sense: Sense) -> FreeLine:
-    def is_free(eye: Point, block: Position) -> bool:
-        told = sense().has_free_line
-        return told is None or told(eye, block)
-
-    return is_free
 
 
 def _known(box: Box, sense: Sense, grounds: Grounds) -> Callable[[], Ground]:

@@ -178,6 +178,8 @@ def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
     where = others[name].position
     yield from walk(hand, where, Near(block_at(where), _NEAR), name)
     yield 0
+    if not hand.can_throw_to(name):
+        raise SkillError(f"{name} cannot be given anything from here: something solid is between")
     hand.world.give(hand.name, name, items_in({text_in(item): count}))
 
 
@@ -249,8 +251,7 @@ def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
             )
         yield from walk_to_use(hand, place)
     yield 0
-    if not hand.reach(place).is_met(hand.cell):
-        raise SkillError(f"{place} is too far away, or hidden, to open what is there; go nearer")
+    hand.check_touch(place, "the container")
     _check_container(hand, place)
     hand.world.open(hand.name, place)
 
