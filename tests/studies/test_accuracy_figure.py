@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from beliefnest.studies.accuracy_figure import plot_accuracy
+from beliefnest.studies.accuracy_figure import plot_accuracy, with_short_names
 
 pytestmark = pytest.mark.extra("matplotlib")
 
@@ -89,3 +89,27 @@ def test_texts_have_room_in_a_column_of_a_paper(
         assert whole.x0 <= part.x0 and part.x1 <= whole.x1
         assert whole.y0 <= part.y0 and part.y1 <= whole.y1
     assert axes.get_window_extent().height > 0.3 * whole.height
+
+
+def lines_at_chance(figure):
+    (axes,) = figure.axes
+    drawn = [each for each in axes.collections if each.get_gid() == "chance"]
+    return [float(path[0][1]) for each in drawn for path in each.get_segments()]
+
+
+def test_the_chance_level_of_choices_is_a_line():
+    groups = [
+        {"condition": n, "accuracy": 0.5, "low": 0.2, "high": 0.8, "chance": level}
+        for n, level in enumerate((0.5, 0.5, 0.25, None))
+    ]
+    assert lines_at_chance(plot_accuracy(groups[:2], ["condition"])) == [0.5]
+    assert lines_at_chance(plot_accuracy(groups, ["condition"])) == [0.5, 0.5, 0.25]
+    assert lines_at_chance(plot_accuracy(groups[3:], ["condition"])) == []
+
+
+def test_models_have_the_shortest_names_that_tell_them_apart():
+    names = ["openai:gpt-5-mini", "a:org/mini", "b:mini", "offline", "local:/models/q4.gguf"]
+    shown = with_short_names([{"model": name} for name in names])
+    assert [each["model"] for each in shown] == [
+        "gpt-5-mini", "a:org/mini", "b:mini", "offline", "q4.gguf",
+    ]  # fmt: skip

@@ -8,6 +8,7 @@ import pytest
 from beliefnest.errors import InputError
 from beliefnest.studies.clusters import exchange_p
 from beliefnest.studies.counting import count_rows, paired_rows
+from beliefnest.studies.guessing import chance_of
 
 
 def row(model, spot, ok, outcome=None):
@@ -188,3 +189,22 @@ def test_people_are_a_second_cluster_of_differences():
         ["model", "spot"],
     )
     assert pairs.interval == four.interval
+
+
+def test_the_chance_level_is_that_of_options():
+    asked = {"question": "q", "right": ["a"], "options": ["a", "b"]}
+    assert chance_of({"answers": [asked]}) == 0.5
+    assert chance_of({"answers": [asked, {**asked, "options": ["a", "b", "c", "d"]}]}) == 0.125
+    assert chance_of({"answers": [{**asked, "options": ["a", "b", "c"], "right": ["a", "b"]}]}) == (
+        pytest.approx(2 / 3)
+    )
+    # In words; together with a deed; not computed yet; nothing expected.
+    assert chance_of({"answers": [{**asked, "options": []}]}) is None
+    assert chance_of({"answers": [asked], "opens": [1, 2, 3]}) is None
+    assert chance_of({"answers": [{**asked, "right": {"believed": "/a"}}]}) is None
+    assert chance_of(None) is None
+    rows = [{**row("a", n, True), "chance": level} for n, level in enumerate((0.5, 0.25))]
+    (found,) = count_rows(rows, ["model"])
+    assert found["chance"] == 0.375
+    (found,) = count_rows([*rows, row("a", 3, True)], ["model"])
+    assert found["chance"] is None

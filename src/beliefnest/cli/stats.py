@@ -83,7 +83,9 @@ def _fits(result: StudyResult, options: StatsOptions) -> list[dict[str, Any]]:
 
 
 def _print(found: Mapping[str, Any], by: Sequence[str]) -> None:
-    shown = ("variations", "judged", "right", "accuracy", "low", "high", "interval")
+    shown = ["variations", "judged", "right", "accuracy", "low", "high", "interval"]
+    if any(group["chance"] is not None for group in found["summary"]):
+        shown.append("chance")
     _show("accuracy, with 95 % intervals", found["summary"], (*by, *shown))
     for column, pairs in found.get("differences", {}).items():
         _show(f"paired differences of accuracy: {column}", pairs)
@@ -131,7 +133,7 @@ def _show(title: str, rows: _Rows, columns: Sequence[str] | None = None) -> None
 
 _SHARES = (
     *("accuracy", "low", "high", "difference", "width", "width_90", "coverage"),
-    *("difference_width", "power"),
+    *("difference_width", "power", "chance", "chance_one", "chance_other"),
 )
 
 

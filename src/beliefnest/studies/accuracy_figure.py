@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 from beliefnest.errors import MissingExtraError
 
 if TYPE_CHECKING:  # matplotlib is optional, and imported when something is plotted.
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["COLOURS", "plot_accuracy", "svg_of"]
+__all__ = ["COLOURS", "plot_accuracy", "svg_of", "with_short_names"]
 
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#000000")
 """Palette of Okabe and Ito, which colour-blind people can distinguish."""
@@ -27,7 +28,7 @@ def plot_accuracy(
     by: Sequence[str],
     size: tuple[float, float] | None = None,
 ) -> "Figure":
-    """Draw bars from 0 to 1 with 95 % intervals.
+    """Draw bars from 0 to 1 with 95 % intervals, and dashed lines at the chance level of choices.
 
     The figure fits its texts into its size each time it is drawn, also after a change of size.
 
@@ -45,7 +46,7 @@ def plot_accuracy(
         raise MissingExtraError("figures of studies need matplotlib", "plot") from None
     from beliefnest.studies.fitting import Fitting
 
-    judged = [group for group in groups if group["accuracy"] is not None]
+    judged = with_short_names([group for group in groups if group["accuracy"] is not None])
     along = list(dict.fromkeys(_told(group[by[0]]) for group in judged))
     colours = list(dict.fromkeys(_legend(group, by) for group in judged))
     title = ", ".join(by[1:])
@@ -53,6 +54,7 @@ def plot_accuracy(
     figure = Figure(figsize=wanted if size is None else (size[0] / _MM, size[1] / _MM))
     axes = figure.add_subplot()
     width = 0.8 / max(1, len(colours))
+    chances: list[tuple[float, float]] = []
     for number, name in enumerate(colours):
         own = [group for group in judged if _legend(group, by) == name]
         middles = [along.index(_told(g[by[0]])) + (number + 0.5) * width - 0.4 for g in own]
@@ -62,6 +64,9 @@ def plot_accuracy(
         colour = COLOURS[number % len(COLOURS)]
         axes.bar(middles, heights, width * 0.9, color=colour, label=name or None)
         axes.errorbar(middles, heights, [below, above], fmt="none", ecolor="#333333", capsize=3)
+        levels = zip(middles, (group.get("chance") for group in own), strict=True)
+        chances += [(middle, level) for middle, level in levels if level is not None]
+    _draw_chance(axes, chances, width, in_legend=len(colours) > 1)
     axes.set_xticks(range(len(along)), along)
     axes.set_xlabel(by[0])
     axes.set_ylim(0, 1.02)
@@ -70,6 +75,52 @@ def plot_accuracy(
         axes.legend(title=title, frameon=False)
     figure.set_layout_engine(Fitting(along))
     return figure
+
+
+def _draw_chance(
+    axes: "Axes", chances: Sequence[tuple[float, float]], width: float, *, in_legend: bool
+) -> None:
+    """Draw the accuracy of blind guesses at each bar, or one line if it is the same for all.
+
+    Args:
+        axes: The plot.
+        chances: Middle of each bar on the axis, and its chance level.
+        width: Width of a bar with the space around it.
+        in_legend: True if the figure has a legend; otherwise the line is named at its end.
+    """
+    if not chances:
+        return
+    ends = [(middle - width / 2, middle + width / 2) for middle, _ in chances]
+    levels = [level for _, level in chances]
+    if len({round(level, 9) for level in levels}) == 1:
+        ends = [(min(left for left, _ in ends), max(right for _, right in ends))]
+    drawn = axes.hlines(
+        levels[: len(ends)],
+        [left for left, _ in ends],
+        [right for _, right in ends],
+        colors="#333333",
+        linestyles="dashed",
+        linewidths=1,
+        label="chance" if in_legend else None,
+    )
+    drawn.set_gid("chance")
+    if not in_legend:
+        axes.annotate("chance", (ends[-1][1], levels[-1]), (3, 0), textcoords="offset points",
+            va="center", fontsize=7)  # fmt: skip
+
+
+def with_short_names(groups: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Return groups whose models have the shortest names that tell them apart.
+
+    `openai:gpt-5-mini` becomes `gpt-5-mini`, and a path its last part.
+    """
+    names = list(dict.fromkeys(group["model"] for group in groups if group.get("model")))
+    short = {name: name.rpartition(":")[2].rstrip("/").rpartition("/")[2] for name in names}
+    known = {name: each for name, each in short.items() if list(short.values()).count(each) == 1}
+    return [
+        {**group, "model": known.get(group["model"], group["model"])} if "model" in group else group
+        for group in groups
+    ]
 
 
 def _inches(along: Sequence[str], colours: Sequence[str], title: str) -> tuple[float, float]:

@@ -17,6 +17,7 @@ from beliefnest.studies.clusters import (
     mean_interval,
     rate_interval,
 )
+from beliefnest.studies.guessing import mean_chance
 
 __all__ = ["Pairs", "Row", "count_rows", "judged_rows", "paired_rows"]
 
@@ -43,10 +44,11 @@ def count_rows(
         One mapping for each group, in order of appearance: the columns of `by`; `rows`; `copies`;
         `judged`; `variations` (number of independent variations among the judged rows); `right`;
         `accuracy`, `low` and `high` (its 95 % interval) and `interval` (its method, see
-        `rate_interval` and `crossed_interval`), all None if no row is judged; the count of each
-        outcome; `tokens`; `cost` (None if not known); for each column of `means`, its mean, and the
-        95 % interval as `NAME_low` and `NAME_high` (None if fewer than two variations have a
-        value).
+        `rate_interval` and `crossed_interval`), all None if no row is judged; `chance`
+        (accuracy of blind guesses; None if some judged row is no choice of options); the count of
+        each outcome; `tokens`; `cost` (None if not known); for each column of `means`, its mean,
+        and the 95 % interval as `NAME_low` and `NAME_high` (None if fewer than two variations have
+        a value).
     """
     groups: dict[tuple[Any, ...], list[tuple[Row, _Origin]]] = {}
     for row, origin in zip(rows, _origins(rows), strict=True):
@@ -96,6 +98,7 @@ def _counted(all_rows: Sequence[tuple[Row, _Origin]], means: Mapping[str, bool])
         "low": low,
         "high": high,
         "interval": interval,
+        "chance": mean_chance([row for row in firsts.values() if row.get("ok") is not None]),
         **{name: sum(row["outcome"] == name for row in firsts.values()) for name in OUTCOMES},
         "tokens": sum(row.get("tokens") or 0 for row, _ in all_rows),
         "cost": None if None in costs else sum(cost or 0.0 for cost in costs),

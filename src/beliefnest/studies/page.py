@@ -71,6 +71,7 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         plan=plan,
         by=by,
         groups=groups,
+        guessed=any(group["chance"] is not None for group in groups),
         means=[name for name in table.means if any(each[name] is not None for each in groups)],
         figure=_figure(groups, by),
         differences=list(_differences(result)),

@@ -87,7 +87,8 @@ class StudyResult(StudyRecord):
             `only_one` or with `only_other`; the `difference` with `low` and `high` (95 %: Bonett
             and Price with one pair in each variation, else the cluster bootstrap; with people the
             pigeonhole bootstrap); `p` (exact
-            permutation of levels within variations; with one pair in each, McNemar's exact test).
+            permutation of levels within variations; with one pair in each, McNemar's exact test);
+            `chance_one` and `chance_other`, accuracies of blind guesses with each value.
 
         Raises:
             InputError: The column does not exist, or no two rows differ in it alone.
@@ -95,7 +96,7 @@ class StudyResult(StudyRecord):
         """
         found = self.compared(between, by)
         names = list(self.apart(between)) if by is None else self.checked(by)
-        columns = [*names, *COMPARED, "low", "high", "p"]
+        columns = [*names, *COMPARED, "low", "high", "p", "chance_one", "chance_other"]
         return plain_frame({name: Typed([row[name] for row in found]) for name in columns})
 
     def fit(

@@ -5,6 +5,7 @@ from typing import Any
 
 from beliefnest.studies.allocation import LIST
 from beliefnest.studies.cells import variation_id
+from beliefnest.studies.guessing import chance_of
 from beliefnest.studies.table import (
     FAILED,
     Column,
@@ -123,6 +124,8 @@ PROBES = Table(
         Column("task", "string", of_result("task"), identifies=True),
         # Places are texts such as `-2,-51,-4`.
         Column("expected", "string", of_result("expected", plain_value), shown=True),
+        # Probability that a blind guess is right.
+        Column("chance", "float64", of_result("expected", chance_of)),
         Column("intended", "string", of_result("intended", place_text), shown=True),
         Column("opened", "string", of_result("opened", _opened), shown=True),
         Column("arrived", "string", of_result("arrived", place_text), shown=True),

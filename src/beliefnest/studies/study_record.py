@@ -10,6 +10,7 @@ from beliefnest.errors import InputError
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.counting import Pairs, count_rows, paired_rows
 from beliefnest.studies.episode_rows import EPISODES
+from beliefnest.studies.guessing import mean_chance
 from beliefnest.studies.plainframe import Typed
 from beliefnest.studies.positions import choices_of, count_positions
 from beliefnest.studies.power import Source
@@ -159,6 +160,12 @@ class StudyRecord:
         names = self.checked(self.apart(between) if by is None else by)
         compared = self.paired(between, names)
         levels = list(dict.fromkeys(row[between] for row in self.rows))
+
+        def chance(values: Sequence[Any], level: object) -> float | None:
+            alike = dict(zip((*names, between), (*values, level), strict=True))
+            own = [row for row in self.rows if all(row.get(n) == v for n, v in alike.items())]
+            return mean_chance([row for row in own if row["ok"] is not None])
+
         if len(levels) > 1 and not compared:
             raise InputError(
                 f"no two rows differ in {between!r} alone, which is {levels[0]!r}, {levels[1]!r}; "
@@ -171,6 +178,8 @@ class StudyRecord:
                 "low": pairs.interval[0],
                 "high": pairs.interval[1],
                 "p": pairs.p,
+                "chance_one": chance(values, pairs.one),
+                "chance_other": chance(values, pairs.other),
             }
             for values, pairs in compared
         ]
