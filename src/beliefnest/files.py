@@ -1,20 +1,35 @@
-"""Safe reading of files that a user names: regular files of limited size.
+"""Safe reading and replacing of files that a user names.
 
-A FIFO would block the reader, and a device could be endless.
+Regular files of limited size are read: a FIFO would block the reader, and a device could be
+endless. A file is replaced as a whole or not at all.
 """
 
 import errno
 import os
+import secrets
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, TypeVar
 
 import msgspec
 
-__all__ = ["decode_json", "open_regular", "read_regular", "read_regular_text"]
+__all__ = [
+    "decode_json",
+    "new_file",
+    "open_regular",
+    "read_regular",
+    "read_regular_text",
+    "replace_file",
+    "replacing",
+]
 
 _T = TypeVar("_T")
 _LONGEST = 64 * 2**20
+_LONGEST_STEM = 200
+"""Characters of a file's name in the name of its draft: names have at most 255 bytes."""
+
 _KINDS = (
     (stat.S_ISFIFO, "it is a FIFO"),
     (stat.S_ISSOCK, "it is a socket"),
@@ -62,6 +77,88 @@ def read_regular_text(path: Path, longest: int = _LONGEST) -> str:
     """
     text = read_regular(path, longest).decode()
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def replace_file(path: Path, content: str | bytes) -> None:
+    """Write a file anew, or leave it as it is if that fails.
+
+    Args:
+        path: The file; there need not be one. A symbolic link stays, and its target is replaced.
+        content: Bytes, or a text that is written as UTF-8 as it is.
+
+    Raises:
+        OSError: The file cannot be written.
+        UnicodeEncodeError: The text has half of a surrogate pair in it.
+    """
+    body = content.encode() if isinstance(content, str) else content
+    with replacing(path) as file:
+        file.write(body)
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[BinaryIO]:
+    """Open a file for the block to write its new content to; replace it when the block ends.
+
+    The content is written to a file beside it and synchronised with the disk; then that file gets
+    the name. If the block raises, the old file stays. A FIFO or a device, such as `/dev/stdout`, is
+    written directly: there is nothing to keep.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    target = Path(os.path.realpath(path))
+    old = target.stat() if target.exists() else None
+    if old is not None and not stat.S_ISREG(old.st_mode):
+        with target.open("wb") as file:
+            yield file
+        return
+    if old is not None and not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+    draft = target.with_name(f".{target.name[:_LONGEST_STEM]}.{secrets.token_hex(4)}.tmp")
+    # The system takes the user's mask off the mode of a new file.
+    descriptor = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            if old is not None:
+                draft.chmod(stat.S_IMODE(old.st_mode))
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        draft.replace(target)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+    _sync_folder(target.parent)
+
+
+@contextmanager
+def new_file(path: Path) -> Iterator[BinaryIO]:
+    """Open a file that does not exist yet for the block to write; remove it if the block raises.
+
+    Raises:
+        OSError: The file exists already, or it cannot be written.
+    """
+    with path.open("xb") as file:
+        try:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        except BaseException:
+            path.unlink(missing_ok=True)
+            raise
+
+
+def _sync_folder(folder: Path) -> None:
+    """Synchronise a folder with the disk, so that the new name of a file survives a loss of power.
+
+    Some file systems cannot; the content of the file is synchronised already.
+    """
+    with suppress(OSError):
+        descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)
 
 
 def decode_json(content: bytes | str, form: type[_T]) -> _T:

@@ -8,13 +8,15 @@ search skips chunks without a match.
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import NamedTuple
 
 import msgspec
 import zstandard
 
-from beliefnest.errors import BranchError
+from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
+from beliefnest.timeline.bounds import Bounds
 from beliefnest.timeline.database import Database, damage
 from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_found
 from beliefnest.world.frames import Frame
@@ -30,9 +32,11 @@ _COMPRESSION = 1
 """
 
 
-_LARGEST = 2**28
-"""Greatest unpacked size of a chunk, keyframe or body state in bytes. Damaged or hostile files may
-declare any size."""
+_LARGEST = 2**26
+"""Greatest unpacked size of a chunk in bytes. Damaged or hostile files may declare any size."""
+
+_MOST_EVENTS = 2**26
+"""Most events of a timeline: beliefs have a bit for each of them."""
 
 
 class _Chunk(NamedTuple):
@@ -54,10 +58,15 @@ _COLUMNS = ", ".join(_Chunk._fields)
 
 
 class Chunks:
-    """Chunks of all timelines of a file; timelines are named by their row ids."""
+    """Chunks of all timelines of a file; timelines are named by their row ids.
+
+    Attributes:
+        bounds: Bounds of all entries; None: this process has written them.
+    """
 
     def __init__(self, database: Database) -> None:
         self._database = database
+        self.bounds: Bounds | None = None
         self._packer = zstandard.ZstdCompressor(level=_COMPRESSION)
         self._unpacker = zstandard.ZstdDecompressor()
 
@@ -65,15 +74,16 @@ class Chunks:
         """Compress bytes."""
         return self._packer.compress(body)
 
-    def decompressed(self, body: bytes) -> bytes:
+    def decompressed(self, body: bytes, largest: int = _LARGEST) -> bytes:
         """Decompress bytes; StoreError if they are damaged or would be too large."""
         path = self._database.path
         try:
-            if zstandard.frame_content_size(body) <= _LARGEST:
+            # A stream of unknown size would be unpacked up to any size.
+            if 0 <= zstandard.frame_content_size(body) <= largest:
                 return self._unpacker.decompress(body)
         except zstandard.ZstdError as fault:
             raise damage(path, str(fault)) from fault
-        raise damage(path, f"a part would unpack to more than {_LARGEST:,} bytes")
+        raise damage(path, f"a part would unpack to more than {largest:,} bytes")
 
     def add(
         self,
@@ -137,6 +147,32 @@ class Chunks:
         Raises:
             StoreError: An entry is missing or damaged.
         """
+        for _, part in self._parts(timeline, start, stop, gone):
+            yield from part
+
+    def entries(
+        self,
+        timeline: int,
+        start: int,
+        stop: int,
+        gone: Callable[[], BranchError | None] | None = None,
+    ) -> Iterator[Entry]:
+        """Yield the entries with indexes start to stop - 1; arguments and errors as for `raw`.
+
+        StoreError also if an entry is out of bounds.
+        """
+        for chunk, part in self._parts(timeline, start, stop, gone):
+            for encoded in part:
+                yield self._decoded(chunk, encoded)
+
+    def _parts(
+        self,
+        timeline: int,
+        start: int,
+        stop: int,
+        gone: Callable[[], BranchError | None] | None,
+    ) -> Iterator[tuple[_Chunk, list[msgspec.Raw]]]:
+        """Yield chunks, each with those of its encoded entries that lie from start to stop - 1."""
         # Query anew for each chunk: a writer may join chunks between two reads.
         while start < stop:
             found = self._chunk(timeline, "first <= ? ORDER BY first DESC", start)
@@ -146,10 +182,10 @@ class Chunks:
             part = []
             if found is not None:
                 part = self._encoded(found)[start - found.first : stop - found.first]
-            if not part:
+            if found is None or not part:
                 missing = f"entry {start} of timeline {timeline} is missing"
                 raise damage(self._database.path, missing)
-            yield from part
+            yield found, part
             start += len(part)
 
     def entries_until(self, timeline: int, tick: int) -> int | None:
@@ -178,7 +214,7 @@ class Chunks:
             encoded = self._encoded(found)
             last = min(stop, found.first + found.count)
             for number in range(max(start, found.first), last):
-                entry = codec.decode_entry(encoded[number - found.first])
+                entry = self._decoded(found, encoded[number - found.first])
                 if is_found(entry, what):
                     yield number, entry
             start = last
@@ -193,7 +229,9 @@ class Chunks:
             "WHERE timeline = ? AND first < ? AND first + count <= ? AND events > 0",
             (timeline, entries, entries),
         )
-        count = 0 if whole is None else int(whole[0])
+        count = 0 if whole is None else whole[0]
+        if not isinstance(count, int) or not 0 <= count <= _MOST_EVENTS:
+            raise damage(self._database.path, f"it counts {count} events")
         last = self._chunk(timeline, "first < ? ORDER BY first DESC", entries)
         if last is not None and last.first + last.count > entries:
             part = map(codec.decode_entry, self._encoded(last)[: entries - last.first])
@@ -215,7 +253,11 @@ class Chunks:
             if first + last.count <= entries:
                 first += last.count
             agents = self._agents_before(timeline, first)
-        return agents | codec.decode_last_agents(self.raw(timeline, first, entries))
+        agents = agents | codec.decode_last_agents(self.raw(timeline, first, entries))
+        if self.bounds is not None:
+            with self._told():
+                self.bounds.check_agents(agents)
+        return agents
 
     def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
         """Return the agents stored with the compressed chunk before an entry, or none."""
@@ -224,8 +266,12 @@ class Chunks:
 
     def _chunk(self, timeline: int, where: str, *values: int) -> _Chunk | None:
         chosen, what = f"piece WHERE timeline = ? AND {where} LIMIT 1", "entries"
-        found = self._database.sound_rows(_COLUMNS, chosen, (timeline, *values), what)
-        return next(map(_Chunk._make, found), None)
+        chunk = next(
+            self._database.sound_rows(_COLUMNS, chosen, (timeline, *values), what, _Chunk), None
+        )
+        if chunk is not None and not 0 < chunk.count <= CHUNK_ENTRIES:
+            raise damage(self._database.path, f"a chunk has {chunk.count} entries")
+        return chunk
 
     def _write(
         self,
@@ -256,6 +302,28 @@ class Chunks:
             body,
         )
         self._database.write("INSERT INTO piece", **chunk._asdict())
+
+    def _decoded(self, chunk: _Chunk, encoded: msgspec.Raw) -> Entry:
+        """Return an entry of a chunk; StoreError if it is damaged or out of bounds."""
+        if self.bounds is None:
+            return codec.decode_entry(encoded)
+        with self._told():
+            entry = codec.decode_entry(encoded)
+            self.bounds.check(entry)
+            if not chunk.first_tick <= entry.tick <= chunk.last_tick:
+                raise StoreError(
+                    f"an entry of tick {entry.tick} stands between ticks {chunk.first_tick} and "
+                    f"{chunk.last_tick}"
+                )
+        return entry
+
+    @contextmanager
+    def _told(self) -> Iterator[None]:
+        """Name the file in a StoreError of the block."""
+        try:
+            yield
+        except StoreError as fault:
+            raise damage(self._database.path, str(fault)) from fault
 
     def _encoded(self, chunk: _Chunk) -> list[msgspec.Raw]:
         """Return the encoded entries of a chunk."""

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -28,8 +28,11 @@ from beliefnest.timeline.store_schema import (
     STATEMENTS,
     expected_schema,
 )
+from beliefnest.world.texts import shortened
 
 __all__ = ["Database", "OlderFormat", "Row", "checked", "checksum", "damage"]
+
+T = TypeVar("T")
 
 Row = tuple[Any, ...]
 
@@ -42,6 +45,7 @@ _KNOWN_STARTS = (
     (b"PAR1", "a Parquet file"),
     (b"{", "JSON text"),
 )
+_LONGEST_DETAIL = 200
 _DAMAGED = "is damaged; restore it from a copy"
 _FAULTS = {
     sqlite3.SQLITE_FULL: "could not grow: the disk is full; nothing of this call was kept, "
@@ -84,19 +88,23 @@ def checksum(*values: object) -> int:
 
 def damage(path: Path, detail: str) -> StoreError:
     """Return the error for a damaged run file."""
-    return StoreError(f"{path} {_DAMAGED} ({detail})")
+    return StoreError(f"{path} {_DAMAGED} ({shortened(detail, _LONGEST_DETAIL)})")
 
 
-def checked(row: Row, path: Path, what: str) -> Row:
-    """Check a row against its last value, the checksum, and return the other values.
+def checked(row: Row, path: Path, what: str, form: type[T]) -> T:
+    """Check a row against its last value, the checksum, and return the other values as `form`.
 
     Raises:
-        StoreError: The checksum is wrong.
+        StoreError: The checksum is wrong, or a value has another type.
     """
     *values, found = row
-    if checksum(*values) != found:
-        raise damage(path, f"wrong checksum of {what}")
-    return tuple(values)
+    try:
+        sound = checksum(*values)
+        if sound == found:
+            return msgspec.convert(values, form)
+    except (msgspec.MsgspecError, ValueError, TypeError) as fault:
+        raise damage(path, f"{what}: {shortened(str(fault))}") from fault
+    raise damage(path, f"wrong checksum of {what}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,21 +243,22 @@ class Database(Owned):
         return rows[0] if rows else None
 
     def sound_rows(
-        self, columns: str, rest: str, values: Iterable[object], what: str
-    ) -> Iterator[Row]:
-        """Yield the rows of a query after a check of their checksums.
+        self, columns: str, rest: str, values: Iterable[object], what: str, form: type[T]
+    ) -> Iterator[T]:
+        """Yield the rows of a query after a check of their checksums and types.
 
         Args:
             columns: Names of the columns.
             rest: Query after the word FROM.
             values: Values of its placeholders.
             what: Name of the rows for the error message.
+            form: Type of a row without its checksum; SQLite does not hold columns to their types.
 
         Raises:
             StoreError: A row is damaged.
         """
         for row in self.rows(f"SELECT {columns}, seal FROM {rest}", values):
-            yield checked(row, self.path, what)
+            yield checked(row, self.path, what, form)
 
     def write(self, into: str, **row: object) -> None:
         """Write a row with its checksum; only the last value may be long bytes.

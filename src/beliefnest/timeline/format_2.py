@@ -12,6 +12,7 @@ from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, checked, checksum, damage
 from beliefnest.timeline.run_records import ProgramRecord
 from beliefnest.timeline.store_schema import BODY_STATE, STATEMENTS
+from beliefnest.world.texts import quoted
 
 __all__ = ["FORMAT_2", "convert_2"]
 
@@ -32,7 +33,9 @@ def convert_2(database: Database) -> None:
     database.execute(BODY_STATE)
     hidden = "keyframe WHERE name LIKE 'hidden %'"
     columns, what = "timeline, name, entries, body", "the state of a body"
-    for timeline, name, entries, state in database.sound_rows(columns, hidden, (), what):
+    for timeline, name, entries, state in database.sound_rows(
+        columns, hidden, (), what, tuple[int, str, int, bytes]
+    ):
         database.write(
             "INSERT INTO body_state",
             timeline=timeline,
@@ -42,7 +45,8 @@ def convert_2(database: Database) -> None:
         )
     database.execute(f"DELETE FROM {hidden}")
     for number, *row in database.rows("SELECT id, path, branch, body, seal FROM program"):
-        *place, body = checked(tuple(row), database.path, f"program {number}")
+        form = tuple[str, str, bytes]
+        *place, body = checked(tuple(row), database.path, f"program {quoted(number)}", form)
         body = codec.encode(_typed(body, database.path))
         database.execute(
             "UPDATE program SET body = ?, seal = ? WHERE id = ?",
@@ -63,5 +67,5 @@ def _typed(body: bytes, path: Path) -> ProgramRecord:
 
 def _number(text: str, path: Path) -> int:
     if not text.isdecimal():
-        raise damage(path, f"{text!r} is no number")
+        raise damage(path, f"{quoted(text)} is no number")
     return int(text)

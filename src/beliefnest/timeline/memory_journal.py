@@ -27,6 +27,7 @@ from beliefnest.timeline.journal import (
     count_of_events,
     is_found,
 )
+from beliefnest.timeline.own_key import Marks
 from beliefnest.timeline.run_records import Records
 from beliefnest.timeline.store_schema import PAST, RECORDS
 from beliefnest.timeline.stored_states import StoredStates
@@ -87,7 +88,8 @@ class MemoryJournal:
         finalize(self, self._database.close)
         self.records = Records(self._database)
         self._chunks = Chunks(self._database)
-        self._states = StoredStates(self._database, self._chunks)
+        marks = Marks()
+        self._states = StoredStates(self._database, self._chunks, lambda: marks)
         self._numbers = count()
 
     def timelines(self) -> Sequence[TimelineInfo]:

@@ -11,6 +11,7 @@ from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, Row, checked, checksum
 from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.texts import quoted
 
 __all__ = [
     "ProgramRecord",
@@ -158,7 +159,7 @@ def path_from(text: str) -> BeliefPath:
     try:
         return msgspec.json.decode(text, type=BeliefPath)
     except msgspec.MsgspecError as fault:
-        raise StoreError(f"{text!r} is no stored belief path: {fault}") from fault
+        raise StoreError(f"{quoted(text)} is no stored belief path: {fault}") from fault
 
 
 class Records:
@@ -205,8 +206,8 @@ class Records:
     def state(self, name: str) -> bytes | None:
         """Return the bytes last stored under a name; None if there are none."""
         where, what = "meta WHERE name = ?", f"state {name!r}"
-        found = self._database.sound_rows("name, value", where, (name,), what)
-        return next((bytes(value) for _, value in found), None)
+        found = self._database.sound_rows("name, value", where, (name,), what, tuple[str, bytes])
+        return next((value for _, value in found), None)
 
     def select(self, path: BeliefPath, branch: str) -> None:
         """Record the branch that a simulator is on."""
@@ -217,7 +218,7 @@ class Records:
     def selected(self) -> dict[BeliefPath, str]:
         """Return the recorded branch of each simulator, in order of paths."""
         in_order, what = "selected ORDER BY path", "the selected branches"
-        found = self._database.sound_rows("path, branch", in_order, (), what)
+        found = self._database.sound_rows("path, branch", in_order, (), what, tuple[str, str])
         return {path_from(path): branch for path, branch in found}
 
     def add_program(self, program: ProgramRecord) -> None:
@@ -283,7 +284,8 @@ class Records:
             f"SELECT id, path, branch, body, seal FROM {table} {where} ORDER BY id", values
         )
         for number, *row in rows:
-            yield number, checked(tuple(row), self._database.path, f"{table} {number}")
+            what = f"{table} {quoted(number)}"
+            yield number, checked(tuple(row), self._database.path, what, tuple[str, str, bytes])
 
 
 class RunJournal(Journal, Protocol):

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from beliefnest.errors import BranchError
 from beliefnest.timeline import codec
+from beliefnest.timeline.bounds import Bounds
 from beliefnest.timeline.chunks import Chunks
 from beliefnest.timeline.database import Database, OlderFormat, checksum, damage
 from beliefnest.timeline.format_2 import FORMAT_2, convert_2
@@ -27,9 +28,12 @@ from beliefnest.timeline.journal import (
     check_base,
     check_place,
 )
+from beliefnest.timeline.own_key import own_marks
 from beliefnest.timeline.run_records import Records, path_from, path_to
 from beliefnest.timeline.stored_states import StoredStates
+from beliefnest.world.limits import LATEST_TICK
 from beliefnest.world.paths import path_text
+from beliefnest.world.texts import quoted, shortened
 from beliefnest.world.values import AgentState
 
 __all__ = ["SqliteJournal"]
@@ -56,6 +60,24 @@ class _TimelineRow(NamedTuple):
     def key(self) -> TimelineKey:
         return TimelineKey(path_from(self.path), self.branch)
 
+    @property
+    def words(self) -> str:
+        """Words for messages."""
+        return f"branch {quoted(self.branch)} of {shortened(path_text(self.key.path))}"
+
+    def has_sound_numbers(self, base: "_TimelineRow | None") -> bool:
+        """Return True if ticks and numbers of entries fit each other and the base."""
+        is_own = 0 <= self.start <= self.head <= LATEST_TICK and 0 <= self.packed <= self.entries
+        if base is None or self.base_entries is None or self.base_tick is None:
+            return is_own and (self.base_entries, self.base_tick) == (None, None)
+        # A timeline is created after its base, so that none leads to itself.
+        return (
+            is_own
+            and base.id < self.id
+            and 0 <= self.base_entries <= base.entries
+            and base.start <= self.base_tick <= min(base.head, self.start)
+        )
+
 
 _COLUMNS = ", ".join(_TimelineRow._fields)
 
@@ -76,7 +98,7 @@ class SqliteJournal:
     def __init__(self, database: Database) -> None:
         self._database = database
         self._chunks = Chunks(database)
-        self._states = StoredStates(database, self._chunks)
+        self._states = StoredStates(database, self._chunks, own_marks)
         self.path, self.writable = database.path, database.writable
         self.records = Records(database)
 
@@ -121,6 +143,15 @@ class SqliteJournal:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def keep_within(self, bounds: Bounds) -> None:
+        """Check all entries that are read from now on: StoreError if one is out of bounds.
+
+        StoreError also if a timeline is that of a simulator that cannot be.
+        """
+        for row in self._timeline_rows("ORDER BY id"):
+            bounds.check_path(row.key.path)
+        self._chunks.bounds = bounds
+
     def together(self) -> AbstractContextManager[None]:
         """Make the calls inside the block atomic: if one raises, nothing of them is stored."""
         return self._database.transaction()
@@ -147,8 +178,7 @@ class SqliteJournal:
         if row.base is not None:
             base = next(self._timeline_rows("WHERE id = ?", row.base), None)
             if base is None:
-                name = f"branch {key.branch!r} of {path_text(key.path)}"
-                raise damage(self.path, f"the base of {name} is missing")
+                raise damage(self.path, f"the base of {row.words} is missing")
         return _info(row, base)
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
@@ -192,8 +222,7 @@ class SqliteJournal:
         """Yield the entries with indexes start to stop - 1, oldest first."""
         row = self._row(key)
         stop = min(stop, row.entries)
-        found = self._chunks.raw(row.id, start, stop, lambda: self._gone(row.id, key))
-        return map(codec.decode_entry, found)
+        return self._chunks.entries(row.id, start, stop, lambda: self._gone(row.id, key))
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
         """Return the number of entries at `tick` or earlier."""
@@ -273,8 +302,8 @@ class SqliteJournal:
         self._database.close()
 
     def _timeline_rows(self, where: str, *values: object) -> Iterator[_TimelineRow]:
-        found = self._database.sound_rows(_COLUMNS, f"timeline {where}", values, "a timeline")
-        return map(_TimelineRow._make, found)
+        rest, what = f"timeline {where}", "a timeline"
+        return self._database.sound_rows(_COLUMNS, rest, values, what, _TimelineRow)
 
     def _found(self, key: TimelineKey) -> _TimelineRow | None:
         rows = self._timeline_rows("WHERE path = ? AND branch = ?", path_to(key.path), key.branch)
@@ -319,9 +348,11 @@ class SqliteJournal:
                 (row.id,),
             )
             length = 0 if last is None else last[0]
-            if length != row.entries or (row.base is not None and row.base not in rows):
-                name = f"branch {row.branch!r} of {path_text(row.key.path)}"
-                raise damage(self.path, f"{name} is incomplete")
+            base = rows.get(row.base) if row.base is not None else None
+            if length != row.entries or (row.base is not None and base is None):
+                raise damage(self.path, f"{row.words} is incomplete")
+            if not row.has_sound_numbers(base):
+                raise damage(self.path, f"{row.words} has ticks or entries that cannot be")
 
 
 def _info(row: _TimelineRow, base: _TimelineRow | None) -> TimelineInfo:

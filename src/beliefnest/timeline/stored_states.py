@@ -1,9 +1,15 @@
 """Checkpoints and internal states of bodies in a database, compressed; timelines have row ids."""
 
+from collections.abc import Callable
+
 from beliefnest.timeline.chunks import Chunks
 from beliefnest.timeline.database import Database
+from beliefnest.timeline.own_key import Marks
 
 __all__ = ["StoredStates"]
+
+_LARGEST = 2**28
+"""Greatest unpacked size of a checkpoint or the state of a body, in bytes."""
 
 
 class StoredStates:
@@ -12,10 +18,11 @@ class StoredStates:
     Args:
         database: The database.
         chunks: Compressor of the bytes.
+        marks: Returns the marks of checkpoints. Those with another mark are not read.
     """
 
-    def __init__(self, database: Database, chunks: Chunks) -> None:
-        self._database, self._chunks = database, chunks
+    def __init__(self, database: Database, chunks: Chunks, marks: Callable[[], Marks]) -> None:
+        self._database, self._chunks, self._marks = database, chunks, marks
 
     def put_checkpoint(self, timeline: int, name: str, entries: int, packed: bytes) -> None:
         """Store the compressed bytes of a checkpoint; the caller opens the transaction."""
@@ -24,21 +31,29 @@ class StoredStates:
             timeline=timeline,
             name=name,
             entries=entries,
-            body=packed,
+            # A decompressor ignores what comes after the compressed bytes.
+            body=self._marks().marked(name, entries, packed),
         )
 
     def nearest_checkpoint(
         self, timeline: int, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """Return the last checkpoint of that name at or before an entry, and its place."""
+        """Return the last checkpoint of that name at or before an entry, and its place.
+
+        None also if somebody else wrote it.
+        """
         found = self._database.sound_rows(
             "timeline, name, entries, body",
             "keyframe WHERE timeline = ? AND name = ? AND entries <= ? "
             "ORDER BY entries DESC LIMIT 1",
             (timeline, name, entries),
             f"a keyframe of timeline {timeline}",
+            tuple[int, str, int, bytes],
         )
-        return next(((place, self._chunks.decompressed(body)) for *_, place, body in found), None)
+        for *_, place, marked in found:
+            body = self._marks().unmarked(name, place, marked)
+            return None if body is None else (place, self._chunks.decompressed(body, _LARGEST))
+        return None
 
     def put_body_state(self, timeline: int, entries: int, tick: int, state: bytes) -> None:
         """Store the internal state of a body; the caller opens the transaction."""
@@ -57,8 +72,9 @@ class StoredStates:
             "body_state WHERE timeline = ? AND entries = ? AND tick = ?",
             (timeline, entries, tick),
             f"the state of a body of timeline {timeline}",
+            tuple[int, int, int, bytes],
         )
-        return next((self._chunks.decompressed(state) for *_, state in found), None)
+        return next((self._chunks.decompressed(state, _LARGEST) for *_, state in found), None)
 
     def forget(self, timeline: int) -> None:
         """Remove the entries, checkpoints and states of a timeline, inside a transaction."""

@@ -23,14 +23,15 @@ from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import Frame, PlainClaims, Snapshot
 from beliefnest.world.limits import (
     AGENT_SLOTS,
-    LATEST_TICK,
     MOST_AGENTS,
     WORN_SLOTS,
     agent_name_fault,
     box_fault,
     container_slots,
+    dropped_fault,
     items_fault,
     point_fault,
+    tick_fault,
 )
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
@@ -216,7 +217,7 @@ class _Reader:
         self.names = tuple(line.agents)
         _check(
             box_fault(self._box),
-            _tick_fault(line.tick),
+            tick_fault(line.tick),
             *map(agent_name_fault, self.names),
         )
         if len(self.names) > MOST_AGENTS:
@@ -264,7 +265,7 @@ class _Reader:
             raise InputError(
                 f"tick {line.tick} is not later than tick {self._tick}; sort the lines by tick"
             )
-        _check(_tick_fault(line.tick))
+        _check(tick_fault(line.tick))
         agents = self._changed_agents(line.agents)
         blocks = self._blocks(line.blocks)
         frame = Frame(
@@ -345,11 +346,7 @@ class _Reader:
         return dict(items)
 
     def _entities(self, lines: Mapping[int, _ItemLine | None]) -> dict[int, DroppedItem | None]:
-        for number in lines:
-            if not 0 <= number <= LATEST_TICK:
-                raise InputError(
-                    f"item number {number} is out of range; numbers go from 0 to {LATEST_TICK}"
-                )
+        _check(*(dropped_fault(number, None, self._registry) for number in lines))
         return {n: None if item is None else self._item(item) for n, item in lines.items()}
 
     def _item(self, line: _ItemLine) -> DroppedItem:
@@ -427,12 +424,6 @@ def _check(*faults: str | None) -> None:
     for fault in faults:
         if fault:
             raise InputError(fault)
-
-
-def _tick_fault(tick: int) -> str | None:
-    if not 0 <= tick <= LATEST_TICK:
-        return f"tick {tick} is out of range; ticks go from 0 to {LATEST_TICK}"
-    return None
 
 
 def _decoded(line: bytes, kind: Any) -> Any:

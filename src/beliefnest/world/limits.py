@@ -14,28 +14,52 @@ from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import written
 from beliefnest.world.terrain import DENSE, VOLUME
-from beliefnest.world.values import Box, Position
+from beliefnest.world.texts import quoted
+from beliefnest.world.values import (
+    EQUIPMENT_SLOTS,
+    AgentState,
+    Block,
+    Box,
+    DroppedItem,
+    Position,
+    Sign,
+)
 
 __all__ = [
     "AGENT_SLOTS",
     "FARTHEST",
+    "LARGEST_NUMBER",
     "LATEST_TICK",
     "MOST_AGENTS",
     "WORN_SLOTS",
+    "agent_fault",
     "agent_name_fault",
     "agents_fault",
+    "block_fault",
     "box_fault",
     "container_slots",
+    "dropped_fault",
+    "held_fault",
     "items_fault",
     "point_fault",
     "snapshot_fault",
+    "tick_fault",
 ]
 
 FARTHEST = 30_000_000
 """Greatest absolute coordinate in blocks, as in Minecraft."""
 
-LATEST_TICK = 2**53
-"""Latest tick. JavaScript and Python both represent whole numbers up to it exactly."""
+LATEST_TICK = 2_000_000_000
+"""Latest tick, after three years of the game; beliefs count ticks in 32 bits."""
+
+LARGEST_NUMBER = 2**53
+"""Largest number of a dropped item. JavaScript and Python both represent it exactly."""
+
+GREATEST_MEASURE = 1_000_000.0
+"""Greatest absolute value of an angle in radians, of health and of food."""
+
+_LARGEST_COUNT = 2**31 - 1
+"""Largest count of an item in a place."""
 
 MOST_AGENTS = 200
 """Most agents: that many were tried, with beliefs about beliefs of all of them."""
@@ -61,7 +85,7 @@ _CHEST_SLOTS = 27
 def agent_name_fault(name: object) -> str | None:
     """Return the fault of an agent name, or None."""
     if not isinstance(name, str) or not _AGENT_NAME.fullmatch(name):
-        return f"{str(name)[:50]!r} is no agent name; use 1 to 16 letters, digits and _"
+        return f"{quoted(name)} is no agent name; use 1 to 16 letters, digits and _"
     if name == "__proto__":
         return f"{name!r} cannot be the name of an agent: it means something else in JavaScript"
     return None
@@ -118,7 +142,9 @@ def _megabytes(size: int) -> int:
 def point_fault(point: Sequence[float]) -> str | None:
     """Return the fault of a point or a block position, or None."""
     if not all(math.isfinite(value) and abs(value) <= FARTHEST for value in point):
-        return f"{_short(point)} is no position; coordinates go from -{FARTHEST} to {FARTHEST}"
+        return (
+            f"{quoted(tuple(point))} is no position; coordinates go from -{FARTHEST} to {FARTHEST}"
+        )
     return None
 
 
@@ -141,33 +167,92 @@ def items_fault(
     needed = 0
     for name, count in items.items():
         if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-            return f"the count of {name!r} is {_short(count)}; it must be a whole number above 0"
+            return f"the count of {name!r} is {quoted(count)}; it must be a whole number above 0"
         needed += -(-count // registry.item_stack(name))
     if needed > slots:
-        return f"the items need {_short(needed)} slots; {holder} has {slots}"
+        return f"the items need {quoted(needed)} slots; {holder} has {slots}"
     return None
+
+
+def tick_fault(tick: int) -> str | None:
+    """Return the fault of a tick, or None."""
+    if 0 <= tick <= LATEST_TICK:
+        return None
+    return f"tick {quoted(tick)} is out of range; ticks go from 0 to {LATEST_TICK}"
+
+
+def block_fault(block: Block, registry: Registry) -> str | None:
+    """Return the fault of a block, -1 for unknown, or of a sign with its text; or None."""
+    low, state = (0, block.state) if isinstance(block, Sign) else (-1, block)
+    if low <= state < registry.states:
+        return None
+    return f"block state {quoted(state)} is not one of {low} to {registry.states - 1}"
+
+
+def held_fault(items: Mapping[str, int], registry: Registry) -> str | None:
+    """Return the fault of items that somebody reported, whatever slots they need, or None."""
+    for name, count in items.items():
+        if not registry.has_item(name):
+            return f"there is no item {quoted(name)}"
+        if not 0 < count <= _LARGEST_COUNT:
+            return f"the count of {name!r} is {quoted(count)}"
+    return None
+
+
+def agent_fault(agent: AgentState, registry: Registry) -> str | None:
+    """Return the fault of the pose and the possessions of an agent, or None."""
+    x, y, z = agent.position
+    if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST and abs(z) <= FARTHEST):
+        return point_fault(agent.position)
+    most = GREATEST_MEASURE
+    # A comparison with NaN is false.
+    if not (
+        abs(agent.yaw) <= most
+        and abs(agent.pitch) <= most
+        and abs(agent.health) <= most
+        and abs(agent.food) <= most
+    ):
+        numbers = (agent.yaw, agent.pitch, agent.health, agent.food)
+        return f"yaw, pitch, health and food are {numbers}; they go up to {most:.0f}"
+    if agent.inventory and (fault := held_fault(agent.inventory, registry)):
+        return fault
+    for slot, name in agent.equipment.items():
+        if slot not in EQUIPMENT_SLOTS:
+            return f"there is no slot {quoted(slot)}; slots are {', '.join(EQUIPMENT_SLOTS)}"
+        if not registry.has_item(name):
+            return f"there is no item {quoted(name)}"
+    return None
+
+
+def dropped_fault(number: int, item: DroppedItem | None, registry: Registry) -> str | None:
+    """Return the fault of a dropped item and of its number, or None."""
+    if not 0 <= number <= LARGEST_NUMBER:
+        return f"item number {quoted(number)} is out of range; they go from 0 to {LARGEST_NUMBER}"
+    if item is None:
+        return None
+    return held_fault({item.name: item.count}, registry) or point_fault(item.position)
 
 
 def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
     """Return the first fault of a snapshot, or None."""
-    faults = [box_fault(snapshot.box)]
-    if not 0 <= snapshot.tick <= LATEST_TICK:
-        faults.append(
-            f"tick {_short(snapshot.tick)} is out of range; ticks go from 0 to {LATEST_TICK}"
-        )
-    faults.append(agents_fault(len(snapshot.agents)))
+    faults = [
+        box_fault(snapshot.box),
+        tick_fault(snapshot.tick),
+        agents_fault(len(snapshot.agents)),
+    ]
     if snapshot.blocks.shape != snapshot.box.shape:
         faults.append(f"blocks of shape {snapshot.blocks.shape} do not fill {snapshot.box.shape}")
     elif not (snapshot.blocks.span[0] >= -1 and snapshot.blocks.span[1] < registry.states):
         faults.append(f"a block has a state that is not from -1 to {registry.states - 1}")
     for name, agent in snapshot.agents.items():
-        numbers = (agent.yaw, agent.pitch, agent.health, agent.food)
-        faults += [agent_name_fault(name), point_fault(agent.position)]
-        if not all(map(math.isfinite, numbers)):
-            faults.append(f"yaw, pitch, health and food of {name} are {numbers}; give numbers")
+        faults.append(agent_name_fault(name))
+        if fault := agent_fault(agent, registry):
+            faults.append(f"agent {name}: {fault}")
         faults.append(
             items_fault(agent.inventory, registry, AGENT_SLOTS + WORN_SLOTS, f"agent {name}")
         )
+    for number, item in snapshot.items.items():
+        faults.append(dropped_fault(number, item, registry))
     for place, text in snapshot.signs.items():
         faults.append(_sign_fault(snapshot, place, text, registry))
     for place, items in snapshot.containers.items():
@@ -190,10 +275,3 @@ def _sign_fault(snapshot: Snapshot, place: Position, text: str, registry: Regist
     except InputError as fault:
         return f"the sign at {place}: {fault}"
     return None
-
-
-def _short(value: object) -> str:
-    # Python refuses to write very large whole numbers, so show their size.
-    if isinstance(value, int) and value.bit_length() > 200:
-        return f"a number of {value.bit_length()} bits"
-    return str(value) if not isinstance(value, Sequence) else f"({', '.join(map(_short, value))})"

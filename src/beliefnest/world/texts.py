@@ -4,12 +4,15 @@ import re
 import unicodedata
 
 __all__ = [
+    "LONGEST_QUOTE",
     "LONGEST_UTTERANCE",
     "escaped",
     "fault_of",
     "formula_free",
     "is_well_formed",
     "on_one_line",
+    "quoted",
+    "shortened",
     "visible",
     "visible_json",
 ]
@@ -17,7 +20,13 @@ __all__ = [
 LONGEST_UTTERANCE = 256
 """Greatest number of characters in a line of chat, as in Minecraft."""
 
+LONGEST_QUOTE = 80
+"""Greatest number of characters of a value that a message quotes."""
+
 _LAST_OF_FOUR_DIGITS = 0xFFFF
+
+_LONG_NUMBER = 200
+"""Number of bits above which the size of a whole number is told instead of its digits."""
 
 _COMMANDS = frozenset({"Cc", "Cs", "Zl", "Zp"})
 """Unicode categories of control characters, line breaks and halves of surrogate pairs."""
@@ -91,6 +100,33 @@ def formula_free(text: str) -> str:
 def on_one_line(text: str) -> str:
     """Return a text on one line: white space becomes single spaces, the rest is `escaped`."""
     return escaped(" ".join(text.split()))
+
+
+def shortened(text: str, most: int = LONGEST_QUOTE) -> str:
+    """Return at most `most` characters of a text on one line, `escaped`, for a message."""
+    # Only what can be shown is escaped: the text may have millions of characters.
+    line = on_one_line(text[: most + 1])
+    return line if len(text) <= most and len(line) <= most else f"{line[: most - 3]}..."
+
+
+def quoted(value: object, most: int = LONGEST_QUOTE) -> str:
+    """Return a value of a file or an argument as messages quote it: `shortened`, in quotes.
+
+    Only texts get quotes; other values are shown as Python writes them.
+    """
+    match value:
+        case str():
+            return f"'{shortened(value, most)}'"
+        case int() if value.bit_length() > _LONG_NUMBER:
+            # Python refuses to write very large whole numbers.
+            return f"a number of {value.bit_length()} bits"
+        case list() | tuple() | dict() | set() | bytes() if len(value) > most:
+            return f"a {type(value).__name__} of {len(value):,}"
+        case _:
+            try:
+                return shortened(repr(value), most)
+            except ValueError:  # There is such a number in it.
+                return f"a {type(value).__name__}"
 
 
 def _commands(character: str) -> bool:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 from beliefnest.belief.columns import Columns
 from beliefnest.belief.grounds import PerceivedEvent
+from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
@@ -35,7 +36,11 @@ class EventLog:
         self._entries = 0
 
     def events(self, count: int) -> Sequence[tuple[int, Event]]:
-        """Return at least the first `count` events, each with its tick."""
+        """Return at least the first `count` events, each with its tick.
+
+        Raises:
+            StoreError: The journal has fewer; its counts are wrong.
+        """
         if len(self._events) < count:
             stop = self._journal.info(self._key).entries
             for _, entry in self._journal.filtered(
@@ -44,6 +49,11 @@ class EventLog:
                 if isinstance(entry, Frame):
                     self._events.extend((entry.tick, event) for event in entry.events)
             self._entries = stop
+        if len(self._events) < count:
+            raise StoreError(
+                f"the run file is damaged: it counts {count} events of branch {self._key.branch!r} "
+                f"and holds {len(self._events)}; restore it from a copy"
+            )
         return self._events
 
     def has_before(self, path: BeliefPath) -> bool:

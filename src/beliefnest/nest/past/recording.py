@@ -18,6 +18,7 @@ from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.nest.past.turn import Turn
 from beliefnest.owned import Barred, is_own
 from beliefnest.prompts import Renderer
+from beliefnest.timeline.bounds import Bounds
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import Records, RunJournal
 from beliefnest.timeline.store import SqliteJournal
@@ -187,6 +188,8 @@ def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
     run = journal.records.run()
     setting, world = decode_start(run.setting)
     recording = Recording(setting, journal, run.seed, world=world)
+    context = recording.context
+    journal.keep_within(Bounds(context.box, frozenset(context.agents), context.registry))
     recording.selected = {
         path: journal.info(TimelineKey(path, branch)).key
         for path, branch in journal.records.selected().items()
