@@ -390,3 +390,30 @@ def test_cells_of_a_process_that_is_killed_are_played_later(whole, tmp_path, mon
 def test_a_process_that_is_ended_is_told_of():
     with pytest.raises(bn.BodyError, match="finished cells are kept"), _engine("loky", 2):
         raise TerminatedWorkerError
+
+
+def test_labels_make_groups_of_scenarios_a_factor(tmp_path):
+    small_in(tmp_path)
+    other = tmp_path / "other.yaml"
+    other.write_text(SMALL.replace("name: small", "name: other"), encoding="utf-8")
+    text = "- {label: near, scenarios: small.yaml}\n- {label: far, scenarios: [other.yaml]}\n"
+    file = tmp_path / "study.yaml"
+    file.write_text(f"scenarios:\n{text}models: [offline]\nworld: scripted\n", encoding="utf-8")
+    study = bn.Study.load(file)
+    bare = bn.Study([str(tmp_path / "small.yaml"), str(other)], world="scripted")
+    assert [c.key.name for c in study.plan().cells] == [c.key.name for c in bare.plan().cells]
+    result = study.run(tmp_path / "out", jobs=1)
+    assert [row["label"] for row in result.rows] == ["near", "far"]
+    assert [row["label"] for row in result.counted(["label"])] == ["near", "far"]
+    assert result.where("label == 'far'").rows[0]["scenario"] == "other"
+    assert result.reproduce().differences == ()
+    wrong = (
+        ("- small.yaml\n- {label: x, scenarios: other.yaml}\n", "small.yaml has no label"),
+        ("- {label: x}\n", "give a name, or a mapping"),
+        ("- {label: '', scenarios: small.yaml}\n", "give a name, or a mapping"),
+        ("- {scenario: small.yaml, label: x}\n", "give a name, or a mapping"),
+    )
+    for entries, told in wrong:
+        file.write_text(f"scenarios:\n{entries}", encoding="utf-8")
+        with pytest.raises(bn.ScenarioError, match=told):
+            bn.Study.load(file)

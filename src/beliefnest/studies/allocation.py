@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import Literal, get_args
 
-__all__ = ["DESIGNS", "LIST", "PARTICIPANT", "Allocation", "balanced", "latin_lists"]
+__all__ = ["DESIGNS", "LABEL", "LIST", "PARTICIPANT", "Allocation", "balanced", "latin_lists"]
 
 Allocation = Literal["crossed", "balanced", "latin-square"]
 """Form of a design. `crossed`: every variation under every condition. `balanced`: every variation
@@ -16,6 +16,9 @@ DESIGNS: tuple[Allocation, ...] = get_args(Allocation)
 
 LIST = "list"
 """Column of the lists of a Latin square, and its key in the plan."""
+
+LABEL = "label"
+"""Column of the labels of groups of scenarios, and its key in the plan."""
 
 PARTICIPANT = "participant"
 """Column of the people who answered, and its key in the identity of their cells."""

@@ -13,7 +13,7 @@ from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.studies.allocation import LIST, balanced, latin_lists
+from beliefnest.studies.allocation import LABEL, LIST, balanced, latin_lists
 from beliefnest.studies.chance import scenario_draws
 from beliefnest.studies.checking import StudyKeyError
 from beliefnest.studies.design import Design, Template
@@ -156,11 +156,13 @@ class Cell:
         key: Identity of the cell.
         scenario: The scenario.
         list_number: Number of the cell's list, from 1; None: the design has no lists.
+        label: Label of the scenario's group; empty: it has none.
     """
 
     key: CellKey
     scenario: Scenario
     list_number: int | None = None
+    label: str = ""
 
     def plain(self) -> dict[str, Any]:
         """Return the cell as plain values for the study's plan."""
@@ -174,6 +176,7 @@ class Cell:
             "variation": variation_id(key.scenario, dict(key.variation)),
             "alike": None if draws else alike(key, ("repeat",)),
             **({} if self.list_number is None else {LIST: self.list_number}),
+            **({LABEL: self.label} if self.label else {}),
             "probes": [
                 {
                     "label": probe.label,
@@ -260,7 +263,9 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
                     continue
                 check_called(called, scenario.name, name)
                 found[-1][number] = list(_cells(design, document, asked, variation))
-        cells += _allocated(design, variations, found, len(conditions))
+        allocated = _allocated(design, variations, found, len(conditions))
+        label = design.labels.get(name, "")
+        cells += [replace(cell, label=label) for cell in allocated]
     order = {model: number for number, model in enumerate(design.models)}
     # Order cells in rounds, so that the cells played first form a smaller study of this design.
     cells.sort(key=lambda cell: (cell.key.repeat, cell.list_number or 0, order[cell.key.model]))

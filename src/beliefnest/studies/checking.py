@@ -34,7 +34,7 @@ class StudyKeyError(InputError):
         message: What is wrong, and what to do.
     """
 
-    def __init__(self, key: str | tuple[str, ...], message: str) -> None:
+    def __init__(self, key: str | tuple[str | int, ...], message: str) -> None:
         super().__init__(message)
         self.path = (key,) if isinstance(key, str) else key
 

@@ -55,6 +55,7 @@ class Design:
         limits: Limits of tokens and cost of the whole study.
         claims_from: Name of the model that extracts claims from utterances; None: no extraction.
         design: Allocation of conditions to variations.
+        labels: Labels of groups of scenarios, by the scenario's name or path.
     """
 
     scenarios: tuple[str, ...]
@@ -71,6 +72,7 @@ class Design:
     limits: RunLimits = field(default_factory=RunLimits)
     claims_from: str | None = None
     design: Allocation = "crossed"
+    labels: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, values in (("scenarios", self.scenarios), ("models", self.models)):

@@ -15,7 +15,7 @@ from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.studies.checking import StudyKeyError, several
 from beliefnest.studies.design import Design, template_named
 from beliefnest.studies.episode_design import EpisodeDesign, Policies, listed
-from beliefnest.studies.study_keys import StudyKeys, design_of
+from beliefnest.studies.study_keys import StudyKeys, design_of, labelled_scenarios
 from beliefnest.world.words import nearest_or_all
 from beliefnest.worlds.names import check_world
 
@@ -70,7 +70,13 @@ def _beside(keys: StudyKeys, path: Path) -> StudyKeys:
     known = (*Task.names(), *builtin_names())
     return replace(
         keys,
-        scenarios=located("scenarios", keys.scenarios, builtin_names()),
+        scenarios=[
+            {"label": label, "scenarios": names} if label else names[0]
+            for label, names in (
+                (label, located("scenarios", names, builtin_names()))
+                for label, names in labelled_scenarios(keys.scenarios)
+            )
+        ],
         tasks=None if keys.tasks is None else located("tasks", keys.tasks, known),
         policies=tuple(_policies_beside(each, path.parent) for each in listed(keys.policies)),
     )

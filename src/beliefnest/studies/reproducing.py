@@ -15,7 +15,7 @@ from beliefnest.llm.budget import RunLimits
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template, built_in_template
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.sources import read_document
-from beliefnest.studies.allocation import PARTICIPANT
+from beliefnest.studies.allocation import LABEL, PARTICIPANT
 from beliefnest.studies.cells import Cell, CellKey, Keyed, planned_cell
 from beliefnest.studies.comparing import ERROR, Difference, differing_contents, differing_rows
 from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
@@ -213,14 +213,15 @@ class _Inputs:
         """
         key = dict(planned["key"])
         try:
-            made = self._episode(key) if "task" in key else self._probes(key)
+            label = planned.get(LABEL, "")
+            made = self._episode(key) if "task" in key else self._probes(key, label)
         except (BeliefNestError, KeyError, TypeError) as error:
             raise InputError(
                 f"{self.folder}: the cell {planned['name']} cannot be made from the inputs: {error}"
             ) from None
         return made
 
-    def _probes(self, key: dict[str, Any]) -> Cell:
+    def _probes(self, key: dict[str, Any], label: str) -> Cell:
         recorded = CellKey(**key)
         cell = planned_cell(recorded, self.documents[recorded.scenario], self._template(recorded))
         if cell.key.content != recorded.content:
@@ -228,7 +229,8 @@ class _Inputs:
                 f"{self.index.scenarios[recorded.scenario]}, or a template, has changed since the "
                 "cell was played"
             )
-        return replace(cell, key=replace(recorded, model=self._here(recorded.model)))
+        own = replace(recorded, model=self._here(recorded.model))
+        return replace(cell, key=own, label=label)
 
     def _template(self, key: CellKey) -> Template | None:
         if not key.template:

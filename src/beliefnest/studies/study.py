@@ -13,7 +13,7 @@ from beliefnest.llm.resolve import check_model
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.sources import read_document
-from beliefnest.studies.allocation import PARTICIPANT
+from beliefnest.studies.allocation import LABEL, PARTICIPANT
 from beliefnest.studies.cells import C, Cell, Plan, plan_cells
 from beliefnest.studies.checking import (
     StudyKeyError,
@@ -63,7 +63,8 @@ class Study:
     scenarios only; `policies`, `orders`, `seeds` and `help` are for tasks only.
 
     Args:
-        scenarios: Names of built-in scenarios, or paths of files.
+        scenarios: Names of built-in scenarios, or paths of files. A mapping with `label` and
+            `scenarios` gives several of them a label, in the column `label`.
         models: Names of models, as `beliefnest run --model` takes them; None: `offline`; for
             tasks, no model.
         templates: Built-in prompt templates or paths of files, in place of the scenarios' own.
@@ -104,7 +105,7 @@ class Study:
 
     def __init__(
         self,
-        scenarios: Sequence[str] | str = (),
+        scenarios: Sequence[str | Mapping[str, Any]] | str = (),
         models: Sequence[str] | str | None = None,
         templates: Sequence[str] | None = None,
         repeats: int = 1,
@@ -500,8 +501,9 @@ class Study:
 
 def _told_apart(plan: Plan[C], table: Table) -> Plan[C]:
     """Return the plan; raise InputError if a parameter has the name of a column of the table."""
-    columns = table.kinds(())
-    for name in variation_columns({"cells": [cell.plain() for cell in plan.cells]}):
+    columns = {*table.kinds(()), LABEL}
+    varied = {name for cell in plan.cells for name in cell.plain()["key"]["variation"]}
+    for name in sorted(varied):
         if name in columns:
             raise InputError(
                 f"the parameter {name!r} has the name of a column of the table; "

@@ -10,13 +10,13 @@ from beliefnest.studies.checking import StudyKeyError, checked_conditions, check
 from beliefnest.studies.design import Constraint, Design, Template
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies, listed, seeds_of
 
-__all__ = ["StudyKeys", "design_of"]
+__all__ = ["StudyKeys", "design_of", "labelled_scenarios"]
 
 
 class StudyKeys(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Keys of a study with their defaults; `Study` documents them."""
 
-    scenarios: Sequence[str] | str = ()
+    scenarios: Sequence[str | Mapping[str, Any]] | str = ()
     models: Sequence[str] | str | None = None
     templates: Sequence[str] | str | None = None
     repeats: int = 1
@@ -57,8 +57,9 @@ def design_of(
         if getattr(keys, name) not in ([], default):
             told = "policies, orders, seeds and help are for tasks; name tasks to play episodes"
             raise StudyKeyError(name, told)
+    groups = labelled_scenarios(keys.scenarios)
     return Design(
-        scenarios=several("scenarios", keys.scenarios),
+        scenarios=tuple(name for _, names in groups for name in names),
         models=("offline",) if keys.models is None else several("models", keys.models),
         templates=templates,
         repeats=keys.repeats,
@@ -72,7 +73,36 @@ def design_of(
         limits=checked_limits(keys.max_tokens, keys.max_cost),
         claims_from=keys.claims_from,
         design=_allocation(keys.design),
+        labels={name: label for label, names in groups for name in names if label},
     )
+
+
+def labelled_scenarios(entries: object) -> list[tuple[str, tuple[str, ...]]]:
+    """Return groups of scenarios: the label, empty for a scenario without one, and the names.
+
+    Raises:
+        StudyKeyError: An entry is neither a name nor a mapping with `label` and `scenarios`, or
+            some groups have a label and others have none.
+    """
+    listed = (
+        entries if isinstance(entries, Sequence) and not isinstance(entries, str) else [entries]
+    )
+    found: list[tuple[str, tuple[str, ...]]] = []
+    for number, each in enumerate(listed if entries != () else ()):
+        if not isinstance(each, Mapping):
+            found.append(("", several("scenarios", each)))
+            continue
+        place = ("scenarios", number)
+        label = each.get("label")
+        if set(each) != {"label", "scenarios"} or not isinstance(label, str) or not label.strip():
+            told = f"has {dict(each)!r}; give a name, or a mapping with `label` and `scenarios`"
+            raise StudyKeyError(place, f"scenarios {told}")
+        found.append((label.strip(), several("scenarios", each["scenarios"])))
+    bare = [names[0] for label, names in found if not label and names]
+    if bare and len(bare) < len(found):
+        told = f"{bare[0]} has no label, which other scenarios have; give it one"
+        raise StudyKeyError("scenarios", told)
+    return found
 
 
 def _allocation(name: object) -> Allocation:

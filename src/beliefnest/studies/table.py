@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from beliefnest.scenarios.judging import OUTCOMES
-from beliefnest.studies.allocation import LIST, PARTICIPANT
+from beliefnest.studies.allocation import LABEL, LIST, PARTICIPANT
 from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.study_folder import StudyFolder
 
@@ -164,17 +164,19 @@ def of_result(
 def variation_columns(plan: Mapping[str, Any]) -> list[str]:
     """Return the names of the columns of variations, in the order of the plan.
 
-    The column `list` follows them if the design has lists, and `participant` if people answered.
+    The column `label` follows them if groups of scenarios have labels, `list` if the design has
+    lists, and `participant` if people answered.
     """
     return list(dict.fromkeys(name for cell in plan["cells"] for name in _varied(cell)))
 
 
 def _varied(cell: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of a cell's variation, its list and its participant, if it has them."""
+    """Return the values of a cell's variation, its label, list and participant, if it has them."""
     key = cell["key"]
+    labels = {LABEL: cell[LABEL]} if LABEL in cell else {}
     lists = {LIST: cell[LIST]} if LIST in cell else {}
     people = {PARTICIPANT: key[PARTICIPANT]} if PARTICIPANT in key else {}
-    return {**key["variation"], **lists, **people}
+    return {**key["variation"], **labels, **lists, **people}
 
 
 def plain_value(value: Any) -> Any:
