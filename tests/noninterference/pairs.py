@@ -7,6 +7,7 @@ agents who walk, speak, think, deposit, mine and build. In some pairs the easter
 again before the wall is opened and Ann looks in.
 """
 
+import functools
 import random
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -15,6 +16,7 @@ from typing import Any
 
 import beliefnest as bn
 from beliefnest.nest.past.setting import Setting
+from beliefnest.prompts import Renderer
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = ["AGENTS", "BOX", "PATHS", "Pair", "Played", "Side", "pair_of", "played"]
@@ -135,6 +137,12 @@ def pair_of(seed: int) -> Pair:
     )
 
 
+@functools.cache
+def _renderer() -> Renderer:
+    """Return the renderer of all nests, which compiles each template once."""
+    return Renderer()
+
+
 @contextmanager
 def played(pair: Pair, which: int) -> Iterator[Played]:
     """Play one world of a pair, and give it while its nest is open."""
@@ -159,7 +167,7 @@ def played(pair: Pair, which: int) -> Iterator[Played]:
         places={"yard": (1, 1, 5), "garden": (4, 1, 1)},
         unique=frozenset(pair.unique),
     )
-    with bn.Nest.open(setting, "scripted") as nest:
+    with bn.Nest.open(setting, "scripted", renderer=_renderer()) as nest:
         real = nest.scripted_world
         for seen, unseen in zip(pair.seen, pair.unseen[which], strict=True):
             _beat(real, [*seen, *unseen])

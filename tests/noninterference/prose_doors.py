@@ -1,10 +1,11 @@
 """Doors of prose: templates, filters, captions and observations."""
 
+from tests.noninterference.doors import door
+from tests.noninterference.pairs import Played
+
 from beliefnest.prompts import BUILT_IN, built_in_template
 from beliefnest.prompts.story_filters import captions
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
-from tests.noninterference.doors import door
-from tests.noninterference.pairs import Played
 
 _ARGUMENTS = {"block_property": "('chest')"}
 """Arguments of the filters that need one."""
@@ -47,7 +48,7 @@ def filters(world: Played, path: str) -> object:
 @door()
 def sentences(world: Played, path: str) -> object:
     """Return the captions of a film."""
-    return captions(world.nest[path])
+    return captions(world.nest[path].view)
 
 
 @door()

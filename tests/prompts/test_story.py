@@ -171,7 +171,7 @@ def test_every_built_in_template_renders_for_a_question(nest, name):
 
 def test_captions_are_the_sentences_of_the_story_with_their_ticks(nest: bn.Nest) -> None:
     for path in ("/", "/lia", "/wim"):
-        told = captions(nest[path])
+        told = captions(nest[path].view)
         text = nest[path].render("{{ branch | beginning }} {{ branch | story }}")
         assert " ".join(sentence for _, sentence in told) == text
         ticks = [tick for tick, _ in told]

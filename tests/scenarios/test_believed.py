@@ -183,7 +183,8 @@ def test_no_model_is_asked_if_a_belief_gives_no_right_answer():
 
 
 def test_an_item_in_two_places_has_two_right_answers():
-    agents = {"wim": {"position": [5.5, 1, 5.5], "inventory": {"apple": 1}}}
+    wim = {"position": [5.5, 1, 5.5], "inventory": {"apple": 1}}
+    agents = {"lia": {"position": [3.5, 1, 4.5]}, "wim": wim}
     given = bn.Scenario.from_mapping({**SCENE, "agents": agents, "script": []})
     with bn.Nest.open(given, "scripted") as opened:
         found = expected(opened, right={"believed": "/", "item": "apple"})

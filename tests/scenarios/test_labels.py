@@ -32,12 +32,13 @@ def opened(folder: Path, labels: str) -> bn.Nest:
 def test_prompts_say_what_a_container_looks_like_if_the_scenario_lets_them(tmp_path: Path) -> None:
     with opened(tmp_path, "true") as nest:
         prompt = nest["/ann/bob"].render(built_in_template("default"), task="Find candy.")
+        labels = nest["/ann/bob"].labels
     assert (
         "(2, 1, 2) chest (the Smarties tube, looks as if it held candy): known, {'cookie': 1}; "
         "believed from the start" in prompt
     )
     with bn.Nest.read(tmp_path / "run.bn") as recorded:
-        assert recorded["/ann/bob"].labels == nest["/ann/bob"].labels != {}
+        assert recorded["/ann/bob"].labels == labels != {}
 
 
 def test_prompts_say_no_labels_otherwise(tmp_path: Path) -> None:

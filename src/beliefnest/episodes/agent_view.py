@@ -10,6 +10,7 @@ from beliefnest.episodes.decided import Ended
 from beliefnest.errors import PathError
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.shown import ShownSimulator
+from beliefnest.prompts.mind_view import MindView
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.claims import Claim
 from beliefnest.world.values import Position
@@ -281,16 +282,16 @@ class AgentView:
         Raises:
             TemplateError: The template is wrong.
         """
-        about: dict[str, ShownSimulator] = {}
-        level: list[tuple[tuple[str, ...], ShownSimulator]] = [((), self._own)]
+        about: dict[str, MindView] = {}
+        level: list[tuple[tuple[str, ...], MindView]] = [((), self._own.view)]
         for _ in range(depth):
             level = [
-                ((*path, name), simulator.child(name))
-                for path, simulator in level
+                ((*path, name), view.child(name))
+                for path, view in level
                 for name in self.brief.agents
                 if name != (path[-1] if path else self._own.owner)
             ]
-            about |= {"/".join(path): simulator for path, simulator in level}
+            about |= {"/".join(path): view for path, view in level}
         return self._own.render(template, view=RoundFacts.of(self), about=about, **variables)
 
     def note_considered(self, trace: SearchTrace) -> None:

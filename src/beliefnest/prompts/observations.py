@@ -46,6 +46,9 @@ class Sight:
         places: Containers and signs that come into sight.
         lost_agents: Agents that are no longer seen, with their feet when last seen.
         lost_places: Containers and signs that are no longer seen.
+        kinds: Names of the blocks of `places`, as they are seen; empty if a narrator tells.
+        labelled: Those of `places` that still have the label of the scenario; empty if a narrator
+            tells.
     """
 
     tick: int
@@ -54,6 +57,8 @@ class Sight:
     places: tuple[Position, ...] = ()
     lost_agents: Mapping[str, Point] = field(default_factory=dict)
     lost_places: tuple[Position, ...] = ()
+    kinds: Mapping[Position, str] = field(default_factory=dict)
+    labelled: tuple[Position, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,10 +91,18 @@ class Lying:
 
 @dataclass(frozen=True, slots=True)
 class Happened:
-    """Event that the observer perceives."""
+    """Event that the observer perceives.
+
+    Attributes:
+        tick: The tick.
+        event: The event.
+        block: Block at its position, as the observer believes after it; None if it is unknown, or
+            if a narrator tells.
+    """
 
     tick: int
     event: PerceivedEvent
+    block: str | None = None
 
 
 Observation = Outset | Assumed | Sight | Found | Read | Lying | Happened

@@ -1,7 +1,7 @@
 """Right answers that the nest computes: what a simulator believes about one thing."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -9,10 +9,9 @@ import msgspec
 
 from beliefnest.belief.view import State
 from beliefnest.errors import ScenarioError
-from beliefnest.nest.past.place_names import object_names
-from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
+from beliefnest.scenarios.naming import Naming
 from beliefnest.world import forms
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.forms import note
@@ -73,11 +72,13 @@ class _Found:
         names: Texts that give this answer, the best first.
         ranked: True if only the best one is right; with options, the best that is an option.
         place: Its place, if it is a place.
+        written: Further texts that an option of the scenario may have for it.
     """
 
     names: tuple[str, ...]
     ranked: bool = False
     place: Point | None = None
+    written: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +139,7 @@ class Believed:
         holder = "in reality" if self.path == "/" else f"as {self.path} believes"
         return f"{self.kind} {thing.replace('_', ' ')}, {holder}"
 
-    def answers(self, look: Look, setting: Setting, options: Sequence[str]) -> tuple[str, ...]:
+    def answers(self, look: Look, naming: Naming, options: Sequence[str]) -> tuple[str, ...]:
         """Return the right answers: options, or texts if there are no options.
 
         An item that is believed to be in several places has several right answers.
@@ -147,7 +148,7 @@ class Believed:
             ScenarioError: An answer is none of the options, or all options are right, or the agent
                 is near no named place.
         """
-        found = self._found(look(self.path), setting)
+        found = self._found(look(self.path), naming)
         if not options:
             texts = [name for each in found for name in each.names[: 1 if each.ranked else None]]
             return tuple(dict.fromkeys(texts))
@@ -160,13 +161,13 @@ class Believed:
         """Return texts of a right answer in words: those given, and other words for `unknown`."""
         return (*right, *_NOT_KNOWN) if _UNKNOWN in right else tuple(right)
 
-    def place(self, look: Look, setting: Setting) -> Point:
+    def place(self, look: Look, naming: Naming) -> Point:
         """Return the one place of an item or agent; containers have the place of their block.
 
         Raises:
             ScenarioError: The place is unknown, or there are several.
         """
-        found = self._found(look(self.path), setting)
+        found = self._found(look(self.path), naming)
         places = [each.place for each in found if each.place is not None]
         if len(places) != 1:
             told = listed([each.names[0] for each in found])
@@ -174,7 +175,7 @@ class Believed:
         return places[0]
 
     def _option(self, found: _Found, options: Sequence[str]) -> str:
-        for name in found.names:
+        for name in (*found.names, *found.written):
             alike = [option for option in options if _bare(option) == _bare(name)]
             if len(alike) == 1:
                 return alike[0]
@@ -183,12 +184,12 @@ class Believed:
             f"{', '.join(options)}; add it"
         )
 
-    def _found(self, state: State, setting: Setting) -> list[_Found]:
+    def _found(self, state: State, naming: Naming) -> list[_Found]:
         match self.kind, self.thing:
             case "item", str(name):
-                found = list(_located(state, setting, name))
+                found = list(_located(state, naming, name))
             case "agent", str(name):
-                found = list(self._standing(state, setting, name))
+                found = list(self._standing(state, naming, name))
             case "container", (int(), int(), int()) as at:
                 found = list(_contained(state, at))
             case "sign", (int(), int(), int()) as at:
@@ -201,39 +202,40 @@ class Believed:
                 raise AssertionError(self.kind)
         return found or [_Found((self.unknown,))]
 
-    def _standing(self, state: State, setting: Setting, agent: str) -> Iterator[_Found]:
+    def _standing(self, state: State, naming: Naming, agent: str) -> Iterator[_Found]:
         feet = state.agents[agent].position
         if feet is None:
             return
         names = [
-            *names_near(feet, {at: name for name, at in setting.places.items()}),
-            *names_near(feet, object_names(setting)),
+            *names_near(feet, {at: name for name, at in naming.places.items()}),
+            *names_near(feet, naming.objects),
         ]
         if not names:
             raise self._fault(
                 f"{agent} is believed at {point_words(feet)}, which is within {NEAR:g} blocks of "
                 "nothing that has a name; name the place under 'places'"
             )
-        yield _Found(tuple(names), ranked=True, place=feet)
+        written = tuple(names_near(feet, naming.written))
+        yield _Found(tuple(names), ranked=True, place=feet, written=written)
 
     def _fault(self, message: str) -> ScenarioError:
         return ScenarioError(f"{self.where}{message}")
 
 
-def _located(state: State, setting: Setting, item: str) -> Iterator[_Found]:
+def _located(state: State, naming: Naming, item: str) -> Iterator[_Found]:
     """Yield the containers, agents and places that have an item."""
-    names: Mapping[Position, str] = object_names(setting)
     for at, held in state.containers.items():
         if held.items.get(item):
             words = point_words(at)
-            known = () if at in setting.labels else (words,)
-            yield _Found((names.get(at, words), *known), place=at)
+            written = (naming.written[at],) if at in naming.written else ()
+            known = () if at in naming.labelled else (words,)
+            yield _Found((naming.objects.get(at, words), *known), place=at, written=written)
     for name, agent in state.agents.items():
         if agent.inventory.get(item) or item in (agent.equipment or {}).values():
             yield _Found((name,), place=agent.position)
     for dropped in state.items.values():
         if dropped.name == item:
-            near = names_near(dropped.position, {at: n for n, at in setting.places.items()})
+            near = names_near(dropped.position, {at: n for n, at in naming.places.items()})
             yield _Found(("floor", "ground", *near), place=dropped.position)
 
 

@@ -17,6 +17,7 @@ from beliefnest.scenarios.believed import Believed, BelievedEntry, Look
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.scenarios.expected_state import ExpectationEntry
+from beliefnest.scenarios.naming import Naming
 from beliefnest.scenarios.trial import Trial
 from beliefnest.world import forms
 from beliefnest.world.forms import note
@@ -155,12 +156,12 @@ class Expected(ABC):
     def ground(self) -> str:
         """Return what the expectation is judged by, in words."""
 
-    def resolved(self, look: Look, setting: Setting) -> "Expected":
+    def resolved(self, look: Look, naming: Naming) -> "Expected":
         """Return the expectation with the values that the nest computes.
 
         Args:
             look: Function from a belief path to the state after the script.
-            setting: Setting with names of places.
+            naming: Names of things in the text of the probe.
 
         Raises:
             ScenarioError: A belief gives no such value; the message names file, line and key.

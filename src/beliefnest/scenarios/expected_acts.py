@@ -22,7 +22,7 @@ from beliefnest.scenarios.expected import (
 )
 from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.functions import NamedFunction, function_of
-from beliefnest.scenarios.naming import container_name, named_place, point_text
+from beliefnest.scenarios.naming import Naming, container_name, named_place, point_text
 from beliefnest.scenarios.trial import Trial
 from beliefnest.world.limits import AGENT_SLOTS
 from beliefnest.world.values import EventKind, Items, Point, Position, block_at
@@ -83,14 +83,14 @@ class Awaited(Deed):
     def written(self) -> dict[str, Any]:
         return {self.key: self.believed.written()}
 
-    def resolved(self, look: Look, setting: Setting) -> "Expected":
-        place = self.believed.place(look, setting)
+    def resolved(self, look: Look, naming: Naming) -> "Expected":
+        place = self.believed.place(look, naming)
         match self.key:
             case "opens":
                 if block_at(place) not in self.containers:
                     raise ScenarioError(
-                        f"{self.believed.where}needs a container, but the item is believed "
-                        f"{named_place(place, setting)}"
+                        f"{self.believed.where}needs a container, but the item is believed at "
+                        f"{point_text(place)}"
                     )
                 return Opens(block_at(place), self.believed)
             case "arrives":

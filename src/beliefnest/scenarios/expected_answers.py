@@ -18,6 +18,7 @@ from beliefnest.scenarios.expected import (
     as_list,
     source_of,
 )
+from beliefnest.scenarios.naming import Naming
 from beliefnest.world.words import listed
 
 __all__ = [
@@ -122,10 +123,10 @@ class Answers(Expected):
             return self.believed.written()
         return list(self.right)
 
-    def resolved(self, look: Look, setting: Setting) -> "Expected":
+    def resolved(self, look: Look, naming: Naming) -> "Expected":
         if self.believed is None or self.right:
             return self
-        found = replace(self, right=self.believed.answers(look, setting, self.options))
+        found = replace(self, right=self.believed.answers(look, naming, self.options))
         both = [each for each in found.right if each in self.wrong]
         if both:
             raise ScenarioError(

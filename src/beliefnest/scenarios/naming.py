@@ -1,11 +1,40 @@
 """Names of places of a scenario, for people."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from beliefnest.nest.past.place_names import object_names
 from beliefnest.nest.past.setting import Setting
+from beliefnest.prompts.mind_view import MindView
 from beliefnest.world.near import names_near
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
 
-__all__ = ["container_name", "named_place", "point_text", "titled"]
+__all__ = ["Naming", "container_name", "named_place", "point_text", "titled"]
+
+
+@dataclass(frozen=True, slots=True)
+class Naming:
+    """Names of things in the text of a probe.
+
+    Attributes:
+        objects: Names of containers, signs, doors and switches that its reader knows.
+        places: Named places that its reader knows.
+        written: Names of things that the scenario's author knows, for the options of the file.
+        labelled: Positions whose name is a label of the scenario.
+    """
+
+    objects: Mapping[Position, str]
+    places: Mapping[str, Position]
+    written: Mapping[Position, str]
+    labelled: frozenset[Position] = frozenset()
+
+    @classmethod
+    def of(cls, view: MindView, setting: Setting) -> "Naming":
+        """Return the names for a probe that is asked of a simulator."""
+        labels = {at: on_one_line(label) for at, label in setting.labels.items()}
+        labelled = {at for at, label in labels.items() if view.names.get(at, "").endswith(label)}
+        return cls(view.names, view.places, object_names(setting), frozenset(labelled))
 
 
 def container_name(place: Position, setting: Setting) -> str:

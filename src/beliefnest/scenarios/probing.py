@@ -15,6 +15,7 @@ from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_kinds import Infers
 from beliefnest.scenarios.inferring import Inferred, Inferring
 from beliefnest.scenarios.judging import outcome_of
+from beliefnest.scenarios.naming import Naming
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply
 from beliefnest.scenarios.questioning import ask_question
 from beliefnest.scenarios.trial import Trial
@@ -114,9 +115,10 @@ def resolved(nest: Nest, probe: Probe) -> Probe:
     Raises:
         ScenarioError: A belief gives no right answer; the message names file, line and key.
     """
-    expect = tuple(
-        each.resolved(lambda path: nest[path].state, nest.setting) for each in probe.expect
-    )
+    if all(each.paths == () for each in probe.expect):
+        return probe
+    naming = Naming.of(nest[probe.path].view, nest.setting)
+    expect = tuple(each.resolved(lambda path: nest[path].state, naming) for each in probe.expect)
     return replace(probe, expect=expect)
 
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 from beliefnest.llm.messages import Message, Model, Sampling, Usage
 from beliefnest.nest.face.nest import Nest
-from beliefnest.nest.past.place_names import place_names
 from beliefnest.prompts import Template, built_in_template
+from beliefnest.prompts.mind_view import MindView
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.outcome import Reply
@@ -48,7 +48,7 @@ def ask_question(
         "question": question.question,
         "options": options,
         "reason": question.reason,
-        "places": _places(nest),
+        "places": _places(believer.view),
     }
     system = believer.render(built_in_template("answering"), **asked)
     prompt = believer.render(template, task=question.question, **asked)
@@ -98,6 +98,7 @@ def _chosen(said: str, options: Sequence[str]) -> str | None:
     return exact[0] if exact else None
 
 
-def _places(nest: Nest) -> Mapping[str, Position]:
-    names = {name: at for at, name in place_names(nest.setting).items()}
-    return {**names, **nest.setting.places}
+def _places(view: MindView) -> Mapping[str, Position]:
+    """Return the positions of the things and places that have a name for the asked mind."""
+    named = {**view.names, **{at: name for name, at in view.places.items()}}
+    return {**{name: at for at, name in named.items()}, **view.places}

@@ -7,8 +7,10 @@ import numpy.typing as npt
 
 from beliefnest.belief.view import State
 from beliefnest.nest.explain.comparison import Difference, value_words
+from beliefnest.nest.past.labelled import Labelled
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.scene import Scene, Wrong, read_scene
+from beliefnest.prompts.naming import known_places
 from beliefnest.world.paths import BeliefPath, path_text
 
 __all__ = ["scene_of", "wrong_things"]
@@ -35,12 +37,16 @@ def scene_of(
         height: Storey to draw, as the y of blocks on its floor.
     """
     setting, key = recording.setting, recording.selected.get(path)
+    labels, places = setting.labels, setting.places
+    if path:
+        labelled = Labelled(recording, recording.moment(path, state.tick))
+        labels, places = labelled.known(state, (), labels), known_places(state, places)
     return read_scene(
         state,
         wrong=wrong_things(otherwise),
         against=path_text(against),
-        labels=setting.labels,
-        places=setting.places,
+        labels=labels,
+        places=places,
         sight=sight,
         height=height,
         note=f"branch {key.branch}" if key is not None and path else "",

@@ -17,13 +17,15 @@ from beliefnest.nest.explain.explanation import Explanation
 from beliefnest.nest.explain.made_claims import MadeClaim, claims_made
 from beliefnest.nest.face.given import tick_of
 from beliefnest.nest.face.turns import in_turn
-from beliefnest.nest.past.observing import observations_of
-from beliefnest.nest.past.place_names import object_names
+from beliefnest.nest.past.over_time import each_tick
+from beliefnest.nest.past.percepts import percepts_of
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.telling import mind_view
 from beliefnest.nest.past.views import visible_from
 from beliefnest.pictures.words import state_words
 from beliefnest.prompts import Template
+from beliefnest.prompts.mind_view import MindView
 from beliefnest.prompts.observations import Observation
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
@@ -60,25 +62,49 @@ class ShownSimulator(ABC):
         return self._path[-1] if self._path else None
 
     @property
+    @in_turn
     def labels(self) -> Mapping[Position, str]:
-        """The labels of containers for prompts, by position: names and suggested contents."""
-        return self._recording.setting.prompt_labels
-
-    @property
-    def names(self) -> Mapping[Position, str]:
-        """The names of containers, signs, doors and switches for prose, by position."""
-        return object_names(self._recording.setting)
-
-    @property
-    def places(self) -> Mapping[str, Position]:
-        """The positions of the scenario's named places, by name."""
-        return self._recording.setting.places
+        """The labels of containers that the owner knows: names and suggested contents."""
+        return self.view.labels
 
     @property
     @in_turn
-    def observations(self) -> tuple[Observation, ...]:
+    def names(self) -> Mapping[Position, str]:
+        """The names that the owner has for containers, signs, doors and switches, for prose."""
+        return self.view.names
+
+    @property
+    @in_turn
+    def places(self) -> Mapping[str, Position]:
+        """The positions of the named places that the owner knows, by name."""
+        return self.view.places
+
+    @property
+    @in_turn
+    def observations(self) -> Sequence[Observation]:
         """The observations of the simulator's owner in the order of time; in reality, all."""
-        return observations_of(self._recording, self._path, self._tick)
+        return self.view.observations
+
+    @property
+    @in_turn
+    def view(self) -> MindView:
+        """The view of this simulator that templates get: its state, percepts and names alone."""
+        return mind_view(self._recording, self._path, self._tick)
+
+    @in_turn
+    def changes(self, since: int) -> list[int]:
+        """Return the ticks at which the owner perceived something new, `since` first.
+
+        In the real world these are the ticks at which anything changed or happened.
+
+        Raises:
+            TickError: `since` is in the future or before the start.
+        """
+        recording, path = self._recording, self._path
+        start, end = recording.moment(path, tick_of(since)), recording.moment(path, self._tick)
+        if path:
+            return [percept.tick for percept, _ in percepts_of(recording, path, start, end)]
+        return [start.tick, *(t for t, _ in each_tick(recording, [path], start.tick, end.tick))]
 
     @property
     def tick(self) -> int:
@@ -102,7 +128,11 @@ class ShownSimulator(ABC):
             TemplateError: The template is wrong; the message names its line.
         """
         with self._recording.turn:
-            return self._recording.renderer.render(template, self, variables)
+            views = {
+                name: value.view if isinstance(value, ShownSimulator) else value
+                for name, value in variables.items()
+            }
+            return self._recording.renderer.render(template, self.view, views)
 
     @in_turn
     def explain(

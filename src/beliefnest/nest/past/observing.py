@@ -1,12 +1,13 @@
 """Observations of a node's owner in the order of time, read from the node's timeline."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent, Source
 from beliefnest.belief.node_view import NodeView
+from beliefnest.nest.past.labelled import Labelled
 from beliefnest.nest.past.place_names import sign_places
 from beliefnest.nest.past.recording import Recording
 from beliefnest.prompts.observations import (
@@ -42,10 +43,12 @@ class _Look:
     Attributes:
         agents: Feet of the other agents that it sees.
         places: Containers and signs that it sees.
+        kinds: Names of their blocks; empty if a narrator tells.
     """
 
     agents: Mapping[str, Point]
     places: frozenset[Position]
+    kinds: Mapping[Position, str] = field(default_factory=dict)
 
     @property
     def all(self) -> frozenset[str | Position]:
@@ -84,7 +87,7 @@ def observations_of(
     agent turned before another one stopped or began to see it.
     """
     moment = recording.moment(path, tick)
-    return tuple(_Observer(recording, path).read(moment))
+    return tuple(_Observer(recording, path, Labelled(recording, moment)).read(moment))
 
 
 class _Turns:
@@ -138,16 +141,20 @@ def _watchers(viewer: str, looks: _Looks) -> frozenset[str]:
 
 
 class _Observer:
-    def __init__(self, recording: Recording, path: BeliefPath) -> None:
+    def __init__(self, recording: Recording, path: BeliefPath, labelled: Labelled) -> None:
         self._recording = recording
         self._path = path
+        self._labelled = labelled
         self._owner = path[-1] if path else None
         viewers = recording.agents if self._owner is None else (self._owner,)
         self._nodes = {name: (name,) if self._owner is None else path for name in viewers}
         self._paths = list(dict.fromkeys((path, *self._nodes.values())))
-        snapshot = recording.setting.snapshot
-        self._signs = frozenset(sign_places(recording.setting))
-        self._places = tuple(sorted({*snapshot.containers, *self._signs}))
+        # A narrator tells of the things that the scenario has, an owner of those that it sees.
+        self._signs: frozenset[Position] = frozenset()
+        self._places: frozenset[Position] = frozenset()
+        if self._owner is None:
+            self._signs = frozenset(sign_places(recording.setting))
+            self._places = self._signs | recording.setting.snapshot.containers.keys()
         self._seen: dict[str, _Look] = {}
         self._turns = _Turns()
         self._contents: dict[Position, Items | None] = {}
@@ -208,7 +215,7 @@ class _Observer:
         after = self._scene(forest)
         for number, event in enumerate(told):
             self._moved(event)
-            yield Happened(tick, event)
+            yield Happened(tick, event, self._block_at(forest, event))
             if event.kind is EventKind.OPEN_CONTAINER and event.actor == self._owner:
                 yield from self._opened(tick, event, told[number + 1 :], after)
         if told[-1].kind is EventKind.MOVE_TO:
@@ -233,6 +240,14 @@ class _Observer:
             self._contents[place] = held
             yield Found(tick, place, dict(held))
 
+    def _block_at(self, forest: Forest, event: PerceivedEvent) -> str | None:
+        """Return the name of the block at an event's position, as the owner believes."""
+        place, context = event.detail.get("position"), forest.context
+        if self._owner is None or place is None or place not in context.box:
+            return None
+        node = forest.node(self._path)
+        return context.block_name(forest.table.block(node, cell_of(context.box, place)))
+
     def _moved(self, event: PerceivedEvent) -> None:
         """Follow the known contents through an event."""
         place, stores = event.detail.get("position"), event.kind.traits.stores
@@ -252,7 +267,8 @@ class _Observer:
     def _turned(self, forest: Forest) -> Iterator[Observation]:
         """Yield the turns that must be told before what others see at this tick."""
         feet = {name: forest.feet(self._path, name) for name in forest.context.agents}
-        told = self._turns.before(self._seen, forest.tick, self._looks(forest), feet)
+        looks = self._looks(forest, NodeView(forest, self._path))
+        told = self._turns.before(self._seen, forest.tick, looks, feet)
         if told is not None:
             yield from self._sights(*told)
 
@@ -263,13 +279,16 @@ class _Observer:
     def _sights(self, tick: int, looks: _Looks) -> Iterator[Observation]:
         for viewer, look in looks.items():
             past = self._seen.get(viewer, _NOTHING_SEEN)
+            new = tuple(sorted(look.places - past.places))
             sight = Sight(
                 tick,
                 viewer,
                 {name: at for name, at in look.agents.items() if name not in past.agents},
-                tuple(sorted(look.places - past.places)),
+                new,
                 {name: at for name, at in past.agents.items() if name not in look.agents},
                 tuple(sorted(past.places - look.places)),
+                {at: look.kinds[at] for at in new if at in look.kinds},
+                tuple(at for at in new if at in look.kinds and self._labelled.has(at, tick)),
             )
             self._seen[viewer] = look
             if sight.agents or sight.places or sight.lost_agents or sight.lost_places:
@@ -291,7 +310,7 @@ class _Observer:
 
     def _scene(self, forest: Forest) -> _Scene:
         view = NodeView(forest, self._path)
-        looks = self._looks(forest)
+        looks = self._looks(forest, view)
         box = forest.context.box
         if self._owner is None:
             contents = {at: held.items for at, held in view.containers.items()}
@@ -302,7 +321,7 @@ class _Observer:
             for at, held in view.containers.items()
             if present and held.current and held.complete
         }
-        signs = looks[self._owner].places & self._signs
+        signs = looks[self._owner].places & view.signs.keys()
         cells = {
             number: cell_of(box, cell)
             for number, item in view.items.items()
@@ -312,27 +331,38 @@ class _Observer:
         items = {number: view.items[number] for number, cell in cells.items() if cell in seen}
         return _Scene(looks, contents, self._sign_texts(view, signs), items)
 
-    def _sign_texts(self, view: NodeView, signs: frozenset[Position]) -> dict[Position, str]:
+    def _sign_texts(self, view: NodeView, signs: Collection[Position]) -> dict[Position, str]:
         # A sign without text is not among `view.signs`.
         return {at: view.signs.get(at, "") for at in sorted(signs)}
 
-    def _looks(self, forest: Forest) -> _Looks:
-        return {name: self._look(forest, name, node) for name, node in self._nodes.items()}
+    def _looks(self, forest: Forest, view: NodeView) -> _Looks:
+        return {name: self._look(forest, name, node, view) for name, node in self._nodes.items()}
 
-    def _look(self, forest: Forest, viewer: str, node: BeliefPath) -> _Look:
+    def _look(self, forest: Forest, viewer: str, node: BeliefPath, view: NodeView) -> _Look:
         if not forest.is_current(node, viewer):
             return _NOTHING_SEEN
         box = forest.context.box
-        cells = {cell_of(box, at): at for at in self._places}
+        places: Collection[Position] = self._places
+        if self._owner is not None:
+            places = view.containers.keys() | view.signs.keys()
+        cells = {cell_of(box, at): at for at in sorted(places)}
         seen = forest.current_blocks(node, cells)
         feet = {
             name: forest.feet(node, name)
             for name in forest.context.agents
             if name != viewer and forest.is_current(node, name)
         }
+        kinds: dict[Position, str] = {}
+        if self._owner is not None:
+            number = forest.node(node)
+            named = {
+                cells[c]: forest.context.block_name(forest.table.block(number, c)) for c in seen
+            }
+            kinds = {at: name for at, name in named.items() if name is not None}
         return _Look(
             {name: at for name, at in feet.items() if at is not None},
             frozenset(cells[cell] for cell in seen),
+            kinds,
         )
 
 

@@ -116,12 +116,19 @@ def _read(
             history.advance(key, forest, begin + offset + 1)
             following = entries[offset + 1] if offset + 1 < len(entries) else None
             if following is None or following.tick > entry.tick:
-                yield _percept(forest, path, entry.tick, events)
+                percept, blocks = _percept(forest, path, entry.tick, events)
+                yield percept, blocks
                 events = forest.count_of_events
+                then = entry.tick + 1
+                last = stretch.tick if following is None else following.tick - 1
+                if percept.events and then <= last:
+                    # Contents seen in an opened container are current at that tick only, whether
+                    # the next tick has an entry or not.
+                    yield _percept(forest, path, then, events)
 
 
 def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[Percept, Terrain]:
-    view, context = NodeView(forest, path), forest.context
+    view, context = NodeView(forest, path, tick), forest.context
     owner = path[-1] if path else None
     agents = view.agents
     present = owner is None or agents[owner].current

@@ -18,6 +18,7 @@ from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.nest.past.turn import Turn
 from beliefnest.owned import Barred, is_own
 from beliefnest.prompts import Renderer
+from beliefnest.prompts.mind_view import Told
 from beliefnest.timeline.bounds import Bounds
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import Records, RunJournal
@@ -41,6 +42,7 @@ class Recording(Barred):
         turn: Lock of the thread that uses the nest.
         world: Name of the world in which the nest was opened.
         remembered: Caches of readers, by keys of their own.
+        told: Path and moment for which observations and names were read last, and these.
     """
 
     _called = "the nest"
@@ -56,6 +58,7 @@ class Recording(Barred):
         self.setting = setting
         self.world = world
         self.remembered: dict[object, object] = {}
+        self.told: tuple[tuple[BeliefPath, ForkPoint], Told] | None = None
         self.journal = journal
         self.seed = seed
         self.renderer = Renderer() if renderer is None else renderer

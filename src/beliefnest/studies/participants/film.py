@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from beliefnest.nest.face.nest import Nest
-from beliefnest.nest.past.place_names import object_names
 from beliefnest.pictures.still import draw_still
 from beliefnest.pictures.svg import svg_text
 from beliefnest.prompts.story_filters import captions
 from beliefnest.world.paths import parse_path
+from beliefnest.world.values import Position
 
 __all__ = ["Film", "Frame", "read_film"]
 
@@ -63,12 +63,16 @@ def read_film(nest: Nest, path: str, start: int) -> Film:
         path: Belief path of the simulator.
         start: First tick.
     """
+    view = nest[path].view
+    changes = nest[path].changes(start)
+    # A mind does not notice that time goes on after its last percept.
+    end = nest.tick if view.owner is None else changes[-1]
     told: dict[int, str] = {}
-    for tick, sentence in captions(nest[path]):
-        told[tick] = f"{told[tick]} {sentence}" if tick in told else sentence
-    changes = [start, *(tick for tick, _ in nest.each_tick([path], start, nest.tick))]
-    ticks = sorted({*_thinned(changes), *told, nest.tick})
-    pictures = _pictures(nest, path, ticks)
+    for tick, sentence in captions(view):
+        then = min(tick, end)
+        told[then] = f"{told[then]} {sentence}" if then in told else sentence
+    ticks = sorted({*_thinned(changes), *told, end})
+    pictures = _pictures(nest, path, ticks, view.names)
     times = _durations(ticks, told)
     words: Iterator[str] = itertools.accumulate(
         (told.get(tick, "") for tick in ticks), lambda before, now: now or before
@@ -93,9 +97,10 @@ def _durations(ticks: Sequence[int], told: Mapping[int, str]) -> list[int]:
     return [max(pair) for pair in zip([*usual, _LONGEST_MS], reading, strict=True)]
 
 
-def _pictures(nest: Nest, path: str, ticks: Sequence[int]) -> list[str]:
+def _pictures(
+    nest: Nest, path: str, ticks: Sequence[int], names: Mapping[Position, str]
+) -> list[str]:
     """Return the SVG text of each tick; all have the same size and show the same storey."""
-    names = object_names(nest.setting)
     (last,) = nest.scenes(path, nest.tick, path)
     parsed = parse_path(path, nest.agents)
     # An agent's own sight is part of what it perceives. A narrator sees all.
