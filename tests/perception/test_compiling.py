@@ -11,7 +11,7 @@ import numba
 import numba.core.event
 import pytest
 
-from beliefnest.perception.compiling import is_compiled, kernel_folder
+from beliefnest.perception.compiling import KernelWarning, is_compiled, kernel_folder
 
 STEPS = """
 from beliefnest.perception.compiling import inlined
@@ -87,7 +87,8 @@ def test_damaged_files_are_compiled_and_written_again(tmp_path, folder, monkeypa
     for content in (b"", b"no machine code", b"cbeliefnest.perception.codes\nNoSuchType\n."):
         for file in folder.rglob("*.nb?"):
             file.write_bytes(content)
-        assert loaded(tmp_path / "first", monkeypatch)(2) == 8
+        with pytest.warns(KernelWarning, match="damaged and are compiled again"):
+            assert loaded(tmp_path / "first", monkeypatch)(2) == 8
         again = loaded(tmp_path / "first", monkeypatch)
         assert is_compiled(again)
         assert again(2) == 8
@@ -103,7 +104,8 @@ def test_kernels_work_where_no_folder_is_writable(tmp_path, folder, monkeypatch)
     kernel = loaded(place, monkeypatch)
     assert kernel_folder(kernel) is None
     assert not is_compiled(kernel)
-    assert kernel(2) == 8
+    with pytest.warns(KernelWarning, match=r"no folder .* set NUMBA_CACHE_DIR"):
+        assert kernel(2) == 8
     # One that cannot be written later costs no more than compiling.
     (place / "__pycache__").unlink()
     beside = loaded(place, monkeypatch)

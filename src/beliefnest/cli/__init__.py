@@ -8,6 +8,10 @@ __all__ = ["main"]
 
 def main() -> None:
     """Run the command line; the process ends with its exit status."""
+    from beliefnest.cli.streams import open_streams, print_warnings_as_lines
+
+    open_streams()
+    print_warnings_as_lines()
     from beliefnest.cli.app import run_command_line
 
     status = run_command_line(sys.argv[1:])

@@ -27,12 +27,14 @@ from beliefnest.cli.options import (
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.version import VERSION
+from beliefnest.world.shell_limits import low_limits
 from beliefnest.world.texts import is_well_formed
 
 __all__ = ["app", "run_command_line"]
 
 _INTERRUPTED = 130
 _BAD_USAGE = 2
+_NO_ROOM = 3
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 # Click's ClickException. Typer may use its own copy of click and exports only subclasses of it.
 # The bases of BadParameter are UsageError and then ClickException.
@@ -50,27 +52,41 @@ app = typer.Typer(
 
 
 def run_command_line(arguments: Sequence[str]) -> int:
-    """Run a command and return its exit status; print every error as one line on stderr."""
+    """Run a command and return its exit status.
+
+    Errors, and warnings of this package, are printed as one line each on stderr.
+    """
     try:
         status = _run_command(arguments)
-    except _UsageFault as error:
-        context = getattr(error, "ctx", None)
-        asked = "beliefnest" if context is None else context.command_path
-        return _fail(f"{error.format_message()} (see {asked} --help)", _BAD_USAGE)
-    except BeliefNestError as error:
-        return _fail(str(error), error.exit_status)
-    except BrokenPipeError:
-        # The reader of our output has closed the pipe: nobody reads a message.
-        sys.stderr.close()
-        return 0
-    except OSError as error:
-        return _fail(_system_fault(error), _BAD_USAGE)
     except (KeyboardInterrupt, typer.Abort):
         status = _INTERRUPTED
+    except (_UsageFault, BeliefNestError, OSError, MemoryError, RuntimeError) as error:
+        told = _told(error)
+        if told is None:
+            raise
+        return _fail(*told)
     if status == _INTERRUPTED:
-        # Newer versions of typer turn the interrupt into this status without a message.
-        return _fail("interrupted", _INTERRUPTED)
+        # Newer versions of typer turn the interrupt into this status without a message. A library
+        # of NumPy interrupts the process if it cannot start its threads.
+        limits = low_limits()
+        return _fail("interrupted", _INTERRUPTED) if limits is None else _fail(limits, _NO_ROOM)
     return status if isinstance(status, int) else 0
+
+
+def _told(error: Exception) -> tuple[str, int] | None:
+    """Return message and exit status for an error; None: it is a fault of this program."""
+    match error:
+        case BeliefNestError():
+            return str(error), error.exit_status
+        case OSError():
+            return _system_fault(error), _BAD_USAGE
+        case MemoryError() | RuntimeError():
+            limits = low_limits()
+            what = str(error) or type(error).__name__
+            return None if limits is None else (f"{limits} ({what})", _NO_ROOM)
+    context = getattr(error, "ctx", None)
+    asked = "beliefnest" if context is None else context.command_path
+    return f"{error.format_message()} (see {asked} --help)", _BAD_USAGE  # type: ignore[attr-defined] # a usage fault
 
 
 def _run_command(arguments: Sequence[str]) -> Any:

@@ -14,6 +14,7 @@ from rich.table import Table
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.locking import holding
 from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
 from beliefnest.studies.plainframe import Typed, write_csv, write_parquet
 from beliefnest.suites import FILMS
@@ -61,6 +62,21 @@ def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
     if not films:
         raise InputError(f"{options.data} holds none of the films asked for")
     folder = _folder(options.out)
+    with holding(folder):
+        judged = _judge_all(films, parameters)
+        report = _report(options, judged, parameters)
+        report["files"] = _write(folder, options, judged)
+    if options.json:
+        sys.stdout.write(json.dumps(report, indent=2) + "\n")
+    else:
+        _print(options, judged, report)
+    return 0
+
+
+def _judge_all(
+    films: Sequence[Film], parameters: FilmParameters
+) -> dict[Lesion | None, list[Judgment]]:
+    """Judge all films with each model, and show the progress."""
     judged: dict[Lesion | None, list[Judgment]] = {}
     step = max(1, len(films) // _REPORTS)
     with progress_on(FILMS) as on_progress:
@@ -71,13 +87,7 @@ def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
                     on_progress(f"{_WORDS[lesion]}, film {film.name}", number, len(films))
                 judged[lesion].append(judge(film, parameters, lesion))
         on_progress("all films judged", len(films), len(films))
-    report = _report(options, judged, parameters)
-    report["files"] = _write(folder, options, judged)
-    if options.json:
-        sys.stdout.write(json.dumps(report, indent=2) + "\n")
-    else:
-        _print(options, judged, report)
-    return 0
+    return judged
 
 
 def _folder(out: Path | None) -> Path:

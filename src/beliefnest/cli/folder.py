@@ -2,9 +2,11 @@
 
 import json
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
+from beliefnest.locking import holding, is_lock
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.record_forms import (
     ExpectationForm,
@@ -23,6 +26,7 @@ from beliefnest.scenarios.record_forms import (
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.yaml_reading import templates_file
 from beliefnest.studies.study_folder import StudyFolder
+from beliefnest.timeline.lock import writer_lock
 
 __all__ = [
     "PICTURE",
@@ -94,9 +98,18 @@ class ConditionFolder:
         return content
 
     def begin(self) -> None:
-        """Make an empty folder; delete what an interrupted run left in it."""
+        """Make an empty folder; delete what an interrupted run left in it.
+
+        Raises:
+            StoreError: Another process writes to the run file in it.
+        """
         if self.path.exists():
-            shutil.rmtree(self.path)
+            # The lock goes with the folder.
+            lock = writer_lock(self.store)
+            try:
+                shutil.rmtree(self.path)
+            finally:
+                lock.release()
         self.path.mkdir(parents=True)
 
     def write_result(self, result: Mapping[str, object]) -> None:
@@ -111,9 +124,9 @@ class ConditionFolder:
             _write(folder / "prompt.txt", outcome.prompt)
             _write(folder / "answer.txt", outcome.answer)
             _write(folder / "program.js", outcome.program)
-        for count, reply in enumerate(outcome.replies, start=1):
-            _write(folder / f"question-{count}.txt", reply.prompt)
-            _write(folder / f"reply-{count}.txt", reply.text)
+        for place, reply in enumerate(outcome.replies, start=1):
+            _write(folder / f"question-{place}.txt", reply.prompt)
+            _write(folder / f"reply-{place}.txt", reply.text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,10 +136,11 @@ class RunFolder:
     path: Path
 
     @staticmethod
+    @contextmanager
     def open(
         wanted: Path | None, now: datetime, settings: Mapping[str, object], scenario: Scenario
-    ) -> "RunFolder":
-        """Make the folder of a run, or open that of an interrupted run to continue it.
+    ) -> Iterator["RunFolder"]:
+        """Make the folder of a run, or open that of an interrupted run, and hold it meanwhile.
 
         Args:
             wanted: The folder; None: `runs/NAME-DATE-TIME` in the current folder.
@@ -136,26 +150,36 @@ class RunFolder:
                 folder; an interrupted run continues only if they have not changed.
 
         Raises:
-            InputError: The folder cannot be made, or holds something else.
+            InputError: The folder cannot be made, is in use, or holds something else.
         """
-        name = scenario.name
-        path = (
-            wanted if wanted is not None else _unused(Path("runs"), f"{name}-{now:%Y%m%d-%H%M%S}")
-        )
         try:
-            path.mkdir(parents=True, exist_ok=True)
-            # A run that repeats another one may begin with a folder of cached answers alone.
-            if any(each.name != _ANSWERS for each in path.iterdir()):
-                _check_same(path, settings, scenario)
+            if wanted is None:
+                path = _made(Path("runs"), f"{scenario.name}-{now:%Y%m%d-%H%M%S}")
             else:
-                report = {"scenario": name, "status": "running", "settings": settings, "runs": []}
-                _write(path / _REPORT, _json(report))
-                _write(path / _SCENARIO, scenario.text)
-                if scenario.templates:
-                    _write(templates_file(path / _SCENARIO), _json(scenario.templates))
+                path = wanted
+                path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise InputError(f"the run folder {path} cannot be written: {error.strerror}") from None
-        return RunFolder(path)
+            raise _unwritable(wanted or Path("runs"), error) from None
+        with holding(path):
+            folder = RunFolder(path)
+            try:
+                folder._begin(settings, scenario)
+            except OSError as error:
+                raise _unwritable(path, error) from None
+            yield folder
+
+    def _begin(self, settings: Mapping[str, object], scenario: Scenario) -> None:
+        """Write what a new folder begins with, or check that an older one may be continued."""
+        # A run that repeats another one may begin with a folder of cached answers alone.
+        if any(each.name != _ANSWERS and not is_lock(each) for each in self.path.iterdir()):
+            _check_same(self.path, settings, scenario)
+            return
+        name = scenario.name
+        report = {"scenario": name, "status": "running", "settings": settings, "runs": []}
+        self.write_report(report)
+        _write(self.path / _SCENARIO, scenario.text)
+        if scenario.templates:
+            _write(templates_file(self.path / _SCENARIO), _json(scenario.templates))
 
     def cell(self, folder: Path) -> ConditionFolder:
         """Return the folder of one condition; `folder` is relative to the run folder."""
@@ -264,9 +288,18 @@ def kept_scenario_file(out: Path | None, wanted: str) -> Path | None:
     return out / _SCENARIO if written == (out / _SCENARIO).read_text(encoding="utf-8") else None
 
 
-def _unused(parent: Path, name: str) -> Path:
-    candidates = [parent / name, *(parent / f"{name}-{number}" for number in range(2, 100))]
-    return next((path for path in candidates if not path.exists()), candidates[-1])
+def _made(parent: Path, name: str) -> Path:
+    """Make and return a new folder; another run may have begun in the same second."""
+    parent.mkdir(parents=True, exist_ok=True)
+    for each in chain([name], (f"{name}-{number}" for number in count(2))):
+        with suppress(FileExistsError):
+            (parent / each).mkdir()
+            break
+    return parent / each
+
+
+def _unwritable(path: Path, error: OSError) -> InputError:
+    return InputError(f"the run folder {path} cannot be written: {error.strerror}")
 
 
 def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) -> None:

@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from beliefnest.episodes.helping import Help
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, NotBegunError
+from beliefnest.locking import holding
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
 
@@ -45,7 +47,11 @@ def play_task(options: PlayOptions) -> int:
     task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
     if options.export is not None:
         return _export(task, options.export)
-    with _episode(task, policies, options) as episode, progress_on(task.name) as on_progress:
+    with (
+        nullcontext() if options.out is None else holding(_made(options.out)),
+        _episode(task, policies, options) as episode,
+        progress_on(task.name) as on_progress,
+    ):
         limit = task.form.rounds if options.rounds is None else options.rounds
         while episode.rounds < limit and not episode.is_over:
             on_progress(f"round {episode.rounds + 1}", episode.rounds, limit)
@@ -84,17 +90,17 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
         task,
         policies,
         world=options.world,
-        store=None if options.out is None else _store_in(options.out),
+        store=None if options.out is None else options.out / _RUN,
         seed=options.seed,
         budget=budget,
         patience_s=options.patience,
         listen=joining_address(options.listen),
     )
-    if options.out is None or not _store_in(options.out).exists():
+    if options.out is None or not (options.out / _RUN).exists():
         return asked
     try:
         held = Episode.resume(
-            _store_in(options.out),
+            options.out / _RUN,
             budget=budget if budget != Budget() else None,
             patience_s=options.patience,
         )
@@ -121,12 +127,13 @@ def _episode(task: Task, policies: Mapping[str, str], options: PlayOptions) -> E
     return held
 
 
-def _store_in(folder: Path) -> Path:
+def _made(folder: Path) -> Path:
+    """Make a folder, unless it is there, and return it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder} cannot be made: {error.strerror}") from None
-    return folder / _RUN
+    return folder
 
 
 def _pairs(given: Sequence[str], option: str, form: str) -> dict[str, str]:

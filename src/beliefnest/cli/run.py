@@ -86,7 +86,18 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
     whole = replace(
         first, templates={n: t for each in scenarios for n, t in each.templates.items()}
     )
-    folder = RunFolder.open(options.out, datetime.now(), settings, whole)
+    with RunFolder.open(options.out, datetime.now(), settings, whole) as folder:
+        return _run_in(folder, options, scenarios, launch)
+
+
+def _run_in(
+    folder: RunFolder,
+    options: RunOptions,
+    scenarios: Sequence[Scenario],
+    launch: Launch | None,
+) -> int:
+    """Run the conditions in an open folder; return the exit status."""
+    first, settings = scenarios[0], options.settings
     run = _Run(options, folder)
     cells = plan_run_cells(scenarios, options.named_models, options.repeat, options.seed)
     status: Status = "failed"

@@ -144,7 +144,8 @@ def _running(options: ServeOptions) -> Iterator[Path]:
         # Refuse an unknown condition here: in the child it would leave an empty page.
         Scenario.load(options.what, number)
     folder = options.out or Path("runs") / f"{name}-{datetime.now():%Y%m%d-%H%M%S}"
-    command = [sys.executable, "-m", "beliefnest", "run", options.what, "--out", str(folder)]
+    # -P: a `random.py` of the user in this folder is not ours to import.
+    command = [sys.executable, "-P", "-m", "beliefnest", "run", options.what, "--out", str(folder)]
     for number in options.condition or ():
         command += ["--condition", str(number)]
     # Drop the table of the child, which would be mixed with our own lines.

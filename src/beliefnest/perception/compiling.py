@@ -9,7 +9,8 @@ other. Numba itself distinguishes processors and types of arguments within such 
 import functools
 import gc
 import os
-import pickle
+import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from enum import EnumType
@@ -22,7 +23,11 @@ import numba
 from numba.core import caching
 from numba.core.runtime.nrt import rtsys
 
+from beliefnest.locking import LockHeldError, ProcessLock
+from beliefnest.perception.sealed_files import DamagedFileError, SealedFiles
+
 __all__ = [
+    "KernelWarning",
     "allocating",
     "compiled",
     "inlined",
@@ -43,7 +48,16 @@ _BORROWING: dict[str, Any] = {**_KERNEL, "_nrt": False}
 _INNER: dict[str, Any] = {"no_cpython_wrapper": True}
 
 # Damaged files, and those of a version whose types of arguments have other names.
-_UNREADABLE = (OSError, EOFError, pickle.UnpicklingError, AttributeError, ImportError)
+_UNREADABLE = (OSError, DamagedFileError, AttributeError, ImportError)
+_FORM = "sealed"
+"""Form of the files; it distinguishes them from those of earlier versions."""
+_PATIENCE = 300.0
+"""Seconds to wait for another process that compiles the same kernel."""
+_LOOK = 0.05
+
+
+class KernelWarning(UserWarning):
+    """Warning that kernels are compiled although that was done before."""
 
 
 def compiled(function: F) -> F:
@@ -104,15 +118,44 @@ def kernel_folder(function: Callable[..., object]) -> Path | None:
 
 def _kept(function: F, options: dict[str, Any]) -> F:
     kernel = _jit(function, options)
+    if numba.config.DISABLE_JIT:
+        return kernel
     with suppress(RuntimeError):  # There is no writable folder.
         cast(Any, kernel)._cache = _Cache(kernel)
+    cast(Any, kernel).compile = _shared(kernel)
     return kernel
 
 
 def _jit(function: F, options: dict[str, Any]) -> F:
     kernel: Any = numba.njit(**options)(function)
-    kernel.compile = _without_collections(kernel.compile)
+    # With NUMBA_DISABLE_JIT numba returns the function itself.
+    if not numba.config.DISABLE_JIT:
+        kernel.compile = _without_collections(kernel.compile)
     return cast(F, kernel)
+
+
+def _shared(kernel: Any) -> Callable[..., Any]:
+    """Return the `compile` of a kernel that tells why it compiles anew, and ends its lock."""
+    compile_it = kernel.compile
+
+    @functools.wraps(compile_it)
+    def run(*args: Any) -> Any:
+        cache = kernel._cache
+        if not isinstance(cache, _Cache):
+            folders = ", ".join(map(str, _folders(kernel.py_func.__code__.co_filename)))
+            warnings.warn(
+                f"no folder for compiled kernels can be written ({folders}), so every run compiles "
+                "them again; set NUMBA_CACHE_DIR to a folder that can be written",
+                KernelWarning,
+                stacklevel=2,
+            )
+            return compile_it(*args)
+        try:
+            return compile_it(*args)
+        finally:
+            cache.end()
+
+    return run
 
 
 def _without_collections(function: F) -> F:
@@ -216,6 +259,9 @@ class _Cache(caching.FunctionCache):
     def __init__(self, kernel: Any) -> None:
         super().__init__(kernel)
         self._py_func = kernel.py_func
+        self._lock: ProcessLock | None = None
+        stamp = self._impl.locator.get_source_stamp()
+        self._cache_file = SealedFiles(self._cache_path, self._impl.filename_base, stamp)
 
     def holds_any(self, target_context: Any) -> bool:
         """Return True if machine code for this processor is stored."""
@@ -225,19 +271,55 @@ class _Cache(caching.FunctionCache):
         return False
 
     def load_overload(self, sig: object, target_context: Any) -> object:
-        """Return the machine code for types of arguments; None: nothing readable is stored."""
+        """Return the machine code for types of arguments; None: nothing readable is stored.
+
+        If nothing is stored, this process gets the right to compile the kernel, until `end`.
+        Other processes wait for it and then find the code.
+        """
         rtsys.initialize(target_context)
-        try:
-            return self._load_overload(sig, target_context)
-        except _UNREADABLE:
-            with suppress(OSError):
-                self.flush()
-            return None
+        found = self._load(sig, target_context)
+        if found is None and self._lock is None:
+            self._lock = self._locked()
+            found = self._load(sig, target_context)
+        return found
 
     def save_overload(self, sig: object, data: object) -> None:
         """Store machine code, unless the folder is full or no longer writable."""
         with suppress(OSError):
             super().save_overload(sig, data)
+
+    def end(self) -> None:
+        """Let other processes compile the kernel, or load what this one has stored."""
+        if self._lock is not None:
+            self._lock.release()
+            self._lock = None
+
+    def _load(self, sig: object, target_context: Any) -> object:
+        try:
+            return self._load_overload(sig, target_context)
+        except _UNREADABLE as fault:
+            if isinstance(fault, DamagedFileError):
+                warnings.warn(
+                    f"compiled kernels in {self._cache_path} are damaged and are compiled again",
+                    KernelWarning,
+                    stacklevel=2,
+                )
+            with suppress(OSError):
+                self.flush()
+            return None
+
+    def _locked(self) -> ProcessLock | None:
+        """Wait for the right to compile the kernel; None: it cannot be had."""
+        until = time.monotonic() + _PATIENCE
+        path = Path(self._cache_file._index_path + "-lock")
+        while time.monotonic() < until:
+            try:
+                return ProcessLock.acquire(path)
+            except LockHeldError:
+                time.sleep(_LOOK)
+            except OSError:
+                return None
+        return None
 
 
 def _digest(kernel: Any) -> str:
@@ -248,6 +330,7 @@ def _digest(kernel: Any) -> str:
 def _parts(kernel: Any, seen: set[object]) -> Iterator[str]:
     function = kernel.py_func
     seen.add(function)
+    yield _FORM
     code = function.__code__
     constants = [each for each in code.co_consts if each != function.__doc__]
     yield repr((function.__name__, code.co_code, constants, code.co_names, code.co_varnames))

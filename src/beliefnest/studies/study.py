@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
-from filelock import Timeout
 
 from beliefnest.errors import InputError, ModelError
 from beliefnest.files import read_regular_text
@@ -245,12 +244,9 @@ class Study:
             limits=self._design.limits,
         )
         self._check_models(terms, backend)
-        try:
-            with place.lock():
-                self._write_plan(place, self._plan_json(part))
-                run_cells(part.cells, place, terms, jobs, backend, on_progress or _say_nothing)
-        except Timeout:
-            raise InputError(f"another process runs the study in {folder}") from None
+        with place.lock():
+            self._write_plan(place, self._plan_json(part))
+            run_cells(part.cells, place, terms, jobs, backend, on_progress or _say_nothing)
         return StudyResult(place)
 
     def participants(
@@ -343,14 +339,11 @@ class Study:
         )
         place = StudyFolder.open(folder)
         place.check_subjects(self._plan_json(self.plan()))
-        try:
-            with place.lock():
-                if not place.has_plan:
-                    self._write_plan(place, self._plan_json(self.plan()))
-                place.write_people(name, found.cells)
-                write_answers(place.path / "people.csv", found.answers)
-        except Timeout:
-            raise InputError(f"another process runs the study in {folder}") from None
+        with place.lock():
+            if not place.has_plan:
+                self._write_plan(place, self._plan_json(self.plan()))
+            place.write_people(name, found.cells)
+            write_answers(place.path / "people.csv", found.answers)
         return StudyResult(place), tuple(found.notes)
 
     def _scenarios(self) -> tuple[Design, Sequence[Cell]]:

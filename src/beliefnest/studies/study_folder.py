@@ -4,14 +4,15 @@ import json
 import os
 import shutil
 from collections.abc import Collection, Iterable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
-from filelock import FileLock
 
 from beliefnest.errors import InputError
+from beliefnest.locking import holding, is_lock
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
 from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form
 
@@ -62,7 +63,9 @@ class StudyFolder:
         try:
             folder.path.mkdir(parents=True, exist_ok=True)
             # A study that repeats another one may begin with a folder of cached answers alone.
-            strange = any(each != folder.answers for each in folder.path.iterdir())
+            strange = any(
+                each != folder.answers and not is_lock(each) for each in folder.path.iterdir()
+            )
             strange = strange and not (folder.path / _PLAN).is_file()
             if strange and not (folder.path / "cells").is_dir():
                 raise InputError(f"{path} is not empty and holds no study; name another folder")
@@ -86,9 +89,9 @@ class StudyFolder:
             )
         return folder
 
-    def lock(self) -> FileLock:
-        """Return the lock that the process running the study holds."""
-        return FileLock(self.path / "study.lock", timeout=0)
+    def lock(self) -> AbstractContextManager[None]:
+        """Hold the folder; raise InputError if another process does."""
+        return holding(self.path)
 
     @property
     def cells(self) -> Path:

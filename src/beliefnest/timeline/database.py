@@ -19,8 +19,9 @@ import msgspec
 
 from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.files import open_regular
+from beliefnest.locking import ProcessLock
 from beliefnest.owned import Owned
-from beliefnest.timeline.lock import WriterLock
+from beliefnest.timeline.lock import writer_lock
 from beliefnest.timeline.store_schema import (
     APPLICATION_ID,
     SCHEMA_VERSION,
@@ -132,7 +133,9 @@ class Database(Owned):
         writable: True if it was opened for writing.
     """
 
-    def __init__(self, connection: sqlite3.Connection, path: Path, lock: WriterLock | None) -> None:
+    def __init__(
+        self, connection: sqlite3.Connection, path: Path, lock: ProcessLock | None
+    ) -> None:
         super().__init__()
         self._connection = connection
         self._lock = lock
@@ -214,7 +217,7 @@ class Database(Owned):
 
     @classmethod
     def _locked(cls, path: Path, mode: str) -> "Database":
-        lock = WriterLock.acquire(path)
+        lock = writer_lock(path)
         try:
             return cls(_connected(path, mode), path, lock)
         except BaseException:

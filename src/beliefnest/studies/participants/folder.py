@@ -8,6 +8,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from beliefnest.errors import InputError
+from beliefnest.locking import holding
 from beliefnest.studies.cells import digest, variation_id
 from beliefnest.studies.participants.film import Film
 from beliefnest.studies.participants.items import Item
@@ -150,8 +151,9 @@ def write_folder(folder: Path, contents: Mapping[str, str]) -> None:
     """Write the files; raise InputError if they cannot be written."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, text in contents.items():
-            (folder / name).write_text(text, encoding="utf-8")
+        with holding(folder, "name another folder with -o"):
+            for name, text in contents.items():
+                (folder / name).write_text(text, encoding="utf-8")
     except OSError as error:
         raise InputError(f"the folder {folder} cannot be written: {error.strerror}") from None
 

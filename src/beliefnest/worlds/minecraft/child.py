@@ -152,5 +152,10 @@ def _limit(pid: int, limits: ProcessLimits) -> None:
         return
     memory = limits.memory * _MEGABYTE
     with contextlib.suppress(ProcessLookupError):
-        resource.prlimit(pid, resource.RLIMIT_DATA, (memory, memory))
+        # An ordinary user may not raise a hard limit that the shell has set.
+        lower = tuple(
+            memory if most == resource.RLIM_INFINITY else min(memory, most)
+            for most in resource.prlimit(pid, resource.RLIMIT_DATA)
+        )
+        resource.prlimit(pid, resource.RLIMIT_DATA, lower)
         resource.prlimit(pid, resource.RLIMIT_CORE, (0, 0))

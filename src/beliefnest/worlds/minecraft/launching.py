@@ -11,6 +11,7 @@ from typing import Any, Self
 
 from beliefnest.errors import BodyError, BodyLostError
 from beliefnest.world.seeds import checked_seed
+from beliefnest.world.shell_limits import low_limits
 from beliefnest.worlds.minecraft.channel import PROTOCOL, Channel
 from beliefnest.worlds.minecraft.node_files import EMBEDDED, node_command
 from beliefnest.worlds.process_limits import ProcessLimits
@@ -137,4 +138,6 @@ def _explained() -> Iterator[None]:
     try:
         yield
     except BodyLostError as error:
+        if limits := low_limits():
+            raise BodyError(f"Node cannot be started: {limits}") from error
         raise BodyError(f"Node cannot be started; run `beliefnest doctor`. {error}") from error

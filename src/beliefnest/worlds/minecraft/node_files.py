@@ -111,6 +111,10 @@ def node_command(
     return [
         str(node),
         "--permission",
+        # The package, or each file of it, may be a symbolic link (`uv pip install --link-mode
+        # symlink`). Node reads files by the names they have here, and resolves no links.
+        "--preserve-symlinks",
+        "--preserve-symlinks-main",
         f"--allow-fs-read={bundle.parent}",
         *([] if further is None else [f"--allow-fs-read={further}"]),
         *(

@@ -1,0 +1,79 @@
+"""Standard streams that may be closed, at the start or while a command runs.
+
+A closed stream loses what would have been shown there, and nothing else: the command goes on, and
+its status and its files are those of any other run.
+"""
+
+import io
+import os
+import sys
+import warnings
+from typing import TextIO
+
+__all__ = ["open_streams", "print_warnings_as_lines"]
+
+_STANDARD = (0, 1, 2)
+_ERRORS = 2
+
+
+class _LossyFile(io.FileIO):
+    """Standard stream that drops everything once its reader is gone."""
+
+    def write(self, content: bytes, /) -> int:  # type: ignore[override] # any buffer is accepted
+        try:
+            return super().write(content)
+        except BrokenPipeError:
+            # Processes started from now on, and libraries that write by themselves, find it open.
+            hole = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(hole, self.fileno())
+            os.close(hole)
+            return len(memoryview(content).cast("B"))
+
+
+def open_streams() -> None:
+    """Open the standard streams that are closed, and let output outlive its readers.
+
+    A run file that got the number of a closed stream would receive what is printed.
+    """
+    for number in _STANDARD:
+        try:
+            os.fstat(number)
+        except OSError:
+            # The smallest free number is this one.
+            os.open(os.devnull, os.O_RDWR)
+            os.set_inheritable(number, True)
+    sys.stdin = sys.stdin or open(0, encoding="utf-8", closefd=False)  # noqa: SIM115 # for the whole process
+    sys.stdout = _lossy(sys.stdout, 1)
+    sys.stderr = _lossy(sys.stderr, _ERRORS)
+
+
+def _lossy(stream: TextIO | None, number: int) -> TextIO:
+    """Return a text stream to a standard stream, with the encoding of the present one."""
+    if stream is not None:
+        stream.flush()
+    return io.TextIOWrapper(
+        io.BufferedWriter(_LossyFile(number, "w", closefd=False)),
+        encoding="utf-8" if stream is None else stream.encoding,
+        errors="backslashreplace" if stream is None else stream.errors,
+        line_buffering=number == _ERRORS or os.isatty(number),
+    )
+
+
+def print_warnings_as_lines() -> None:
+    """Print warnings of this package as messages, without the line of source that gave them."""
+    usual = warnings.showwarning
+
+    def show(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        if category.__module__.partition(".")[0] == __name__.partition(".")[0]:
+            print(f"beliefnest: warning: {message}", file=sys.stderr)  # noqa: T201
+        else:
+            usual(message, category, filename, lineno, file, line)
+
+    warnings.showwarning = show
