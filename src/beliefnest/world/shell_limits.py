@@ -23,7 +23,7 @@ def low_limits() -> str | None:
     if no thread can be started now.
     """
     found = list(_low())
-    if not _threads_start() and not any("-u" in each for each in found):
+    if not found and not _threads_start():
         found.append(f"no further thread can be started ('ulimit -u' is {_value('RLIMIT_NPROC')})")
     if not found:
         return None
