@@ -6,6 +6,7 @@ from typing import Any
 from beliefnest.studies.allocation import LIST
 from beliefnest.studies.cells import variation_id
 from beliefnest.studies.guessing import chance_of
+from beliefnest.studies.probe_orders import order_of
 from beliefnest.studies.table import (
     FAILED,
     Column,
@@ -16,7 +17,6 @@ from beliefnest.studies.table import (
     place_text,
     plain_value,
 )
-from beliefnest.world.paths import normalised
 
 __all__ = ["PROBES"]
 
@@ -56,19 +56,8 @@ def _variation(source: Source) -> str:
 
 
 def _order(source: Source) -> int | None:
-    """Return the greatest number of agents in the belief paths of a probe: 0 for the real world.
-
-    The paths are that of the belief which the prompt tells, and those of the beliefs that give the
-    right answers: a narrator can ask about any belief.
-    """
     path = source.result.get("path")
-    if path is None:
-        return None
-    questions = (source.result.get("expected") or {}).get("answers", ())
-    # Plans have the source of an answer in the place of the answer.
-    sources = (each.get("right_from", each["right"]) for each in questions)
-    paths = [path, *(each["believed"] for each in sources if isinstance(each, Mapping))]
-    return max(len(normalised(filter(None, each.split("/")))) for each in paths)
+    return None if path is None else order_of(path, source.result.get("expected"))
 
 
 def _opened(places: list[list[float]] | None) -> str | None:

@@ -259,10 +259,93 @@ def test_ratings_of_desires_and_beliefs_are_scored_against_exact_inference(run, 
         "1 rated True",
         "2 no_answer False",
         "3 rated True",
-        "['beliefs_r', 'desires_r', 'mean', 'stderr'] True",
+        "['beliefs_r', 'desires_r', 'mean', 'rated', 'stderr'] True",
         "no rating from 1 to 7 for desire korean",
         "1 rated 0.5",
         "no_answer",
+    ]
+
+
+EPOCHS = """
+import math, re
+import numpy as np
+
+count = [0]
+def answer(messages):
+    count[0] += 1
+    names = re.findall(r"^(desire \\w+|belief \\w+):", messages[-1].text, re.M)
+    return "\\n".join(f"{n}: {1 + (count[0] * 5 + k * 3) % 7}" for k, n in enumerate(names))
+
+(log,) = read(eval("beliefnest/minds", model=mock(answer), epochs=3, display="none"))
+(scores,) = log.results.scores
+assert len(log.samples) == 9
+told = [each.scores["like_inference"] for each in log.samples]
+for about in ("desires", "beliefs"):
+    pairs = np.array([pair for each in told for pair in each.metadata[about]])
+    by_hand = np.corrcoef(pairs.T)[0, 1]
+    print(about, len(pairs), math.isclose(scores.metrics[f"{about}_r"].value, by_hand))
+values = [each.value for each in told]
+by_sample = {}
+for each in log.samples:
+    by_sample.setdefault(each.id, []).append(each.scores["like_inference"].value)
+sums = [sum(v - np.mean(values) for v in each) for each in by_sample.values()]
+error = math.sqrt(sum(each**2 for each in sums) * 3 / 2) / 9
+print(math.isclose(scores.metrics["mean"].value, np.mean(values)))
+print(math.isclose(scores.metrics["stderr"].value, error))
+"""
+
+
+def test_metrics_are_about_all_epochs(run, tmp_path):
+    assert run(MODEL + EPOCHS, tmp_path) == ["desires 27 True", "beliefs 27 True", "True", "True"]
+
+
+CHOICES = """
+name: {name}
+box: [[0, 0, 0], [6, 3, 6]]
+blocks:
+  - {{block: stone, fill: [[0, 0, 0], [6, 0, 6]]}}
+parameters:
+  item: {{default: apple, values: [apple, bone, bowl]}}
+agents:
+  uma: {{position: [3.5, 1, 3.5]}}
+  bob: {{position: [4.5, 1, 3.5]}}
+probes:
+  - label: where
+    path: /bob/uma
+    expect:
+      answers: {{question: "Where is ${{item}}?", options: [red, blue, green, grey], right: red}}
+"""
+
+MANY = """
+def told(log):
+    (scores,) = log.results.scores
+    return {name: each.value for name, each in scores.metrics.items()}
+
+arguments = {"file": ["one.yaml", "two.yaml"], "world": "scripted", "variations": 3}
+models = {name: [] for name in ("beliefnest/chance", "beliefnest/scripted:answers.json")}
+for name in models:
+    (log,) = read(eval("beliefnest/scenario", task_args=arguments, model=name, display="none"))
+    found = told(log)
+    about = {(s.metadata["order"], s.metadata["chance"]) for s in log.samples}
+    print(len(log.samples), len({s.metadata["cluster"] for s in log.samples}), about)
+    rights = [s.scores["in_the_belief"].value == "C" for s in log.samples]
+    assert found["accuracy"] == sum(rights) / 6, found
+    print(found["chance"], 0 <= found["low"] <= found["accuracy"] <= found["high"] <= 1)
+try:
+    eval("beliefnest/scenario", task_args={**arguments, "file": ["one.yaml", "one.yaml"]},
+         model="beliefnest/chance", display="none")
+except Exception as error:
+    print(error)
+"""
+
+
+def test_one_task_has_the_samples_of_many_files_and_our_models_answer(run, tmp_path):
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.yaml").write_text(CHOICES.format(name=name), encoding="utf-8")
+    (tmp_path / "answers.json").write_text(json.dumps(["Answer: red"] * 6), encoding="utf-8")
+    assert run(MODEL + MANY, tmp_path) == [
+        *["6 6 {(2, 0.25)}", "0.25 True"] * 2,
+        "file names one.yaml twice; name it once",
     ]
 
 

@@ -1,5 +1,6 @@
 """Tasks of episodes: a model controls players round after round, from their beliefs."""
 
+import itertools
 import threading
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,13 +14,15 @@ from inspect_ai.model import GenerateConfig, ModelOutput, get_model
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
-from beliefnest.adapters.inspect_ai.task_parts import messages_of, metrics_by, score_of
+from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
+from beliefnest.adapters.inspect_ai.task_parts import messages_of, score_of, several_files
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
 from beliefnest.episodes.task import Task as Played
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError
 from beliefnest.llm.messages import Answer, Message, Sampling, Usage
+from beliefnest.studies.cells import variation_id
 
 __all__ = ["episode_task", "goal_reached", "play_episode"]
 
@@ -27,7 +30,7 @@ _OMNISCIENT = "omniscient"
 
 
 def episode_task(
-    name: str,
+    names: str | list[str],
     *,
     order: int | str | None,
     seeds: int,
@@ -40,7 +43,7 @@ def episode_task(
     """Return a task whose samples are the instances of an episode.
 
     Args:
-        name: A built-in task or scenario, or the path of a task or scenario file.
+        names: Built-in tasks or scenarios, or paths of task or scenario files.
         order: Order of Theory of Mind of the model's players, or `omniscient`; None for the
             order that the task needs.
         seeds: Number of instances.
@@ -60,7 +63,8 @@ def episode_task(
         raise InputError(f"order is {order!r}; give 0, 1, 2 or {_OMNISCIENT}")
     chosen = [players] if isinstance(players, str) else players
     samples = []
-    for instance in range(seed, seed + seeds):
+    sources = several_files(names)
+    for name, instance in itertools.product(sources, range(seed, seed + seeds)):
         task = Played.load(name, instance, condition=condition, **parameters)
         by_model = list(task.players) if chosen is None else chosen
         strange = sorted(set(by_model) - set(task.agents))
@@ -74,6 +78,7 @@ def episode_task(
             "order": task.order if order is None else order,
             "world": world,
             "players": by_model,
+            CLUSTER: variation_id(task.name, instance),
         }
         samples.append(
             Sample(
@@ -84,7 +89,9 @@ def episode_task(
             )
         )
     return Task(
-        dataset=MemoryDataset(samples, name=name), solver=play_episode(), scorer=goal_reached()
+        dataset=MemoryDataset(samples, name=",".join(sources)),
+        solver=play_episode(),
+        scorer=goal_reached(),
     )
 
 

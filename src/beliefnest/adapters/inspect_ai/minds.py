@@ -6,30 +6,29 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from anyio.to_thread import run_sync
 from inspect_ai import Task
 from inspect_ai.dataset import Sample
 from inspect_ai.model import ChatMessageUser
-from inspect_ai.scorer import (
-    Metric,
-    SampleScore,
-    Score,
-    Scorer,
-    Target,
-    mean,
-    metric,
-    scorer,
-    stderr,
-)
+from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
-from beliefnest.adapters.inspect_ai.task_parts import task_of
+from beliefnest.adapters.inspect_ai.metrics import (
+    CLUSTER,
+    beliefs_r,
+    desires_r,
+    mean_of_epochs,
+    rated,
+    stderr_of_epochs,
+)
+from beliefnest.adapters.inspect_ai.task_parts import several_files, task_of
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.inferring import Inferred, Inferring
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.suites.films.film import About, Film, FilmParameters
+from beliefnest.studies.cells import variation_id
+from beliefnest.studies.probe_orders import order_of
+from beliefnest.suites.films.film import Film, FilmParameters
 from beliefnest.suites.films.film_files import read_films
 from beliefnest.suites.films.film_inference import model_of, staged
 from beliefnest.suites.films.rating import Comparison, compared, rating_prompt, ratings_in
@@ -38,11 +37,13 @@ from beliefnest.worlds.by_name import Worlds
 __all__ = ["course_in_words", "films_task", "like_inference", "minds_task"]
 
 
-def minds_task(scenario: str, *, conditions: int | list[int] | None, world: str, seed: int) -> Task:
-    """Return the task of a scenario's probes that infer; each is a sample.
+def minds_task(
+    scenarios: str | list[str], *, conditions: int | list[int] | None, world: str, seed: int
+) -> Task:
+    """Return the task of the probes of scenarios that infer; each is a sample.
 
     Args:
-        scenario: Name of a built-in scenario, or path of a file.
+        scenarios: Names of built-in scenarios, or paths of files.
         conditions: Numbers of conditions; None for all.
         world: Name of the world.
         seed: Seed of the world.
@@ -50,54 +51,72 @@ def minds_task(scenario: str, *, conditions: int | list[int] | None, world: str,
     Raises:
         BeliefNestError: There is no such scenario, or no probe infers.
     """
+    names = several_files(scenarios)
+    samples = [each for name in names for each in _samples(name, conditions, world, seed)]
+    if not samples:
+        told = ", ".join(names)
+        raise InputError(f"{told} has no probes with infer; give a scenario that infers")
+    about = ", ".join(dict.fromkeys(str((each.metadata or {})["name"]) for each in samples))
+    return task_of(f"minds of {about}", samples, like_inference(), course_in_words())
+
+
+def _samples(
+    scenario: str, conditions: int | list[int] | None, world: str, seed: int
+) -> list[Sample]:
     if conditions is None:
         loaded: tuple[Scenario, ...] = Scenario.load_all(scenario)
     else:
         numbers = [conditions] if isinstance(conditions, int) else conditions
         loaded = tuple(Scenario.load(scenario, number) for number in numbers)
-    samples = [
+    return [
         Sample(
             input=probe.asked,
             target="",
             id=f"{scenario}-{each.condition or 0}-{number}",
             metadata={
                 "scenario": scenario,
+                "name": each.name,
                 "condition": each.condition,
                 "probe": number,
                 "world": world,
                 "seed": seed,
                 "label": probe.label,
                 "path": probe.path,
+                "order": order_of(probe.path, None),
+                CLUSTER: variation_id(each.name, each.condition),
             },
         )
         for each in loaded
         for number, probe in enumerate(each.probes)
         if not probe.asks_model
     ]
-    if not samples:
-        raise InputError(f"{scenario} has no probes with infer; give a scenario that infers")
-    return task_of(f"minds of {loaded[0].name}", samples, like_inference(), course_in_words())
 
 
-def films_task(file: str, limit: int | None) -> Task:
-    """Return the task of a file of films; each is a sample.
+def films_task(file: str | list[str], limit: int | None) -> Task:
+    """Return the task of files of films; each film is a sample.
 
     Args:
-        file: File of films, as `beliefnest suite food-trucks` takes it.
-        limit: Greatest number of films; None for all.
+        file: Files of films, as `beliefnest suite food-trucks` takes them.
+        limit: Greatest number of films of each file; None for all.
 
     Raises:
         InputError: There is no such file, or it is of another form.
     """
-    films, _ = read_films(file)
+    files = several_files(file)
     samples = [
         Sample(
             input=f"film {film.name}",
             target="",
-            id=film.name,
-            metadata={"file": str(Path(file).absolute()), "film": film.name, "group": film.group},
+            id=film.name if len(files) == 1 else f"{Path(each).stem}-{film.name}",
+            metadata={
+                "file": str(Path(each).absolute()),
+                "film": film.name,
+                "group": film.group,
+                CLUSTER: variation_id(str(Path(each).stem), film.name),
+            },
         )
-        for film in films[:limit]
+        for each in files
+        for film in read_films(each)[0][:limit]
     ]
     return task_of("films", samples, like_inference(), course_in_words())
 
@@ -166,37 +185,7 @@ def course_in_words() -> Solver:
     return solve
 
 
-def _correlation(scores: list[SampleScore], about: About) -> float:
-    """Return Pearson's coefficient over all samples; nan where one side does not vary."""
-    told = [each.score.metadata or {} for each in scores]
-    pairs = np.array([pair for each in told for pair in each.get(about, [])]).reshape(-1, 2)
-    if not len(pairs) or (np.ptp(pairs, axis=0) < 1e-12).any():
-        return float("nan")
-    return float(np.corrcoef(pairs[:, 0], pairs[:, 1])[0, 1])
-
-
-@metric
-def desires_r() -> Metric:
-    """Correlate rated with inferred desires, over all samples."""
-
-    # Inspect reads the annotation, and passes scores with their metadata.
-    def value(scores: list[SampleScore]) -> float:
-        return _correlation(scores, "desires")
-
-    return value
-
-
-@metric
-def beliefs_r() -> Metric:
-    """Correlate rated with inferred initial beliefs, over all samples."""
-
-    def value(scores: list[SampleScore]) -> float:
-        return _correlation(scores, "beliefs")
-
-    return value
-
-
-@scorer(metrics=[mean(), stderr(), desires_r(), beliefs_r()])
+@scorer(metrics=[mean_of_epochs(), stderr_of_epochs(), rated(), desires_r(), beliefs_r()])
 def like_inference() -> Scorer:
     """Score 1 less the mean absolute error of the ratings against exact inference."""
     courses = _Courses()

@@ -1,13 +1,18 @@
-"""Entry point for Inspect: all tasks under `beliefnest/`, and the offline model."""
+"""Entry point for Inspect: all tasks under `beliefnest/`, and our models."""
 
+import os
+import threading
+from contextlib import nullcontext
 from typing import Any
 
+from anyio.to_thread import run_sync
 from inspect_ai import Task, task
 from inspect_ai.model import (
     ChatMessage,
     GenerateConfig,
     ModelAPI,
     ModelOutput,
+    ModelUsage,
     modelapi,
 )
 from inspect_ai.tool import ToolChoice, ToolInfo
@@ -22,9 +27,9 @@ from beliefnest.adapters.inspect_ai.minds import (
 from beliefnest.adapters.inspect_ai.stories import suite_task
 from beliefnest.adapters.inspect_ai.tasks import belief_prompt, in_the_belief, scenario_task
 from beliefnest.episodes.tasks import builtin_tasks
-from beliefnest.errors import UnknownNameError
-from beliefnest.llm.messages import Message, Sampling
-from beliefnest.llm.offline import OfflineModel
+from beliefnest.errors import InputError
+from beliefnest.llm.messages import Answer, Message, Sampling
+from beliefnest.llm.resolve import Connection, is_of_provider, open_model
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names
 
@@ -44,31 +49,31 @@ __all__ = [
 
 @task
 def scenario(
-    file: str,
+    file: str | list[str],
     conditions: int | list[int] | None = None,
     variations: int | None = None,
     world: str = "embedded",
     seed: int = 0,
 ) -> Task:
-    """Return the task of your own scenario `file`; arguments as for built-in scenarios."""
+    """Return the task of your own scenario files; arguments as for built-in scenarios."""
     return scenario_task(file, conditions=conditions, variations=variations, world=world, seed=seed)
 
 
 @task
-def hi_tom(file: str, stories: int | None = None) -> Task:
+def hi_tom(file: str | list[str], stories: int | None = None) -> Task:
     """Return the task of stories in Hi-ToM's form; `stories` limits their number."""
     return suite_task("hi-tom", file, stories)
 
 
 @task
-def stories(file: str, stories: int | None = None) -> Task:
+def stories(file: str | list[str], stories: int | None = None) -> Task:
     """Return the task of your own stories, JSON lines; `stories` limits their number."""
     return suite_task("stories", file, stories)
 
 
 @task
 def minds(
-    file: str = "food-trucks",
+    file: str | list[str] = "food-trucks",
     conditions: int | list[int] | None = None,
     world: str = "scripted",
     seed: int = 0,
@@ -78,14 +83,14 @@ def minds(
 
 
 @task
-def films(file: str, films: int | None = None) -> Task:
+def films(file: str | list[str], films: int | None = None) -> Task:
     """Return a task of the films in `file`; `films` limits their number."""
     return films_task(file, films)
 
 
 @task
 def episode(
-    file: str,
+    file: str | list[str],
     order: int | str | None = None,
     seeds: int = 1,
     seed: int = 0,
@@ -93,7 +98,7 @@ def episode(
     condition: int | None = None,
     players: str | list[str] | None = None,
 ) -> Task:
-    """Return the task of your own episode `file`; arguments as for built-in tasks."""
+    """Return the task of your own episode files; arguments as for built-in tasks."""
     return episode_task(
         file,
         order=order,
@@ -154,8 +159,12 @@ for _name in builtin_tasks():
 
 
 @modelapi(name="beliefnest")
-class OfflineAPI(ModelAPI):
-    """Offline model as `beliefnest/offline`; it needs no network and no key."""
+class BeliefNestAPI(ModelAPI):
+    """Models of `beliefnest run --model`, as `beliefnest/NAME`.
+
+    `beliefnest/offline`, `beliefnest/chance` and `beliefnest/replay:FILE` need no network and no
+    key; `beliefnest/PROVIDER:MODEL` asks a provider, with the keys of the environment.
+    """
 
     def __init__(
         self,
@@ -166,9 +175,15 @@ class OfflineAPI(ModelAPI):
         **model_args: Any,
     ) -> None:
         super().__init__(model_name, base_url, api_key, [], config)
-        if model_name.rpartition("/")[2] != "offline":
-            raise UnknownNameError(f"there is no model {model_name!r}; use beliefnest/offline")
-        self._model = OfflineModel()
+        self._name = model_name.removeprefix("beliefnest/")
+        if base_url is not None or api_key is not None or model_args:
+            raise InputError(
+                f"beliefnest/{self._name} takes no base URL, key or arguments; set the variables "
+                "of the provider instead"
+            )
+        self._model = open_model(self._name, os.environ, Connection())
+        # Models in this process answer one request at a time.
+        self._turn = nullcontext() if is_of_provider(self._name) else threading.Lock()
 
     async def generate(
         self,
@@ -183,5 +198,25 @@ class OfflineAPI(ModelAPI):
             for each in input
             if each.role in ("system", "user", "assistant")
         ]
-        answer = self._model.answer(messages, Sampling())
-        return ModelOutput.from_content("beliefnest/offline", answer.text)
+        answer = await run_sync(self._answer, messages, _sampling(config))
+        return _output(f"beliefnest/{self._name}", answer)
+
+    def _answer(self, messages: list[Message], sampling: Sampling) -> Answer:
+        with self._turn:
+            return self._model.answer(messages, sampling)
+
+
+def _sampling(config: GenerateConfig) -> Sampling:
+    given = {"temperature": config.temperature, "seed": config.seed}
+    return Sampling(**{name: value for name, value in given.items() if value is not None})
+
+
+def _output(model: str, answer: Answer) -> ModelOutput:
+    output = ModelOutput.from_content(model, answer.text)
+    used = answer.usage
+    output.usage = ModelUsage(
+        input_tokens=used.input_tokens,
+        output_tokens=used.output_tokens,
+        total_tokens=used.input_tokens + used.output_tokens,
+    )
+    return output

@@ -8,9 +8,11 @@ from inspect_ai.dataset import Sample
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import TaskState
 
-from beliefnest.adapters.inspect_ai.task_parts import metrics_by, score_of, task_of
+from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
+from beliefnest.adapters.inspect_ai.task_parts import score_of, several_files, task_of
 from beliefnest.errors import InputError
 from beliefnest.scenarios.questioning import parse_answer
+from beliefnest.studies.cells import variation_id
 from beliefnest.suites.stories.data import Item, StoryItems, read_items
 from beliefnest.suites.stories.explaining import explain_answer
 from beliefnest.suites.stories.own import read_own
@@ -24,25 +26,26 @@ NOWHERE = "in none of them"
 _READERS = {"hi-tom": read_items, "stories": read_own}
 
 
-def suite_task(suite: str, file: str, limit: int | None) -> Task:
+def suite_task(suite: str, file: str | list[str], limit: int | None) -> Task:
     """Return the task of a suite; each question is a sample.
 
     Args:
         suite: `hi-tom` or `stories`.
-        file: File of stories, questions and answers, as for `beliefnest suite`.
-        limit: Greatest number of stories; None for all.
+        file: Files of stories, questions and answers, as for `beliefnest suite`.
+        limit: Greatest number of stories of each file; None for all.
 
     Raises:
         InputError: The file is missing or has another form.
     """
-    stories = _READERS[suite](Path(file))[:limit]
+    files = several_files(file)
     samples = [
-        _sample(suite, file, place, number, asked, item)
-        for place, asked in enumerate(stories)
+        _sample(suite, each, place, number, asked, item, "" if len(files) == 1 else Path(each).stem)
+        for each in files
+        for place, asked in enumerate(_READERS[suite](Path(each))[:limit])
         for number, item in enumerate(asked.items)
     ]
     if not samples:
-        raise InputError(f"{file} has no questions")
+        raise InputError(f"{', '.join(files)} has no questions")
     return task_of(suite, samples, story_answer())
 
 
@@ -51,7 +54,7 @@ def _options(asked: StoryItems) -> list[str]:
 
 
 def _sample(
-    suite: str, file: str, place: int, number: int, asked: StoryItems, item: Item
+    suite: str, file: str, place: int, number: int, asked: StoryItems, item: Item, prefix: str
 ) -> Sample:
     lines = [line.text for line in asked.story.lines]
     options = _options(asked)
@@ -71,7 +74,7 @@ def _sample(
         input=prompt,
         target=item.expected or NOWHERE,
         choices=None,
-        id=f"{place + 1}-{number + 1}",
+        id="-".join(filter(None, [prefix, str(place + 1), str(number + 1)])),
         metadata={
             "suite": suite,
             "file": str(Path(file).absolute()),
@@ -79,6 +82,8 @@ def _sample(
             "item": number,
             "order": item.question.order,
             "options": options,
+            "chance": 1 / len(options),
+            CLUSTER: variation_id(Path(file).stem, place),
         },
     )
 

@@ -11,12 +11,13 @@ from inspect_ai.model import (
     ChatMessageSystem,
     ChatMessageUser,
 )
-from inspect_ai.scorer import CORRECT, INCORRECT, Metric, Score, Scorer, accuracy, grouped, stderr
+from inspect_ai.scorer import CORRECT, INCORRECT, Score, Scorer
 from inspect_ai.solver import Solver, generate
 
+from beliefnest.errors import InputError
 from beliefnest.llm.messages import Message
 
-__all__ = ["messages_of", "metrics_by", "score_of", "task_of"]
+__all__ = ["messages_of", "score_of", "several_files", "task_of"]
 
 
 def task_of(name: str, samples: list[Sample], scorer: Scorer, *before: Solver) -> Task:
@@ -26,9 +27,19 @@ def task_of(name: str, samples: list[Sample], scorer: Scorer, *before: Solver) -
     )
 
 
-def metrics_by(key: str) -> list[Metric | dict[str, list[Metric]]]:
-    """Return accuracy, its standard error, and accuracy grouped by a key of the samples."""
-    return [accuracy(), stderr(), grouped(accuracy(), key, all=False)]
+def several_files(names: str | list[str]) -> list[str]:
+    """Return one or several names of files as a list.
+
+    Raises:
+        InputError: There is none, or one is named twice.
+    """
+    found = [names] if isinstance(names, str) else [str(each) for each in names]
+    if not found:
+        raise InputError("file is empty; give at least one file")
+    twice = [each for each in found if found.count(each) > 1]
+    if twice:
+        raise InputError(f"file names {twice[0]} twice; name it once")
+    return found
 
 
 def score_of(

@@ -9,14 +9,22 @@ from inspect_ai.dataset import Sample
 from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
+from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
 from beliefnest.adapters.inspect_ai.samples import Stage, requests_of
-from beliefnest.adapters.inspect_ai.task_parts import messages_of, metrics_by, score_of, task_of
+from beliefnest.adapters.inspect_ai.task_parts import (
+    messages_of,
+    score_of,
+    several_files,
+    task_of,
+)
 from beliefnest.errors import InputError
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.records import probe_json
 from beliefnest.scenarios.sources import read_document
-from beliefnest.studies.cells import Cell, plan_cells
+from beliefnest.studies.cells import Cell, plan_cells, variation_id
 from beliefnest.studies.design import Design
+from beliefnest.studies.guessing import chance_of
+from beliefnest.studies.probe_orders import order_of
 
 __all__ = ["belief_prompt", "in_the_belief", "scenario_task"]
 
@@ -24,17 +32,17 @@ _KEPT = ("intended", "opened", "arrived", "program", "ticks", "error", "log", "r
 
 
 def scenario_task(
-    scenario: str,
+    scenarios: str | list[str],
     *,
     conditions: int | list[int] | None,
     variations: int | None,
     world: str,
     seed: int,
 ) -> Task:
-    """Return the task of a scenario; each request of each probe of each cell is a sample.
+    """Return the task of scenarios; each request of each probe of each cell is a sample.
 
     Args:
-        scenario: Name of a built-in scenario, or path of a file.
+        scenarios: Names of built-in scenarios, or paths of files.
         conditions: Numbers of conditions; None for all.
         variations: Number of variations to draw; None for the scenario as written.
         world: Name of the world.
@@ -43,19 +51,22 @@ def scenario_task(
     Raises:
         BeliefNestError: There is no such scenario, or an argument is invalid.
     """
+    names = several_files(scenarios)
     design = Design(
-        scenarios=(scenario,),
+        scenarios=tuple(names),
         variations={} if variations is None else variations,
         conditions=(conditions,) if isinstance(conditions, int) else _several(conditions),
         world=world,
         seed=seed,
     )
-    plan = plan_cells(design, {scenario: read_document(scenario)})
-    samples = [sample for cell in plan.cells for sample in _samples(cell, scenario)]
+    documents = {name: read_document(name) for name in names}
+    plan = plan_cells(design, documents)
+    by_name = {document.root.value["name"].value: name for name, document in documents.items()}
+    samples = [s for cell in plan.cells for s in _samples(cell, by_name[cell.key.scenario])]
     if not samples:
         why = plan.invalid[0].why if plan.invalid else "it has no probes with expectations"
-        raise InputError(f"{scenario} gives no samples: {why}")
-    return task_of(scenario, samples, in_the_belief(), belief_prompt())
+        raise InputError(f"{', '.join(names)} gives no samples: {why}")
+    return task_of(",".join(names), samples, in_the_belief(), belief_prompt())
 
 
 def _several(numbers: list[int] | None) -> tuple[int, ...] | None:
@@ -81,6 +92,9 @@ def _samples(cell: Cell, scenario: str) -> list[Sample]:
             "acts_in": probe.acts_in,
             "agent": probe.agent,
             "expected": expected,
+            "order": order_of(probe.path, expected),
+            "chance": chance_of(expected),
+            CLUSTER: variation_id(key.scenario, dict(key.variation)),
         }
         target = json.dumps(expected, sort_keys=True)
         name = f"{key.name}-{number}"
