@@ -127,6 +127,15 @@ def drips(handler: "Handler") -> None:
         handler.send_chunk(delta={"role": "assistant", "content": "x"})
 
 
+def drips_slowly(handler: "Handler", letters: int, pause: float) -> None:
+    """One letter after the other, with a pause after each."""
+    handler.start_stream()
+    for _ in range(letters):
+        handler.send_chunk(delta={"role": "assistant", "content": "x"})
+        handler.fake.closing.wait(pause)
+    handler.end_stream()
+
+
 def says_nothing(handler: "Handler") -> None:
     """Keep the connection open until the test ends."""
     handler.fake.closing.wait()
@@ -174,6 +183,7 @@ class FakeOpenAI:
     garbles = staticmethod(garbles)
     fails_halfway = staticmethod(fails_halfway)
     drips = staticmethod(drips)
+    drips_slowly = staticmethod(drips_slowly)
     says_nothing = staticmethod(says_nothing)
 
     def will(self, *behaviours: Behaviour) -> None:
@@ -258,15 +268,13 @@ def serving() -> Iterator[FakeOpenAI]:
 
 
 class FakeClock:
-    """Time that passes when somebody waits, or with every look at it."""
+    """Time that passes when somebody waits."""
 
-    def __init__(self, per_look: float = 0.0) -> None:
+    def __init__(self) -> None:
         self.time = 0.0
-        self.per_look = per_look
         self.waits: list[float] = []
 
     def now(self) -> float:
-        self.time += self.per_look
         return self.time
 
     def wait(self, seconds: float) -> None:
@@ -277,9 +285,3 @@ class FakeClock:
 @pytest.fixture
 def clock() -> FakeClock:
     return FakeClock()
-
-
-@pytest.fixture
-def impatient_clock() -> FakeClock:
-    """Return the time; a second passes at every call."""
-    return FakeClock(per_look=1.0)

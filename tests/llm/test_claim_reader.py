@@ -94,10 +94,10 @@ def test_nonsense_is_noted_and_nothing_is_claimed(fake, clock, text, fault):
         assert asked.input_tokens == 120
 
 
-def test_one_who_never_answers_is_given_up(fake, impatient_clock):
-    fake.will(fake.drips)
-    limits = AnswerLimits(seconds=3)
-    with told_of(fake, impatient_clock, answer_limits=limits) as nest:
+def test_one_who_never_answers_is_given_up(fake, clock):
+    fake.will(fake.says_nothing)
+    limits = AnswerLimits(first_token_seconds=0.2)
+    with told_of(fake, clock, answer_limits=limits) as nest:
         assert nest.claims() == []
         (asked,) = nest.prompts()
         assert asked.error is not None

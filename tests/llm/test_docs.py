@@ -23,7 +23,8 @@ def test_every_provider_and_its_variables_are_named():
 
 def test_the_limits_are_those_of_the_code():
     answer, run = AnswerLimits(), RunLimits()
-    assert f"{answer.seconds:g} seconds and {answer.characters:,} characters" in PAGE
+    assert f"{answer.first_token_seconds:g} seconds to its first token" in PAGE
+    assert f"silent for {answer.seconds:g} seconds" in PAGE
     assert f"{run.tokens:,} tokens and {run.cost:g} US dollars" in PAGE
     assert f"{RetryPolicy().attempts} times in all" in PAGE
 

@@ -2,7 +2,7 @@
 
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -25,6 +25,10 @@ CacheMode = Literal["read", "only", "write", "off"]
 """Mode of the cache. `read`: use cached answers, ask for the others and store them. `only`:
 use cached answers, and ask for no others. `write`: always ask, and store the answers. `off`:
 neither use nor store answers."""
+
+_EARLIER_MOST_TOKENS = 4096
+"""Cap of earlier versions where none was set. They kept complete answers only, so that the cap had
+no effect on these."""
 
 
 @dataclass(frozen=True)
@@ -53,9 +57,12 @@ class CachedModel:
             ModelError: The model failed, or a file of the cache is damaged or cannot be read or
                 written.
         """
-        path = self.folder / f"{request_key(self.name, messages, sampling)}.json"
+        path = self._path(messages, sampling)
         if self.mode in ("read", "only"):
             kept = _read(path)
+            if kept is None and sampling.max_output_tokens is None:
+                capped = replace(sampling, max_output_tokens=_EARLIER_MOST_TOKENS)
+                kept = _read(self._path(messages, capped))
             if kept is not None:
                 return kept.answer
         answer = self.model.answer(messages, sampling)
@@ -63,6 +70,9 @@ class CachedModel:
             exchange = exchange_of(self.name, messages, sampling, answer)
             _write(path, exchange)
         return answer
+
+    def _path(self, messages: Sequence[Message], sampling: Sampling) -> Path:
+        return self.folder / f"{request_key(self.name, messages, sampling)}.json"
 
 
 def _read(path: Path) -> Exchange | None:

@@ -5,32 +5,61 @@ errors are not part of an answer, but must be held in memory.
 """
 
 from collections.abc import AsyncIterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from beliefnest.errors import ModelError
+from beliefnest.llm.providers import Endpoint
+from beliefnest.llm.routes import SECONDS_TO_CONNECT, is_loopback
 
 if TYPE_CHECKING:  # An extra, imported when a provider is asked.
     import httpx2
 
-__all__ = ["TooManyBytesError", "bounded_client"]
-
-_SECONDS_TO_CONNECT = 5.0
+__all__ = ["ByteCount", "TooManyBytesError", "bounded_client"]
 
 
 class TooManyBytesError(ModelError):
     """A server sent more bytes than any answer needs."""
 
 
-def bounded_client(
-    seconds: float, longest: int, user: tuple[str, str] | None = None
-) -> "httpx2.AsyncClient":
-    """Return a client that aborts responses of more than `longest` bytes; the caller closes it.
+@dataclass
+class ByteCount:
+    """Bytes of a response since the last text in it.
+
+    Attributes:
+        most: Greatest number of bytes.
+        received: Number of bytes so far.
+    """
+
+    most: int
+    received: int = 0
+
+    def add(self, piece: bytes) -> None:
+        """Count a piece of the response.
+
+        Raises:
+            TooManyBytesError: There are too many.
+        """
+        self.received += len(piece)
+        if self.received > self.most:
+            raise TooManyBytesError(f"the server sent more than {self.most:,} bytes without text")
+
+    def restart(self) -> None:
+        """Count from 0 again."""
+        self.received = 0
+
+
+def bounded_client(endpoint: Endpoint, seconds: float, count: ByteCount) -> "httpx2.AsyncClient":
+    """Return a client that aborts responses of too many bytes; the caller closes it.
+
+    The client asks for uncompressed responses and refuses others: a few compressed bytes can
+    expand to any number. It reads proxies and certificates from the environment, but asks servers
+    on this machine directly.
 
     Args:
-        seconds: Timeout of one step of a request.
-        longest: Greatest number of bytes of a response. The client asks for uncompressed
-            responses and refuses others: a few compressed bytes can expand to any number.
-        user: User and password for the server, if it needs them.
+        endpoint: The server.
+        seconds: Timeout of one step of a request after the connection.
+        count: Count of bytes.
     """
     import httpx2
 
@@ -51,20 +80,22 @@ def bounded_client(
             self._inner = inner
 
         async def __aiter__(self) -> AsyncIterator[bytes]:
-            received = 0
             async for piece in self._inner:
-                received += len(piece)
-                if received > longest:
-                    raise TooManyBytesError(f"the server sent more than {longest:,} bytes")
+                count.add(piece)
                 yield piece
 
         async def aclose(self) -> None:
             await self._inner.aclose()
 
+    is_near = is_loopback(endpoint.url)
+    # Certificates of servers on this machine may be the user's own.
+    is_plain = is_near and endpoint.url.startswith("http:")
     return httpx2.AsyncClient(
-        auth=user,
-        timeout=httpx2.Timeout(seconds, connect=min(seconds, _SECONDS_TO_CONNECT)),
+        auth=endpoint.user,
+        timeout=httpx2.Timeout(seconds, connect=SECONDS_TO_CONNECT),
         headers={"accept-encoding": "identity"},
         event_hooks={"response": [bound]},
         follow_redirects=True,
+        verify=httpx2.create_ssl_context(trust_env=not is_plain),
+        trust_env=not is_near,
     )

@@ -4,7 +4,7 @@ from beliefnest.errors import ModelError
 from beliefnest.llm.messages import Usage
 from beliefnest.world.texts import on_one_line
 
-__all__ = ["TransientModelError", "UnusableAnswerError", "excerpt"]
+__all__ = ["TransientModelError", "UnavailableModelError", "UnusableAnswerError", "excerpt"]
 
 _LONGEST_EXCERPT = 300
 
@@ -21,8 +21,15 @@ class TransientModelError(ModelError):
         self.retry_after = retry_after
 
 
+class UnavailableModelError(ModelError):
+    """A failure that lasts until the user does something: no server, a wrong key, no credit.
+
+    Whoever asks many questions stops at the first of these.
+    """
+
+
 class UnusableAnswerError(ModelError):
-    """An answer that cannot be used: refused, empty, cut off or too long.
+    """An answer that cannot be used: malformed, or never finished.
 
     Attributes:
         usage: Resources that it used nevertheless.

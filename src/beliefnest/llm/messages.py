@@ -37,12 +37,12 @@ class Sampling:
     Attributes:
         temperature: Sampling temperature; 0 asks for the likeliest answer.
         seed: Seed, for providers that can repeat an answer.
-        max_output_tokens: Greatest length of an answer.
+        max_output_tokens: Greatest length of an answer; None: as long as the provider allows.
     """
 
     temperature: float | None = 0.0
     seed: int | None = None
-    max_output_tokens: int | None = 4096
+    max_output_tokens: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,6 +60,14 @@ class Endpoint:
         return without_password(self.url)
 
     @property
+    def advice(self) -> str:
+        """Advice to the user if no server listens at the address."""
+        variable = self.provider.url_variable
+        if self.provider.default_url is None or self.provider.free:
+            return f"start it, or set {variable}"
+        return f"check the network, or set {variable}"
+
+    @property
     def address(self) -> str:
         """Base URL without user and password, to be requested with `user`.
 
@@ -182,9 +190,27 @@ def _is_near(url: str) -> bool:
 def _is_address(url: str) -> bool:
     try:
         parts = urlsplit(url)
-        return bool(parts.hostname) and parts.port != 0
+        return parts.scheme in ("http", "https") and bool(parts.hostname) and parts.port != 0
     except ValueError:
         return False
+
+
+def check_visible(variable: str, value: str) -> None:
+    """Refuse a key or an address that cannot be sent, without showing it.
+
+    Raises:
+        ModelError: It has a space, a line end, or a character beyond ASCII.
+    """
+    for number, character in enumerate(value, start=1):
+        if "!" <= character <= "~":
+            continue
+        if character in "\r\n":
+            what = "a line end, as files made on Windows have it"
+        else:
+            what = "a space" if character == " " else f"the character {character!a}"
+        raise ModelError(
+            f"{variable} has {what}, at place {number} of {len(value)}; set it again without that"
+        )
 
 
 def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
@@ -199,6 +225,7 @@ def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
             f"{provider.name} needs the server's address: "
             f"set {provider.url_variable}, as http://localhost:8000/v1"
         )
+    check_visible(provider.url_variable, url)
     if not _is_address(url):
         raise ModelError(
             f"{provider.url_variable} is not the address of a server; write it as "
@@ -206,6 +233,7 @@ def endpoint(provider: Provider, environment: Mapping[str, str]) -> Endpoint:
         )
     for variable in provider.key_variables:
         if environment.get(variable):
+            check_visible(variable, environment[variable])
             return Endpoint(provider, url, _Key(environment[variable]), variable)
     # Servers at an address that the user chose may not need a key.
     if provider.needs_key and not environment.get(provider.url_variable):

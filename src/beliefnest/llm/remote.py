@@ -9,11 +9,16 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from beliefnest.errors import BeliefNestError, ModelError
-from beliefnest.llm.clock import Clock
-from beliefnest.llm.connecting import TooManyBytesError, bounded_client
-from beliefnest.llm.failures import TransientModelError, UnusableAnswerError, excerpt
+from beliefnest.llm.connecting import ByteCount, TooManyBytesError, bounded_client
+from beliefnest.llm.failures import (
+    TransientModelError,
+    UnavailableModelError,
+    UnusableAnswerError,
+    excerpt,
+)
 from beliefnest.llm.messages import Answer, Finish, Message, Sampling, Usage
 from beliefnest.llm.providers import Endpoint
+from beliefnest.llm.routes import check_listening, check_route, proxy_variable
 from beliefnest.world.texts import is_well_formed
 
 if TYPE_CHECKING:  # Extras, imported when a provider is asked.
@@ -28,13 +33,6 @@ _CHARACTERS_PER_TOKEN = 4
 """Characters per token, to estimate usage if a server does not report it. A low estimate would
 let a run exceed its limits."""
 
-_BYTES_PER_CHARACTER = 512
-"""Greatest number of bytes of a stream for each character of the answer. An event of the stream
-may hold a single letter."""
-
-_BYTES_BESIDES = 2**20
-"""Greatest number of further bytes of a stream."""
-
 _MOST_TOKENS = 10**9
 """Greatest plausible token count. If a server reports more, usage is estimated instead."""
 
@@ -44,12 +42,18 @@ class AnswerLimits:
     """Limits on one answer.
 
     Attributes:
-        seconds: Greatest time from the request to the last character.
-        characters: Greatest length of the text, including thinking.
+        seconds: Longest silence after the first token; each token starts the count again.
+        first_token_seconds: Longest time from the request to the first token. A server may have to
+            load its model, and reads the whole prompt before it answers.
+        characters: Length, with thinking, at which an answer is cut off. No model writes as much;
+            this bounds the memory that a faulty server can use.
+        silent_bytes: Greatest number of bytes between two tokens.
     """
 
     seconds: float = 120.0
-    characters: int = 200_000
+    first_token_seconds: float = 600.0
+    characters: int = 4_000_000
+    silent_bytes: int = 2**26
 
 
 @dataclass(frozen=True)
@@ -60,25 +64,34 @@ class RemoteModel:
         endpoint: Server and key.
         model: The provider's name of the model.
         limits: Limits on one answer.
-        clock: Clock for `limits.seconds` while text arrives.
     """
 
     endpoint: Endpoint
     model: str
     limits: AnswerLimits
-    clock: Clock
 
     @property
     def name(self) -> str:
         """`PROVIDER:MODEL`."""
         return f"{self.endpoint.provider.name}:{self.model}"
 
+    def check_server(self) -> None:
+        """Refuse a server that nobody can connect to.
+
+        Raises:
+            UnavailableModelError: There is no such server, or variables of the environment are
+                wrong.
+        """
+        place = self.endpoint
+        check_listening(place.url, f"{self.name} at {place.place}", place.advice)
+
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Ask the provider once.
 
         Raises:
             TransientModelError: The failure is temporary.
-            ModelError: The failure is permanent, or the answer exceeds a limit.
+            UnavailableModelError: No request can succeed.
+            ModelError: This request cannot succeed, or its answer exceeds a limit.
         """
         secrets = self.endpoint.secrets
         try:
@@ -94,6 +107,7 @@ class RemoteModel:
             import pydantic_ai  # noqa: F401
         from pydantic_ai.exceptions import AgentRunError, UserError
 
+        check_route(self.endpoint.url)
         try:
             with _quiet_about_counts():
                 return _run(lambda: self._ask(messages, sampling))
@@ -120,36 +134,33 @@ class RemoteModel:
 
         from pydantic_ai.direct import model_request_stream
 
-        seconds = self.limits.seconds
-        settings = _settings(sampling, seconds)
-        end = self.clock.now() + seconds
-        longest = _BYTES_BESIDES + _BYTES_PER_CHARACTER * self.limits.characters
+        limits, now = self.limits, asyncio.get_running_loop().time
+        count = ByteCount(limits.silent_bytes)
+        longest = max(limits.seconds, limits.first_token_seconds)
+        settings = _settings(sampling)
+        received = 0
         try:
             # asyncio's timeout ends a stream that sends no event: the loop below would never run.
             async with (
-                asyncio.timeout(seconds),
-                bounded_client(seconds, longest, self.endpoint.user) as client,
+                asyncio.timeout(limits.first_token_seconds) as alarm,
+                bounded_client(self.endpoint, longest, count) as client,
                 _chat_model(self.endpoint, self.model, client) as model,
                 model_request_stream(model, _history(messages), model_settings=settings) as stream,
             ):
-                received = 0
                 async for event in stream:
-                    received += _length(event)
-                    self._hold_limits(messages, received, end)
+                    added = _length(event)
+                    if added == 0:
+                        continue
+                    received += added
+                    count.restart()
+                    alarm.reschedule(now() + limits.seconds)
+                    if received > limits.characters:
+                        cut = _answer(self, messages, stream.get())
+                        return replace(cut, finish="length")
                 return _answer(self, messages, stream.get())
         except TimeoutError:
-            raise UnusableAnswerError(_too_slow(self), _guessed_usage(self, messages, 0)) from None
-
-    def _hold_limits(self, messages: Sequence[Message], received: int, end: float) -> None:
-        """Raise an error if an answer is too long, or if the clock has passed `end`."""
-        if received > self.limits.characters:
-            raise UnusableAnswerError(
-                f"{self.name} wrote more than {self.limits.characters:,} characters "
-                "and was cut off: ask for less, or raise the limit of an answer",
-                _guessed_usage(self, messages, received),
-            )
-        if self.clock.now() > end:
-            raise UnusableAnswerError(_too_slow(self), _guessed_usage(self, messages, received))
+            usage = _guessed_usage(self, messages, received)
+            raise UnusableAnswerError(_too_slow(self, received), usage) from None
 
 
 @contextmanager
@@ -229,9 +240,9 @@ def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") ->
             return OpenAIChatModel(model, provider=compatible)
 
 
-def _settings(sampling: Sampling, seconds: float) -> "ModelSettings":
+def _settings(sampling: Sampling) -> "ModelSettings":
     # The library must not retry: `RetryingModel` does it, with the project's clock.
-    settings: ModelSettings = {"max_retries": 0, "request_timeout": seconds}
+    settings: ModelSettings = {"max_retries": 0}
     if sampling.temperature is not None:
         settings["temperature"] = sampling.temperature
     if sampling.seed is not None:
@@ -338,10 +349,16 @@ def _cost(response: "ModelResponse") -> float | None:
         return None
 
 
-def _too_slow(model: RemoteModel) -> str:
+def _too_slow(model: RemoteModel, received: int) -> str:
+    if received:
+        return (
+            f"{model.name} sent nothing for {model.limits.seconds:g} s in the middle of its "
+            "answer; wait longer (--answer-seconds, or answer_seconds of a study), or use a faster "
+            "model"
+        )
     return (
-        f"{model.name} did not finish its answer in {model.limits.seconds:g} s; "
-        "raise the time limit or use a faster model"
+        f"{model.name} sent no token in {model.limits.first_token_seconds:g} s; wait longer "
+        "(--first-token-seconds, or first_token_seconds of a study), or use a faster model"
     )
 
 
@@ -349,15 +366,36 @@ def _clean(model: RemoteModel, text: str) -> str:
     return model.endpoint.secrets.masked(text)
 
 
-def _is_nobody_there(error: BaseException | None) -> bool:
-    """Return True if the original cause of an error is a failed connection."""
+def _cause(error: BaseException | None, *kinds: type[BaseException]) -> BaseException | None:
+    """Return the first cause of an error that is of one of some kinds."""
+    while error is not None and not isinstance(error, kinds):
+        error = error.__cause__ or error.__context__
+    return error
+
+
+def _unreachable(model: RemoteModel, error: Exception) -> UnavailableModelError | None:
+    """Return the error for a failed connection; None: the connection did not fail."""
+    import ssl
+
     import httpx2
 
-    while error is not None:
-        if isinstance(error, httpx2.ConnectError):
-            return True
-        error = error.__cause__ or error.__context__
-    return False
+    endpoint = model.endpoint
+    failed = _cause(error, httpx2.ConnectError, httpx2.ConnectTimeout, httpx2.ProxyError)
+    if failed is None:
+        return None
+    told = f"no server for {model.name} at {endpoint.place}"
+    proxy = proxy_variable(endpoint.url)
+    if (fault := _cause(error, ssl.SSLError)) is not None:
+        return UnavailableModelError(
+            f"{told} with a certificate to be trusted ({excerpt(_clean(model, str(fault)))}); "
+            "name the file of its authority in SSL_CERT_FILE, or correct that variable"
+        )
+    if proxy is not None:
+        return UnavailableModelError(
+            f"{told} through the proxy of {proxy} ({excerpt(_clean(model, str(failed)))}); correct "
+            f"{proxy}, or add the server to NO_PROXY"
+        )
+    return UnavailableModelError(f"{told}: {endpoint.advice}")
 
 
 def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
@@ -368,24 +406,25 @@ def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
     from pydantic_ai import exceptions as library
 
     where = f"{model.name} at {model.endpoint.place}"
+    if (proxy := proxy_variable(model.endpoint.url)) is not None:
+        where += f", through the proxy of {proxy},"
     said = excerpt(_clean(model, str(error)))
     match error:
-        case library.ModelRequestTimeout():
-            message = _too_slow(model)
         case library.ModelAuthenticationError():
-            message = f"{where} refused the key in {model.endpoint.key_variable}: check it"
+            told = f"{where} refused the key in {model.endpoint.key_variable}: check it"
+            raise UnavailableModelError(told) from None
         case library.ModelNotFoundError():
-            message = f"{where} was not found: check the model's name and the address ({said})"
+            told = f"{where} was not found: check the model's name and the address ({said})"
+            raise UnavailableModelError(told) from None
         case library.ModelQuotaExceededError():
-            message = f"{where}: the account has no credit left ({said})"
+            told = f"{where}: the account has no credit left ({said})"
+            raise UnavailableModelError(told) from None
         case library.ModelContextWindowExceededError():
             message = f"{where}: the prompt is longer than the model can read; shorten it"
         case library.ModelRateLimitError(retry_after=seconds):
             raise TransientModelError(f"{where} limits the rate of requests", seconds) from None
-        case library.ModelConnectionError() if _is_nobody_there(error):
-            variable = model.endpoint.provider.url_variable
-            told = f"no server for {model.name} at {model.endpoint.place}"
-            raise TransientModelError(f"{told}: start it, or set {variable}") from None
+        case library.ModelConnectionError() if unreachable := _unreachable(model, error):
+            raise unreachable from None
         case library.ModelConnectionError():
             raise TransientModelError(f"{where} dropped the connection ({said})") from None
         case library.ModelServerError(retry_after=s) | library.ModelUnavailableError(retry_after=s):

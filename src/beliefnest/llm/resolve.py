@@ -15,7 +15,7 @@ from beliefnest.llm.option_models import OPTION_MODELS
 from beliefnest.llm.providers import PROVIDERS, endpoint
 from beliefnest.llm.recorded_models import FileRecordingModel, load_replay, load_script
 from beliefnest.llm.remote import AnswerLimits, RemoteModel
-from beliefnest.llm.retrying import RetryingModel, RetryPolicy
+from beliefnest.llm.retrying import RetryingModel, RetryPolicy, Tell, tell_on_stderr
 
 __all__ = [
     "Connection",
@@ -38,7 +38,8 @@ class Connection:
         cache: Folder of the cache; None for no cache.
         cache_mode: Mode of the cache.
         record: File to which every exchange is appended; None for no recording.
-        clock: Clock for limits and pauses.
+        clock: Clock for pauses.
+        tell: Function that receives a line about each wait that a provider asks for.
     """
 
     budget: RunSpending = field(default_factory=RunSpending)
@@ -48,6 +49,7 @@ class Connection:
     cache_mode: CacheMode = "read"
     record: Path | None = None
     clock: Clock = field(default_factory=SystemClock)
+    tell: Tell = tell_on_stderr
 
     @property
     def holds_answers(self) -> bool:
@@ -68,7 +70,6 @@ def resolve_model(
     environment: Mapping[str, str],
     *,
     limits: AnswerLimits | None = None,
-    clock: Clock | None = None,
 ) -> Model:
     """Return the bare model of a name; each answer takes one request.
 
@@ -77,7 +78,6 @@ def resolve_model(
             `PROVIDER:MODEL`.
         environment: Variables with keys and base URLs, usually those of the process.
         limits: Limits on one answer of a provider.
-        clock: Clock for these limits.
 
     Raises:
         UnknownNameError: There is no such kind of model.
@@ -97,12 +97,7 @@ def resolve_model(
         return load_replay(name, Path(rest))
     if kind == "scripted":
         return load_script(name, Path(rest))
-    return RemoteModel(
-        endpoint(PROVIDERS[kind], environment),
-        rest,
-        limits or AnswerLimits(),
-        clock or SystemClock(),
-    )
+    return RemoteModel(endpoint(PROVIDERS[kind], environment), rest, limits or AnswerLimits())
 
 
 @dataclass(frozen=True)
@@ -120,21 +115,22 @@ class _Unreachable:
 def check_model(name: str, environment: Mapping[str, str], connection: Connection) -> None:
     """Refuse a model that cannot answer, before a run begins.
 
-    A model without key or address is accepted if the cache has answers; see `open_model`.
+    A model without key, address or server is accepted if the cache has answers; see `open_model`.
 
     Raises:
         BeliefNestError: As of `resolve_model`.
+        UnavailableModelError: Nothing listens at the address of its server.
     """
-    _resolved(name, environment, connection)
+    model = _resolved(name, environment, connection)
+    if isinstance(model, RemoteModel) and not connection.holds_answers:
+        model.check_server()
 
 
 def _resolved(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
     if is_of_provider(name) and connection.cache_mode == "only":
         return _Unreachable(name, "no model is asked here")
     try:
-        return resolve_model(
-            name, environment, limits=connection.answer_limits, clock=connection.clock
-        )
+        return resolve_model(name, environment, limits=connection.answer_limits)
     except ModelError as error:
         if not is_of_provider(name) or not connection.holds_answers:
             raise
@@ -158,7 +154,7 @@ def open_model(name: str, environment: Mapping[str, str], connection: Connection
     """
     model = _resolved(name, environment, connection)
     if is_of_provider(name):
-        model = RetryingModel(model, connection.retries, connection.clock)
+        model = RetryingModel(model, connection.retries, connection.clock, connection.tell)
         model = MeteredModel(model, connection.budget)
         if connection.cache is not None and connection.cache_mode != "off":
             model = CachedModel(model, connection.cache, connection.cache_mode)

@@ -61,7 +61,7 @@ def test_every_request_is_kept_with_its_answer(nest):
     )
     assert (one.model, one.attempt, one.answer, one.error) == ("told", 1, "first", None)
     assert one.messages == (("system", "be brief"), ("user", "0?"))
-    assert one.sampling == {"temperature": 0.0, "seed": None, "max_output_tokens": 4096}
+    assert one.sampling == {"temperature": 0.0, "seed": None, "max_output_tokens": None}
     assert (one.requests, one.input_tokens, one.output_tokens, one.cost) == (1, 20, 3, 0.25)
     assert (one.cached, other.cached) == (False, True)
     assert one.detail == {"task": "Go."}
