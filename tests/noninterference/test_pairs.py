@@ -1,6 +1,46 @@
-"""Pairs of worlds that differ only behind a wall do differ."""
+"""What is said or shown in an agent's name is the same in worlds that are the same to the agent."""
 
-from tests.noninterference.pairs import pair_of, played
+import pytest
+import tests.noninterference.asked_doors
+import tests.noninterference.prose_doors
+import tests.noninterference.shown_doors  # noqa: F401 - these modules register doors
+from tests.noninterference.doors import DOORS, Door
+from tests.noninterference.pairs import PATHS, Played, pair_of, played
+from tests.profiles import NIGHTLY, at_night
+
+PAIRS, PARTS = at_night(5000, 200), 10
+
+
+def chosen(seed: int) -> tuple[list[Door], tuple[str, ...]]:
+    """Return the doors and paths of a pair: at night all; by day one path and a few doors."""
+    if NIGHTLY:
+        return list(DOORS.values()), PATHS
+    turn = seed // PARTS + seed % PARTS
+    doors = [door for n, door in enumerate(DOORS.values()) if (turn + n) % (3 * door.every) == 0]
+    return doors, (PATHS[(turn // 3) % len(PATHS)],)
+
+
+def looks(world: Played, seed: int) -> dict[tuple[str, str], str]:
+    """Return what doors show of paths."""
+    doors, paths = chosen(seed)
+    return {(each.name, path): repr(each.look(world, path)) for each in doors for path in paths}
+
+
+@pytest.mark.parametrize("part", range(PARTS))
+def test_nothing_differs(part: int) -> None:
+    for seed in range(part, PAIRS, PARTS):
+        pair = pair_of(seed)
+        with played(pair, 0) as world:
+            one = looks(world, seed)
+        with played(pair, 1) as world:
+            other = looks(world, seed)
+        for key, shown in one.items():
+            assert shown == other[key], f"pair {seed}, {key[0]} of {key[1]}"
+
+
+def test_every_door_is_gone_through_by_day() -> None:
+    gone = {(door.name, path) for seed in range(200) for door in chosen(seed)[0] for path in PATHS}
+    assert {name for name, _ in gone} == set(DOORS)
 
 
 def test_pairs_differ_in_reality() -> None:

@@ -8,7 +8,7 @@ from beliefnest.nest.explain.comparison import false_things
 from beliefnest.nest.face.drawing import wrong_things
 from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.overview import Card, ConditionPicture, Note
-from beliefnest.pictures.palette import Mark, age_text
+from beliefnest.pictures.palette import Mark, told_text
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores
 from beliefnest.scenarios.expected_acts import Arrives
 from beliefnest.scenarios.expected_answers import Answers
@@ -141,7 +141,9 @@ def _place_words(name: str, state: State, scenario: Scenario) -> str:
     where = named_place(agent.position, scenario.setting)
     if agent.current or agent.basis is None:
         return f"{name}: {where}"
-    return f"{name}: {where}, {age_text(state.tick - agent.basis.observed_at)}"
+    basis = agent.basis
+    told = told_text(basis.source, basis.speaker or "a sign", state.tick - basis.observed_at)
+    return f"{name}: {where}, {told}"
 
 
 def _held(state: State, outcome: Outcome) -> bool | None:

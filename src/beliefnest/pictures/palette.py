@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import cycle
 
+from beliefnest.belief.grounds import Source
 from beliefnest.world.words import counted
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "hypothesis_colours",
     "mix",
     "parts",
+    "seen_text",
     "shades",
     "told_text",
 ]
@@ -195,16 +197,33 @@ def age_text(ticks: int) -> str:
     return f"{counted(ticks, 'tick')} ago"
 
 
-def told_text(teller: str, ticks: int) -> str:
+def told_text(source: Source | None, teller: str, ticks: int) -> str:
     """Return the source and the age of hearsay in words, or the age of a memory.
 
+    It is empty for what has been perceived at this tick.
+
     Args:
-        teller: The speaker; empty if it is not hearsay.
+        source: Source of an entry that is not perceived now; None: it is, or it is not known.
+        teller: The speaker, if it is hearsay.
         ticks: The age.
     """
-    if not teller:
-        return age_text(ticks)
-    return f"told by {teller}{f' {age_text(ticks)}' if ticks else ''}"
+    match source:
+        case Source.PRIOR:
+            return "believed from the start"
+        case Source.HEARD:
+            return f"told by {teller}{f' {age_text(ticks)}' if ticks else ''}"
+        case Source.EDITED:
+            return f"edited{f' {age_text(ticks)}' if ticks else ''}"
+        case _:
+            return age_text(ticks) if ticks else ""
+
+
+def seen_text(source: Source | None, teller: str, ticks: int) -> str:
+    """Return the same with `seen` before the age of a memory that was perceived."""
+    if source is None:
+        return "seen now"
+    told = told_text(source, teller, ticks)
+    return f"seen {told or 'now'}" if source in (Source.SEEN, Source.WITNESSED) else told
 
 
 def mix(first: str, second: str, share: float) -> str:

@@ -7,7 +7,16 @@ from beliefnest.pictures import icons
 from beliefnest.pictures.lettering import ASCENT, text_width, wrap
 from beliefnest.pictures.marks import XY, Text
 from beliefnest.pictures.marks import Mark as Drawn
-from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, age_text, mix, told_text
+from beliefnest.pictures.palette import (
+    INK,
+    MARKS,
+    QUIET,
+    AgentLook,
+    Mark,
+    mix,
+    seen_text,
+    told_text,
+)
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Device, DrawnAgent, Scene, Store
 
@@ -139,9 +148,7 @@ def _margin(
             _device_line(block, shown, scene.against, (left, width, size))
     for person in scene.people:
         if person.mark is Mark.FALSE:
-            seen = f"seen {age_text(person.age) if person.age else 'now'}"
-            seen = told_text(person.teller, person.age) if person.teller else seen
-            wrong = (seen, person.instead)
+            wrong = (seen_text(person.source, person.teller, person.age), person.instead)
             _person_line(block, looks[person.name], wrong, scene.against, (left, width, size))
         if person.owned is not None:
             wrong = (f"has {person.owned.held}", person.owned.instead)
@@ -160,8 +167,9 @@ def _store_line(
     block.kinds |= {"container", "told"} if store.teller else {"container"}
     inner = left + icon * 1.55
     text = f"{store.label}: {store.words}"
-    if store.teller or (store.age and (store.items or store.complete)):
-        text += f" ({told_text(store.teller, store.age)})"
+    told = told_text(store.source, store.teller, store.age)
+    if told:
+        text += f" ({told})"
     top = block.bottom
     paragraph(block, text, inner, width - icon * 1.55, size)
     if store.mark is Mark.FALSE:
@@ -179,7 +187,8 @@ def _device_line(
     block.marks += icons.device((left, block.bottom), icon, shown)
     inner, top = left + icon * 1.55, block.bottom
     held, instead = shown.false
-    told = f" ({told_text(shown.teller, shown.age)})" if shown.teller or shown.age else ""
+    known = told_text(shown.source, shown.teller, shown.age)
+    told = f" ({known})" if known else ""
     where = f"({', '.join(map(str, shown.position))})"
     paragraph(block, f"{where}: {held}{told}", inner, width - icon * 1.55, size)
     _false_line(block, f"{_place_words(against)}: {instead}", inner, left + width, size)

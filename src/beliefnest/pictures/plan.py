@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from beliefnest.belief.grounds import Source
 from beliefnest.pictures import icons
 from beliefnest.pictures.labels import LINE, Label, Put, leader, put_labels
 from beliefnest.pictures.lettering import ASCENT, text_width
@@ -23,6 +24,7 @@ from beliefnest.pictures.palette import (
     age_text,
     mix,
     parts,
+    told_text,
 )
 from beliefnest.pictures.relief import UNKNOWN, Relief, standing_columns
 from beliefnest.pictures.room import Room
@@ -506,7 +508,9 @@ class _Sheet:
             lines.append((f"as {person.believer} has it", False))
         elif person.teller:
             lines.append((f"told by {person.teller}", False))
-        if person.age and not person.believer:
+        if person.source in (Source.PRIOR, Source.EDITED) and not person.believer:
+            lines.append((told_text(person.source, "", person.age), False))
+        elif person.age and not person.believer:
             lines.append((age_text(person.age), False))
         self._label(spot, size, tuple(lines))
 

@@ -103,6 +103,7 @@ class Device:
         false: Its state here and in the other simulator, if they differ; otherwise None.
         teller: Speaker, if the state is only known from hearsay; otherwise empty.
         age: Ticks since the state was current.
+        source: Source of the state, if it is not perceived now; otherwise None.
     """
 
     position: Position
@@ -113,6 +114,7 @@ class Device:
     false: tuple[str, ...] | None = None
     teller: str = ""
     age: int = 0
+    source: Source | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +132,7 @@ class Store:
         instead: Contents in the other simulator, if these are false; otherwise empty.
         above: Blocks above the storey; negative below it.
         teller: Speaker, if the contents are only known from hearsay; otherwise empty.
+        source: Source of known contents that are not perceived now; otherwise None.
     """
 
     position: Position
@@ -142,6 +145,7 @@ class Store:
     instead: str
     above: int
     teller: str = ""
+    source: Source | None = None
 
     @property
     def unknown(self) -> bool:
@@ -171,6 +175,7 @@ class DrawnAgent:
             simulator's; otherwise empty.
         owned: False entry about its possessions; None if there is none.
         teller: Speaker, if the position is only known from hearsay; otherwise empty.
+        source: Source of a known position that is not perceived now; otherwise None.
     """
 
     name: str
@@ -184,6 +189,7 @@ class DrawnAgent:
     believer: str = ""
     owned: Wrong | None = None
     teller: str = ""
+    source: Source | None = None
 
 
 @dataclass(frozen=True)
@@ -443,9 +449,15 @@ def read_stores(
                 instead="" if false is None else false.instead,
                 above=place[1] - level,
                 teller=_teller(held.basis) if held.items or held.complete else "",
+                source=_source(held),
             )
         )
     return tuple(found)
+
+
+def _source(held: ContainerBelief) -> Source | None:
+    """Return the source of known contents that are not perceived now; None: there is none."""
+    return held.basis.source if not held.current and (held.items or held.complete) else None
 
 
 def _teller(basis: Basis | None) -> str:
@@ -486,6 +498,7 @@ def _person(
         instead="" if false is None else false.instead,
         above=above if abs(above) >= _NEAR else 0,
         teller="" if agent.current or agent.position is None else _teller(agent.basis),
+        source=None if agent.current or agent.basis is None else agent.basis.source,
     )
 
 
@@ -519,6 +532,7 @@ def _devices(
                 None if false is None else told_apart((false.held, false.instead)),
                 _teller(told),
                 0 if told is None else known.tick - told.observed_at,
+                None if told is None else told.source,
             )
         )
     return tuple(found)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
+from beliefnest.belief.grounds import Source
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE
 from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import Drawing
@@ -69,12 +70,15 @@ def _perceived(scene: Scene) -> Scene:
 
 
 def _is_remembered(thing: Store | Device) -> bool:
-    return bool(thing.age or thing.teller)
+    given = thing.source in (Source.PRIOR, Source.EDITED)
+    return bool(thing.age or thing.teller or given)
 
 
 def _shut(store: Store) -> Store:
     """Return a container of which only the outside is known."""
-    return replace(store, items={}, complete=False, mark=Mark.UNKNOWN, age=0, teller="")
+    return replace(
+        store, items={}, complete=False, mark=Mark.UNKNOWN, age=0, teller="", source=None
+    )
 
 
 def _sees(scene: Scene, point: Point) -> bool:

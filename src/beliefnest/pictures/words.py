@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 from beliefnest.belief.view import State
-from beliefnest.pictures.palette import age_text
+from beliefnest.pictures.palette import told_text
 from beliefnest.world.texts import visible
 from beliefnest.world.values import Point
 from beliefnest.world.words import contents_words, point_words
@@ -47,7 +47,9 @@ def state_words(state: State) -> str:
     for name, agent in sorted(state.agents.items()):
         words = f"{name} {where_words(agent.position)}"
         if agent.position is not None and not agent.current and agent.basis is not None:
-            words += f", {age_text(state.tick - agent.basis.observed_at)}"
+            basis = agent.basis
+            age = state.tick - basis.observed_at
+            words += f", {told_text(basis.source, basis.speaker or 'a sign', age)}"
         people.append(words)
     stores = [
         f"{point_words(place)} {contents_words(held.items, complete=held.complete)}"

@@ -6,7 +6,7 @@ values that the belief lacks; faults are raised.
 
 from collections.abc import Iterable, Mapping
 
-from beliefnest.belief.grounds import AgentBelief, PerceivedEvent, Source
+from beliefnest.belief.grounds import AgentBelief, Basis, PerceivedEvent, Source
 from beliefnest.belief.view import State
 from beliefnest.prompts import event_rows, text
 from beliefnest.prompts.filterset import FilterSet, filter
@@ -252,7 +252,8 @@ def events_and_visibilities(branch: BranchView, me: str | None = None) -> str:
 
     `me` is an agent whose perspective replaces the owner's, as the owner believes it to be.
     `perceived_by` lists the other agents that, in this perspective, perceived the action.
-    Sightings are `visible` (seen now), `lastSeen`, or `heardOf` (known from speech only).
+    Sightings are `visible` (seen now), `lastSeen`, `heardOf` (known from speech only) or `assumed`
+    (believed from the start, and not seen since).
     """
     mine = branch if me is None else branch.child(_known(branch, me))
     state = mine.state
@@ -298,8 +299,13 @@ def _sightings(state: State, names: Iterable[str]) -> list[tuple[str, int, str, 
 def _how_known(believed: AgentBelief) -> str:
     if believed.current:
         return "visible"
-    heard = believed.basis is not None and believed.basis.source is Source.HEARD
-    return "heardOf" if heard else "lastSeen"
+    match believed.basis:
+        case Basis(source=Source.HEARD):
+            return "heardOf"
+        case Basis(source=Source.PRIOR):
+            return "assumed"
+        case _:
+            return "lastSeen"
 
 
 def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[Position]]:

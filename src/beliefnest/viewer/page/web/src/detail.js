@@ -36,7 +36,7 @@ export class Detail {
 
   row (run, each, value, choice) {
     const name = each.look?.name ?? each.name
-    const marks = each.marks.map(mark => element('span', { class: `mark ${mark}`, 'data-mark': mark }, `${run.head.marks[mark].sign} ${markWords(run, mark, each.age, each.teller)}`))
+    const marks = each.marks.map(mark => element('span', { class: `mark ${mark}`, 'data-mark': mark }, `${run.head.marks[mark].sign} ${markWords(run, mark, each.age, each.held)}`))
     return element('button', {
       type: 'button',
       class: `thing${choice.thing === each.thing ? ' chosen' : ''}`,
@@ -129,7 +129,7 @@ function valueText (run, track, tick, thing) {
   const has = itemsText(items) ? `has ${itemsText(items)}${complete ? '' : ', perhaps more'}` : complete ? 'has nothing' : 'what it has is not known'
   if (kind === 'inventory') return has
   const pose = track.agent(number, tick)
-  const age = pose && !pose.current ? `, ${memoryWords(tellerOf(pose), tick - pose.seenAt)}` : ''
+  const age = pose && !pose.current ? `, ${memoryWords(pose, tick - pose.seenAt)}` : ''
   return `${placeText(pose)}${age}; ${has}`
 }
 

@@ -169,7 +169,7 @@ export class Plan {
       const far = !isWide(run) && Math.abs(pose.y - storey) > 1.5
       const wrong = each.marks.includes('false')
       const sign = signsText(run, each.marks, each.age)
-      const when = pose.current ? '' : `, ${memoryWords(each.teller, each.age)}`
+      const when = pose.current ? '' : `, ${memoryWords(pose, each.age)}`
       const side = [-dy * 0.55 * r, dx * 0.55 * r]
       const nose = [[x + dx * 1.55 * r, y + dy * 1.55 * r], [x + dx * 0.7 * r + side[0], y + dy * 0.7 * r + side[1]],
         [x + dx * 0.7 * r - side[0], y + dy * 0.7 * r - side[1]]]

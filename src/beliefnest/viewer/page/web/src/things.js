@@ -50,7 +50,7 @@ function agentThing (run, track, tick, look, number, wrong) {
   if (wrong.has(thing)) marks.push('false')
   if (pose === null) marks.push('unknown')
   else if (!pose.current) marks.push(memoryMark(pose))
-  return { thing, number, teller: tellerOf(pose), look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`inventory-${number}`) }
+  return { thing, number, teller: tellerOf(pose), held: pose, look, pose, marks, age: pose === null ? null : tick - pose.seenAt, wrongItems: wrong.has(`inventory-${number}`) }
 }
 
 function containerThing (run, track, tick, cell, wrong) {
@@ -62,7 +62,7 @@ function containerThing (run, track, tick, cell, wrong) {
   else if (!contents.complete) marks.push('incomplete')
   if (contents !== null && !contents.current && !marks.includes('unknown')) marks.push(memoryMark(contents))
   const age = contents === null ? null : tick - contents.seenAt
-  return { thing, cell, place: run.place(cell), name: run.thingName(thing), contents, marks, age, teller: tellerOf(contents) }
+  return { thing, cell, place: run.place(cell), name: run.thingName(thing), contents, held: contents, marks, age, teller: tellerOf(contents) }
 }
 
 /**
@@ -77,9 +77,17 @@ function memoryMark (held) {
   return tellerOf(held) === null ? 'stale' : 'heard'
 }
 
-/** Return the source and age of a memory in words. @returns {string} */
-export function memoryWords (teller, age) {
-  return teller === null ? `seen ${ago(age)}` : `told by ${teller}${age > 0 ? ` ${ago(age)}` : ''}`
+/**
+ * Return the source and age of a memory in words. Nothing is called seen that was not perceived.
+ * @param {object} held The entry, with its `source`, and with its `speaker` if it is hearsay.
+ * @param {number} age Its age in ticks.
+ * @returns {string}
+ */
+export function memoryWords (held, age) {
+  const teller = tellerOf(held)
+  if (teller !== null) return `told by ${teller}${age > 0 ? ` ${ago(age)}` : ''}`
+  if (held.source === 'prior') return 'believed from the start'
+  return `${held.source === 'edited' ? 'edited' : 'seen'} ${ago(age)}`
 }
 
 /** Return the believed contents of a container in a few words. @returns {string} */
@@ -102,9 +110,11 @@ export function signsText (run, marks, age) {
 }
 
 /** Return a mark in words, with its age. @returns {string} */
-export function markWords (run, mark, age, teller = null) {
-  if (mark === 'heard') return memoryWords(teller, age)
-  if (mark === 'stale' && age !== null) return `remembered, ${memoryWords(null, age)}`
+export function markWords (run, mark, age, held = null) {
+  if (mark === 'heard') return memoryWords(held, age)
+  if (mark === 'stale' && age !== null) {
+    return held?.source === 'prior' ? memoryWords(held, age) : `remembered, ${memoryWords(held, age)}`
+  }
   return run.head.marks[mark].words
 }
 
