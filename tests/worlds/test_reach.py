@@ -1,4 +1,4 @@
-"""What a hand reaches is the same in both worlds: nothing through a wall, or out of reach."""
+"""Reach of hands in both worlds: nothing through a wall, or out of reach."""
 
 from collections.abc import Iterator, Mapping
 

@@ -121,7 +121,8 @@ def environment(*, has_goal: bool = False, **options: object) -> Callable[..., O
 
 def call_of(skill: str, parts: Mapping[str, object]) -> Call:
     env = parallel_env(scene(), agents=["ann"], phrases=[PHRASE])
-    return env._calls.read(env.action(skill, **parts))
+    env.reset(seed=0)
+    return env._calls.read(env.known("ann"), env.action(skill, **parts))
 
 
 def program(senses: str) -> Callable[..., Outcome]:

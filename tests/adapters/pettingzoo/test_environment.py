@@ -62,20 +62,24 @@ def act(env, agent, skill, **parts):
 def test_each_agent_observes_what_it_believes_and_no_more():
     env = make(nested=["/observer/sally"])
     env.reset(seed=0)
-    chest = env.layout.containers.index
-    diamond = env.layout.items.index("diamond")
     act(env, "sally", "depositItemIntoChest", container=LEFT, item="diamond")
     # Behind the east wall.
     act(env, "sally", "goToPosition", position=(9, -51, 3))
     act(env, "anne", "getItemFromChest", container=LEFT, item="diamond")
     seen, *_, infos = act(env, "anne", "depositItemIntoChest", container=RIGHT, item="diamond")
-    held = {agent: belief["containers"][:, diamond] for agent, belief in seen.items()}
-    assert held["anne"][chest(RIGHT)] == held["observer"][chest(RIGHT)] == 1
-    assert held["sally"][chest(LEFT)] == 1
-    assert held["sally"][chest(RIGHT)] == 0
-    nested = infos["observer"]["beliefs"]["/observer/sally"]
-    assert nested["containers"][chest(LEFT), diamond] == 1
-    me = env.layout.agents.index("sally")
+    numbers = {agent: env.known(agent) for agent in env.agents}
+
+    def diamonds(agent, belief, chest):
+        things = numbers[agent]
+        return belief["containers"][things.containers.index(chest), things.items.index("diamond")]
+
+    assert (
+        diamonds("anne", seen["anne"], RIGHT) == diamonds("observer", seen["observer"], RIGHT) == 1
+    )
+    assert diamonds("sally", seen["sally"], LEFT) == 1
+    assert diamonds("sally", seen["sally"], RIGHT) == 0
+    assert diamonds("observer", infos["observer"]["beliefs"]["/observer/sally"], LEFT) == 1
+    me = numbers["sally"].agents.index("sally")
     assert seen["sally"]["me"] == me
     place = seen["sally"]["agents"][me, :3]
     assert np.allclose(place, env.nest["/"].state.agents["sally"].position)
@@ -87,7 +91,7 @@ def test_what_is_said_is_heard_once_by_those_who_can_and_its_claims_are_taken_up
     env = parallel_env("help-sally", phrases=lie, max_steps=9)
     env.reset(seed=0)
     seen, *_ = act(env, "anne", "say", phrase=next(iter(lie)))
-    anne = env.layout.agents.index("anne")
+    anne = env.known("sally").agents.index("anne")
     assert seen["sally"]["heard"][anne].tolist() == [1, 0]
     (claim,) = env.nest.claims()
     assert claim.speaker == "anne"
@@ -211,7 +215,9 @@ def test_programs_and_calls_do_the_same_in_both_worlds(world):
     assert infos["sally"]["error"] == ""
     assert seen["sally"]["containers"].sum() == 1
     seen, *_ = act(env, "sally", "openContainer", container=RIGHT)
-    assert seen["sally"]["containers_known"][env.layout.containers.index(RIGHT)].tolist() == [
+    assert seen["sally"]["containers_known"][
+        env.known("sally").containers.index(RIGHT)
+    ].tolist() == [
         1,
         1,
         1,

@@ -9,8 +9,8 @@ from beliefnest.errors import InputError, MissingExtraError
 if TYPE_CHECKING:  # Imported when an environment is made.
     from pettingzoo import AECEnv
 
+    from beliefnest.adapters.pettingzoo.bounds import Phrases
     from beliefnest.adapters.pettingzoo.environment import BeliefEnv, Options
-    from beliefnest.adapters.pettingzoo.layout import Phrases
     from beliefnest.adapters.pettingzoo.playing import Instances
     from beliefnest.adapters.pettingzoo.vector import BeliefVectorEnv
     from beliefnest.episodes.task import Task
@@ -33,6 +33,7 @@ def parallel_env(
     nested: int | Sequence[str] = (),
     phrases: "Phrases | Sequence[str]" = (),
     items: Sequence[str] = (),
+    sizes: "Mapping[str, int] | None" = None,
     reward: "Callable[[Nest, str], float] | None" = None,
     ends: "Callable[[Nest], bool] | None" = None,
     max_steps: int | None = None,
@@ -63,6 +64,8 @@ def parallel_env(
         phrases: Utterances to choose from; a mapping gives the claims of each.
         items: Names of items that may appear later but that no agent or container has at the
             start.
+        sizes: Greatest numbers of things of a kind (`agents`, `items`, `containers`, `doors`,
+            `levers`, `buttons`, `signs`), by kind; others are those of the first instances.
         reward: Function of the nest and an agent that returns its reward after a step; None for
             the task's rewards, or 0.
         ends: Function of the nest that returns True if the episode is over; None: only tasks end.
@@ -95,6 +98,7 @@ def parallel_env(
         nested=nested if isinstance(nested, int) else tuple(nested),
         phrases=phrases,
         items=tuple(items),
+        sizes=dict(sizes or {}),
         reward=reward,
         ends=ends,
         max_steps=max_steps,

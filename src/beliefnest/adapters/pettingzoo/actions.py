@@ -5,13 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from beliefnest.adapters.pettingzoo.layout import ObservationLayout, Phrases
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.adapters.pettingzoo.bounds import Bounds, Phrases
+from beliefnest.adapters.pettingzoo.order import Things
+from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
 from beliefnest.skills.calls import Call, callables
 from beliefnest.skills.manifests import Parameter
 from beliefnest.world.values import Position
 
-__all__ = ["MOST_ITEMS", "Call", "Calls"]
+__all__ = ["MOST_ITEMS", "Call", "Calls", "NamedAction", "NotKnownError"]
 
 _LONGEST = 200
 """Greatest number of characters of an action in a message."""
@@ -29,17 +30,31 @@ _KINDS = {
     "agent": "agents",
     "phrase": "phrases",
 }
-"""List of the layout that each part of an action indexes."""
+"""Kind of the things that each part of an action numbers."""
 
 _OPTIONS = {"phrase": "`phrases` of the environment", "item": "`items` of the environment"}
 """Options of an environment that add values of a part."""
+
+
+class NotKnownError(BeliefNestError):
+    """Number in an action that stands for nothing that its agent knows."""
+
+
+class NamedAction(dict[str, Any]):
+    """Action of the space that was made from names.
+
+    Attributes:
+        call: The call that it stands for, whichever agent gets it.
+    """
+
+    call: Call
 
 
 class Calls:
     """Conversion of actions to calls and of names to actions.
 
     Args:
-        layout: Order of agents, items and other things.
+        bounds: Greatest numbers of things.
         phrases: Utterances with their claims.
 
     Attributes:
@@ -48,13 +63,13 @@ class Calls:
         parts: Number of values of each part of an action; `position` has three numbers instead.
     """
 
-    def __init__(self, layout: ObservationLayout, phrases: Phrases) -> None:
-        self._layout = layout
+    def __init__(self, bounds: Bounds, phrases: Phrases) -> None:
+        self._bounds = bounds
         self._phrases = phrases
-        sizes: dict[str, int] = {part: len(getattr(layout, kind)) for part, kind in _KINDS.items()}
-        sizes |= {"position": 1, "count": MOST_ITEMS}
+        sizes = {part: bounds.most[kind] for part, kind in _KINDS.items() if kind in bounds.most}
+        sizes |= {"position": 1, "count": MOST_ITEMS, "phrase": len(bounds.phrases)}
         # An agent cannot give or whisper to itself.
-        sizes["agent"] = len(layout.agents) if len(layout.agents) > 1 else 0
+        sizes["agent"] = sizes["agent"] if sizes["agent"] > 1 else 0
         known = callables()
         actions = [known["doNothing"], *(each for each in known.values() if each.parts)]
         self._lacking = {
@@ -65,10 +80,11 @@ class Calls:
         used = {part for each in self._possible for part in each.parts}
         self.parts = {part: size for part, size in sizes.items() if part in used}
 
-    def action(self, skill: str, given: Mapping[str, object]) -> dict[str, Any]:
+    def action(self, things: Things, skill: str, given: Mapping[str, object]) -> NamedAction:
         """Return an action of the space from names and positions.
 
         Args:
+            things: The things that the agent knows, in its order.
             skill: Name of the skill.
             given: `position`, `container`, `door`, `lever`, `button` and `sign` as block
                 positions; `item`, `agent` and `phrase` as names or texts; `count` (default 1).
@@ -95,35 +111,49 @@ class Calls:
             for part in self.parts
         }
         for part, value in parts.items():
-            action[part] = self._numbered(part, value)
-        return {"skill": np.int64(index), **action}
+            action[part] = self._numbered(things, part, value)
+        named = NamedAction({"skill": np.int64(index), **action})
+        named.call = self.read(things, named)
+        return named
 
-    def _numbered(self, part: str, value: Any) -> Any:
+    def _numbered(self, things: Things, part: str, value: Any) -> Any:
         if part == "position":
             try:
                 x, y, z = map(int, value)
             except (TypeError, ValueError, OverflowError):
                 raise InputError(f"position is {value!r}; give three whole numbers") from None
             place = (x, y, z)
-            if place not in self._layout.box:
-                box = self._layout.box
+            if place not in self._bounds.box:
+                box = self._bounds.box
                 raise InputError(f"{place} lies outside the box {box.low}..{box.high}")
-            return np.array(self._layout.box.index(place), dtype=np.int64)
+            return np.array(self._bounds.box.index(place), dtype=np.int64)
         if part == "count":
             if not isinstance(value, int | np.integer) or not 1 <= value <= MOST_ITEMS:
                 raise InputError(f"count is {value!r}; give 1 to {MOST_ITEMS}")
             return np.int64(value)
-        return np.int64(self._layout.number(_KINDS[part], value))
+        known = self._named(things, part)
+        if value not in known:
+            there = ", ".join(map(str, known)) or "none"
+            raise UnknownNameError(
+                f"{value!r} is not among the {_KINDS[part]} that the agent knows, which are {there}"
+            )
+        return np.int64(known.index(value))
 
-    def read(self, action: Mapping[str, Any]) -> Call:
+    def read(self, things: Things, action: Mapping[str, Any]) -> Call:
         """Return the call that an action stands for.
+
+        Args:
+            things: The things that the agent knows, in its order.
+            action: The action.
 
         Raises:
             InputError: The action is not in the space.
+            NotKnownError: A number stands for nothing that the agent knows.
         """
         try:
             skill = self._possible[_index(action["skill"])]
-            args = [self._argument(each, action) for each in skill.parameters if each.action != ()]
+            used = [each for each in skill.parameters if each.action != ()]
+            args = [self._argument(things, each, action) for each in used]
             return Call(skill.name, tuple(each for each in args if each != []))
         except (KeyError, IndexError, TypeError, ValueError, OverflowError) as error:
             raise InputError(
@@ -131,23 +161,34 @@ class Calls:
                 "sample action_space() or use action()"
             ) from None
 
-    def _argument(self, parameter: Parameter, action: Mapping[str, Any]) -> Any:
+    def _argument(self, things: Things, parameter: Parameter, action: Mapping[str, Any]) -> Any:
         """Return an argument of a call; no claims are an empty list."""
         if isinstance(parameter.action, int):
             return parameter.action
-        value, *count = (self._named(part, action[part]) for part in parameter.action)
+        value, *count = (self._value(things, part, action[part]) for part in parameter.action)
         if parameter.type == "Claim[]":
             return [claim.plain() for claim in self._phrases[value]]
         return {value: count[0]} if count else value
 
-    def _named(self, part: str, value: Any) -> Any:
+    def _value(self, things: Things, part: str, value: Any) -> Any:
         if part == "position":
             return self._position(value)
         index = _index(value)
-        return index if part == "count" else getattr(self._layout, _KINDS[part])[index]
+        if part == "count":
+            return index
+        if index >= self.parts[part]:
+            raise IndexError(f"{part} {index} of {self.parts[part]}")
+        known = self._named(things, part)
+        if index >= len(known):
+            raise NotKnownError(f"it knows no {part} {index} so far")
+        return known[index]
+
+    def _named(self, things: Things, part: str) -> tuple[Any, ...]:
+        known = self._bounds.phrases if part == "phrase" else getattr(things, _KINDS[part])
+        return tuple(known)
 
     def _position(self, index: Any) -> Position:
-        low, shape = self._layout.box.low, self._layout.box.shape
+        low, shape = self._bounds.box.low, self._bounds.box.shape
         x, y, z = (int(value) for value in index)
         if not all(0 <= value < size for value, size in zip((x, y, z), shape, strict=True)):
             raise IndexError(f"position {(x, y, z)} of {shape}")

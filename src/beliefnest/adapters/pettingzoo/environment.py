@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, cast
 
 import numpy as np
@@ -10,15 +10,24 @@ from gymnasium import spaces
 from pettingzoo import ParallelEnv
 
 from beliefnest.adapters.pettingzoo.acting import Acting, Deed, ProgramActing, SkillActing
-from beliefnest.adapters.pettingzoo.actions import MOST_ITEMS, Call, Calls
-from beliefnest.adapters.pettingzoo.layout import ObservationLayout, Phrases
+from beliefnest.adapters.pettingzoo.actions import (
+    MOST_ITEMS,
+    Call,
+    Calls,
+    NamedAction,
+    NotKnownError,
+)
+from beliefnest.adapters.pettingzoo.bounds import Bounds, Layout, Phrases
+from beliefnest.adapters.pettingzoo.layout import layout_of
+from beliefnest.adapters.pettingzoo.order import KnownOrder, Things
 from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
 from beliefnest.adapters.pettingzoo.room import check_arrays, check_nested
 from beliefnest.belief.plain import belief_json
 from beliefnest.belief.view import State
-from beliefnest.episodes.agent_view import AgentView
+from beliefnest.episodes.agent_view import AgentView, Brief
+from beliefnest.episodes.policies.candidates import items_of
 from beliefnest.episodes.task import Task
-from beliefnest.errors import InputError, PathError
+from beliefnest.errors import InputError, PathError, UnknownNameError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.history import context_of
 from beliefnest.nest.past.setting import Senses
@@ -33,6 +42,8 @@ __all__ = ["BeliefEnv", "BeliefSpace", "Options"]
 
 _MAX_STEPS = 100
 _TIMEOUT_TICKS = 1200
+_TRIED = 8
+"""Number of instances whose things are counted for the sizes of arrays."""
 _LONGEST_PROGRAM = 10_000
 _LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
 
@@ -51,6 +62,7 @@ class Options:
     nested: int | tuple[str, ...] = ()
     phrases: Phrases | Sequence[str] = ()
     items: tuple[str, ...] = ()
+    sizes: Mapping[str, int] = field(default_factory=dict)
     reward: Callable[[Nest, str], float] | None = None
     ends: Callable[[Nest], bool] | None = None
     max_steps: int | None = None
@@ -117,6 +129,12 @@ class BeliefSpace(spaces.Space[dict[str, Any]]):
         """Return True if a value is such an object."""
         return isinstance(x, dict) and {"containers", "agents", "chat"} <= x.keys()
 
+    def __eq__(self, other: object) -> bool:
+        """Return True if the other one is such a space."""
+        return isinstance(other, BeliefSpace)
+
+    __hash__ = None  # type: ignore[assignment]  # as all spaces that can be compared
+
     def sample(self, mask: Any = None, probability: Any = None) -> dict[str, Any]:
         """Return the belief of an agent that knows nothing."""
         return {"containers": {}, "agents": {}, "chat": [], "addressees": [], "thoughts": []}
@@ -135,7 +153,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
     Attributes:
         possible_agents: Agents that can act, sorted.
         agents: Agents that still act in this episode.
-        layout: Meaning of the indices in arrays and actions.
+        layout: All things of this episode; `known` gives those that an agent numbers.
         skills: Names of the skills; an action's `skill` is an index into them.
         nest: Nest of this episode, for any further query.
     """
@@ -145,6 +163,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     def __init__(self, source: Scenario | Instances, options: Options) -> None:
         self._source, self._options = source, options
+        self._task: Task | None = None
         players: Sequence[str] = ()
         if isinstance(source, Instances):
             options.check_task()
@@ -154,6 +173,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             options.check_scenario()
             scenario = source
         self._arrange(scenario)
+        layouts = [self.layout, *self._further_layouts()]
+        self._bounds = Bounds.of(layouts, options.sizes)
+        self._bounds.check(self.layout)
+        self._calls = Calls(self._bounds, options.said)
+        self.skills = self._calls.skills
         self.possible_agents = sorted(options.agents or players or self.layout.agents)
         for name in self.possible_agents:
             if name not in scenario.setting.snapshot.agents:
@@ -164,7 +188,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             check_nested(context, self.possible_agents, options.nested)
         self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
         if options.observations == "arrays":
-            check_arrays(context, self.layout, len(self.possible_agents), len(self._nested))
+            check_arrays(context, self._bounds, len(self.possible_agents), len(self._nested))
         self.agents: list[str] = []
         self._seed = options.seed - 1
         self._own = Owned()
@@ -173,14 +197,33 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._acting: Acting | None = None
         self._steps = 0
         self._heard: dict[str, int] = {}
+        self._orders: dict[str | None, KnownOrder] = {}
 
     def _arrange(self, scenario: Scenario) -> None:
-        """Set the order of everything that arrays and actions describe."""
-        self.layout = ObservationLayout.of(
-            scenario.setting, self._options.said, self._options.items
-        )
-        self._calls = Calls(self.layout, self._options.said)
-        self.skills = self._calls.skills
+        """Set what there is in an instance."""
+        self.layout = layout_of(scenario.setting, self._options.said, self._options.items)
+
+    def _further_layouts(self) -> Sequence[Layout]:
+        """Return the layouts of a few other instances, the same ones for each seed."""
+        source, chosen = self._source, self._options
+        if not isinstance(source, Instances):
+            return ()
+        tasks = (source.of(seed) for seed in range(_TRIED))
+        return [layout_of(each.scenario.setting, chosen.said, chosen.items) for each in tasks]
+
+    def known(self, agent: str) -> Things:
+        """Return the things that an agent has come to know in this episode, in its order.
+
+        Numbers in its observations and actions, and in its nested beliefs, are indices into them.
+
+        Raises:
+            InputError: No episode has begun, or the agent cannot act.
+        """
+        if agent not in self.possible_agents:
+            raise InputError(f"{agent!r} does not act here; agents are {self.possible_agents}")
+        if agent not in self._orders:
+            raise InputError("no episode has begun; call reset() first")
+        return self._orders[agent].things
 
     @property
     def nest(self) -> Nest:
@@ -226,7 +269,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         return spaces.Dict(
             {
                 name: spaces.Box(low, high, shape, cast(Any, dtype))
-                for name, (shape, dtype, low, high) in self.layout.shapes().items()
+                for name, (shape, dtype, low, high) in self._bounds.shapes().items()
             }
         )
 
@@ -238,26 +281,39 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         parts: dict[str, spaces.Space[Any]] = {"skill": spaces.Discrete(len(self.skills))}
         for part, size in self._calls.parts.items():
             if part == "position":
-                parts[part] = spaces.MultiDiscrete(np.array(self.layout.box.shape))
+                parts[part] = spaces.MultiDiscrete(np.array(self._bounds.box.shape))
             elif part == "count":
                 parts[part] = spaces.Discrete(MOST_ITEMS, start=1)
             else:
                 parts[part] = spaces.Discrete(size)
         return spaces.Dict(parts)
 
-    def action(self, skill: str, **parts: object) -> dict[str, Any]:
+    def action(self, skill: str, /, *, of: str | None = None, **parts: object) -> dict[str, Any]:
         """Return an action of the structured space from names and positions.
+
+        `step` reads the names, so that any agent can be given the action. The numbers in it are
+        those of one agent.
 
         Args:
             skill: Name of a skill.
+            of: Agent whose numbers are used; None: the first one that knows the things.
             parts: Its arguments: `position`, `container`, `door` and `sign` as block positions;
                 `item`, `agent` and `phrase` as names or texts; `count`.
 
         Raises:
-            UnknownNameError: There is no such skill, or no such thing.
+            UnknownNameError: There is no such skill, or no agent knows such a thing.
             InputError: A part is missing, invalid or not used by the skill.
         """
-        return self._calls.action(skill, parts)
+        if of is not None:
+            return self._calls.action(self.known(of), skill, parts)
+        fault: UnknownNameError | None = None
+        for agent in self.possible_agents:
+            try:
+                return self._calls.action(self.known(agent), skill, parts)
+            except UnknownNameError as unknown:
+                fault = fault or unknown
+        assert fault is not None  # there is at least one agent
+        raise fault
 
     def reset(
         self, seed: int | None = None, options: Mapping[str, Any] | None = None
@@ -284,6 +340,10 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self.agents = list(self.possible_agents)
         self._steps = 0
         self._heard = {}
+        self._orders = {
+            None: KnownOrder(),
+            **{a: KnownOrder(self._declared(a)) for a in self.agents},
+        }
         return self._told({agent: Deed() for agent in self.agents}, spoken=True)
 
     def _begun(self, worlds: Worlds) -> Acting:
@@ -291,7 +351,9 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         chosen, source = self._options, self._source
         if isinstance(source, Instances):
             task = source.of(self._seed)
-            self._rearrange(task)
+            self._arrange(task.scenario)
+            self._bounds.check(self.layout)
+            self._task = task
             playing = TaskActing(task, self.possible_agents, chosen.world, self._seed, worlds)
             self._nest = playing.nest
             return playing
@@ -304,19 +366,12 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             return SkillActing(nest, chosen.step_ticks, timeout, senses, speech)
         return ProgramActing(nest, timeout, senses)
 
-    def _rearrange(self, task: Task) -> None:
-        """Take over the layout of another instance.
-
-        Raises:
-            InputError: Its arrays or actions have other shapes.
-        """
-        shapes, sizes = self.layout.shapes(), (self.skills, self._calls.parts)
-        self._arrange(task.scenario)
-        if (self.layout.shapes(), (self.skills, self._calls.parts)) != (shapes, sizes):
-            raise InputError(
-                f"instance {self._seed} of {task.name} has other numbers of things than the first "
-                "one, so that its arrays do not fit; make an environment of its own for it"
-            )
+    def _declared(self, agent: str) -> Sequence[str]:
+        """Return the items that an agent knows by the rules: those named, and those of goals."""
+        named = set(self._options.items)
+        if self._task is not None:
+            named.update(items_of(Brief.of(self._task, self._seed, agent).considered))
+        return sorted(named)
 
     def step(
         self, actions: Mapping[str, Any]
@@ -340,10 +395,20 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if not self.agents:
             return {}, {}, {}, {}, {}
         nothing = "" if self._options.actions == "programs" else Call("doNothing")
-        read = {agent: self._read(actions.get(agent, nothing)) for agent in self.agents}
+        read: dict[str, Call | str] = {}
+        unknown: dict[str, Deed] = {}
+        for agent in self.agents:
+            try:
+                read[agent] = self._read(agent, actions.get(agent, nothing))
+            except NotKnownError as error:
+                read[agent], unknown[agent] = nothing, Deed(str(error))
         step = self._acting.act(read)
         self._steps += 1
-        observations, infos = self._told(step.deeds, spoken=step.spoken)
+        told = {
+            agent: replace(deed, error=unknown[agent].error) if agent in unknown else deed
+            for agent, deed in step.deeds.items()
+        }
+        observations, infos = self._told(told, spoken=step.spoken)
         rewards = {agent: self._reward(agent) for agent in self.agents}
         ended, cut = self._ends()
         if isinstance(self._acting, TaskActing):
@@ -375,7 +440,9 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     def state(self) -> Any:
         """Return the real world in the form of an observation."""
-        return self._form(self.nest["/"].state, ())
+        state, order = self.nest["/"].state, self._orders[None]
+        order.note(state)
+        return self._form(order, state, ())
 
     def close(self) -> None:
         """End the episode and close the world."""
@@ -390,14 +457,16 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._nest = self._acting = None
         self.agents = []
 
-    def _read(self, action: Any) -> Call | str:
+    def _read(self, agent: str, action: Any) -> Call | str:
         if isinstance(action, Call):
             return action
         if self._options.actions == "programs":
             if not isinstance(action, str):
                 raise InputError(f"a program is a text, not {type(action).__name__}")
             return action
-        return self._calls.read(action)
+        if isinstance(action, NamedAction):
+            return action.call
+        return self._calls.read(self.known(agent), action)
 
     def _told(
         self, deeds: Mapping[str, Deed], *, spoken: bool
@@ -406,6 +475,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         infos: dict[str, Told] = {
             agent: {"error": deeds[agent].error, "busy": deeds[agent].busy} for agent in self.agents
         }
+        for agent in self.agents:
+            self._orders[agent].note(self.nest[path_text((agent,))].state)
         # Deepest paths first: computing a belief also computes those above it.
         for path in self._nested:
             agent = path[0]
@@ -422,12 +493,13 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             known = self._heard.get(text, 0)
             self._heard[text] = len(state.chat)
             lines = state.chat[known:]
-        return self._form(state, lines)
+        self._orders[path[0]].note(state)
+        return self._form(self._orders[path[0]], state, lines)
 
-    def _form(self, state: State, lines: Sequence[tuple[int, str, str]]) -> Any:
+    def _form(self, order: KnownOrder, state: State, lines: Sequence[tuple[int, str, str]]) -> Any:
         if self._options.observations == "dict":
             return {"tick": state.tick, **belief_json(state)}
-        return self.layout.arrays(state, lines)
+        return self._bounds.arrays(order, state, lines)
 
 
 def _nested(

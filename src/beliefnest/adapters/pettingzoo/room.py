@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beliefnest.adapters.pettingzoo.layout import ObservationLayout
+from beliefnest.adapters.pettingzoo.bounds import Bounds
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.node_memory import check_depth, check_room
 from beliefnest.errors import InputError
@@ -34,21 +34,19 @@ def check_nested(context: BeliefContext, acting: Sequence[str], depth: int) -> N
     check_room(context, count, f" to depth {depth}", "choose a smaller depth of nested beliefs")
 
 
-def check_arrays(
-    context: BeliefContext, layout: ObservationLayout, acting: int, nested: int
-) -> None:
+def check_arrays(context: BeliefContext, bounds: Bounds, acting: int, nested: int) -> None:
     """Raise InputError if memory has no room for observations as arrays, and for their spaces.
 
     Args:
         context: The part that all nodes of the nest share.
-        layout: Layout of the arrays.
+        bounds: Sizes of the arrays.
         acting: Number of agents that act.
         nested: Number of further beliefs in infos.
     """
-    shapes = layout.shapes().values()
+    shapes = bounds.shapes().values()
     each = sum(math.prod(shape) * np.dtype(kind).itemsize for shape, kind, _, _ in shapes)
     limit, needed = context.memory, each * (acting * (1 + _BOUNDS) + nested)
-    sides = " x ".join(map(str, layout.box.shape))
+    sides = " x ".join(map(str, bounds.box.shape))
     if each > _MOST_BYTES:
         raise InputError(
             f"an observation as arrays would have {_megabytes(each)} in a box of {sides} blocks, "

@@ -1,0 +1,219 @@
+"""Arrays of observations: their sizes, and beliefs as arrays.
+
+Nothing here can reach the world: an array is a function of a belief and of the order in which its
+holder came to know things.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.adapters.pettingzoo.order import KINDS, KnownOrder, Things
+from beliefnest.belief.view import State
+from beliefnest.errors import InputError
+from beliefnest.world.claims import Claim
+from beliefnest.world.registry import parse_state
+from beliefnest.world.values import Box, Position
+
+__all__ = ["Arrays", "Bounds", "Layout", "Phrases"]
+
+Arrays = dict[str, npt.NDArray[Any]]
+"""An observation or a belief as arrays by name."""
+
+Phrases = Mapping[str, Sequence[Claim]]
+"""Utterances that agents can choose, with the claims of each."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layout(Things):
+    """All things of an instance, for its user; agents number those that they know.
+
+    Names are sorted, positions are in order.
+
+    Attributes:
+        box: Region of the scenario; `blocks` has its shape.
+        phrases: Texts that can be said and written on signs.
+    """
+
+    box: Box
+    phrases: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Sizes of the arrays, which are the same for all instances and agents.
+
+    Attributes:
+        box: Region of the scenario; `blocks` has its shape.
+        most: Greatest number of things of each kind.
+        phrases: Texts that can be said and written on signs.
+    """
+
+    box: Box
+    most: Mapping[str, int]
+    phrases: tuple[str, ...]
+
+    @classmethod
+    def of(cls, layouts: Iterable[Layout], given: Mapping[str, int]) -> "Bounds":
+        """Return the least bounds of several instances.
+
+        Args:
+            layouts: Layouts of instances.
+            given: Greatest numbers by kind, which replace those of the instances.
+
+        Raises:
+            InputError: A kind does not exist, a number is below 0, or boxes differ.
+        """
+        for kind, number in given.items():
+            if kind not in KINDS:
+                raise InputError(f"sizes names {kind!r}; kinds are {', '.join(KINDS)}")
+            if isinstance(number, bool) or not isinstance(number, int) or number < 0:
+                raise InputError(f"sizes gives {number!r} {kind}; give a whole number from 0 on")
+        first, *others = layouts
+        counts = [each.counts for each in (first, *others)]
+        most = {kind: max(each[kind] for each in counts) for kind in KINDS}
+        bounds = cls(first.box, {**most, **given}, first.phrases)
+        for each in others:
+            bounds.check_box(each)
+        return bounds
+
+    def check_box(self, layout: Layout) -> None:
+        """Raise InputError if an instance has another box."""
+        if layout.box.shape != self.box.shape:
+            sides = (" x ".join(map(str, each.shape)) for each in (layout.box, self.box))
+            raise InputError(
+                "an instance has a box of {} blocks, another one of {}, so that their arrays do "
+                "not fit; give all the same box, or make an environment for each".format(*sides)
+            )
+
+    def check(self, layout: Layout) -> None:
+        """Raise InputError if an instance has more things than there is room for."""
+        self.check_box(layout)
+        for kind, count in layout.counts.items():
+            if count > self.most[kind]:
+                raise InputError(
+                    f"the number of {kind} in this instance is {count}, and the arrays have room "
+                    f"for {self.most[kind]}; make the environment with sizes={{{kind!r}: {count}}}"
+                )
+
+    def shapes(self) -> dict[str, tuple[tuple[int, ...], type[np.generic], float, float]]:
+        """Return shape, type, least and greatest value of each array by name."""
+        agents, items, containers = (self.most[kind] for kind in ("agents", "items", "containers"))
+        most = float(np.iinfo(np.int32).max)
+        shapes: dict[str, tuple[tuple[int, ...], type[np.generic], float, float]] = {
+            "tick": ((), np.int32, 0, most),
+            "me": ((), np.int32, 0, max(agents - 1, 0)),
+            "agents": ((agents, 5), np.float32, -np.inf, np.inf),
+            "agents_known": ((agents, 2), np.int8, 0, 1),
+            "agents_seen": ((agents,), np.int32, -1, most),
+            "inventories": ((agents, items), np.int32, 0, most),
+            "inventories_complete": ((agents,), np.int8, 0, 1),
+            "containers": ((containers, items), np.int32, 0, most),
+            "containers_known": ((containers, 3), np.int8, 0, 1),
+            "containers_seen": ((containers,), np.int32, -1, most),
+            "blocks": (self.box.shape, np.int32, -1, most),
+            "heard": ((agents, len(self.phrases) + 1), np.int32, 0, most),
+        }
+        for name in ("levers", "buttons"):
+            if self.most[name]:
+                shapes[name] = ((self.most[name],), np.int8, -1, 1)
+        if self.most["signs"]:
+            shapes["signs"] = ((self.most["signs"],), np.int32, -1, len(self.phrases) + 1)
+        return shapes
+
+    def arrays(
+        self, order: KnownOrder, state: State, lines: Sequence[tuple[int, str, str]] = ()
+    ) -> Arrays:
+        """Return a belief as arrays; docs/pettingzoo.md describes each.
+
+        Args:
+            order: Numbers of the things in the belief.
+            state: The belief.
+            lines: Utterances heard since the previous observation: tick, speaker, text.
+
+        Raises:
+            InputError: There is no room for a thing that has come to be known.
+        """
+        self._check_room(order.things)
+        found: Arrays = {
+            name: np.zeros(shape, dtype) for name, (shape, dtype, _, _) in self.shapes().items()
+        }
+        found["tick"][...] = state.tick
+        found["me"][...] = 0 if state.owner is None else order.number("agents", state.owner)
+        _tell_agents(found, order, state)
+        _tell_containers(found, order, state)
+        for first, states in state.blocks.terrain.slabs():
+            found["blocks"][first : first + len(states)] = states
+        things = order.things
+        for name in ("levers", "buttons"):
+            if name in found:
+                found[name][:] = -1
+                for row, place in enumerate(getattr(things, name)):
+                    found[name][row] = _power(state, place)
+        if "signs" in found:
+            found["signs"][:] = -1
+            for row, place in enumerate(things.signs):
+                found["signs"][row] = self._written(state.signs.get(place))
+        for _, speaker, text in lines:
+            column = self.phrases.index(text) if text in self.phrases else len(self.phrases)
+            found["heard"][order.number("agents", speaker), column] += 1
+        return found
+
+    def _check_room(self, things: Things) -> None:
+        for kind, count in things.counts.items():
+            if count > self.most[kind]:
+                latest = getattr(things, kind)[self.most[kind]]
+                named = "; for items name it in `items`" if kind == "items" else ""
+                raise InputError(
+                    f"{latest!r} is new, and the arrays have room for {self.most[kind]} {kind}: "
+                    f"make the environment with sizes={{{kind!r}: {count}}}{named}"
+                )
+
+    def _written(self, text: str | None) -> int:
+        """Return the code of a sign's text.
+
+        -1: unknown; 0: no text; 1 to n: the phrases; n + 1: another text.
+        """
+        if not text:
+            return -1 if text is None else 0
+        known = text in self.phrases
+        return 1 + (self.phrases.index(text) if known else len(self.phrases))
+
+
+def _tell_agents(found: Arrays, order: KnownOrder, state: State) -> None:
+    found["agents_seen"][:] = -1
+    for row, name in enumerate(order.things.agents):
+        agent = state.agents[name]
+        if agent.position is not None:
+            found["agents"][row] = (*agent.position, agent.yaw, agent.pitch)
+            found["agents_known"][row] = (1, agent.current)
+        if agent.basis is not None:
+            found["agents_seen"][row] = agent.basis.observed_at
+        found["inventories_complete"][row] = agent.inventory_complete
+        _count(found["inventories"][row], order, agent.inventory)
+
+
+def _tell_containers(found: Arrays, order: KnownOrder, state: State) -> None:
+    beliefs = state.containers
+    found["containers_seen"][:] = -1
+    for row, place in enumerate(order.things.containers):
+        known = beliefs.get(place)
+        if known is not None:
+            found["containers_known"][row] = (1, known.complete, known.current)
+            found["containers_seen"][row] = known.basis.observed_at
+            _count(found["containers"][row], order, known.items)
+
+
+def _count(row: npt.NDArray[Any], order: KnownOrder, items: Mapping[str, int]) -> None:
+    for name, count in items.items():
+        row[order.number("items", name)] = count
+
+
+def _power(state: State, place: Position) -> int:
+    """Return 1 for a switch that is believed to be on, 0 for off; -1: unknown or no switch."""
+    text = state.blocks[place]
+    powered = None if text is None else parse_state(text)[1].get("powered")
+    return -1 if powered is None else int(powered == "true")

@@ -1,0 +1,158 @@
+"""Order in which an agent numbers the things of a scenario: as it came to know them.
+
+An order holds what one simulator believes and nothing else. It cannot reach the world, so that no
+number in observations and actions depends on anything that the agent has not perceived.
+"""
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from beliefnest.belief.view import State
+from beliefnest.world.doors import is_door, is_switch
+from beliefnest.world.paths import BeliefPath
+from beliefnest.world.registry import Registry
+from beliefnest.world.signs import is_sign
+from beliefnest.world.terrain import Terrain
+from beliefnest.world.values import Position
+
+__all__ = ["KINDS", "PLACED", "KnownOrder", "Things", "placed_states"]
+
+PLACED = ("containers", "doors", "levers", "buttons", "signs")
+"""Kinds of things that are blocks."""
+KINDS = ("agents", "items", *PLACED)
+"""Kinds of things that are numbered."""
+
+
+@dataclass(frozen=True)
+class Things:
+    """Things in order.
+
+    Attributes:
+        agents: Names of agents.
+        items: Names of items.
+        containers: Positions of containers.
+        doors: Positions of doors (lower half), trapdoors and gates.
+        levers: Positions of levers.
+        buttons: Positions of buttons.
+        signs: Positions of signs.
+    """
+
+    agents: tuple[str, ...] = ()
+    items: tuple[str, ...] = ()
+    containers: tuple[Position, ...] = ()
+    doors: tuple[Position, ...] = ()
+    levers: tuple[Position, ...] = ()
+    buttons: tuple[Position, ...] = ()
+    signs: tuple[Position, ...] = ()
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """Number of things of each kind."""
+        return {kind: len(getattr(self, kind)) for kind in KINDS}
+
+
+@cache
+def placed_states() -> Mapping[str, tuple[int, ...]]:
+    """Return by kind the block states of things that are blocks."""
+    registry = Registry.load()
+    found: dict[str, list[int]] = {kind: [] for kind in PLACED}
+    for name in registry.block_names:
+        kind = _kind_of(registry, name)
+        if kind is not None:
+            found[kind] += registry.state_ids(name)
+    # Leave upper halves of doors out: they move together with the lower ones.
+    found["doors"] = [
+        state for state in found["doors"] if registry.properties(state).get("half") != "upper"
+    ]
+    return {kind: tuple(states) for kind, states in found.items()}
+
+
+def _kind_of(registry: Registry, name: str) -> str | None:
+    if registry.is_container(name):
+        return "containers"
+    if is_door(name):
+        return "doors"
+    if name == "lever":
+        return "levers"
+    if is_switch(name):
+        return "buttons"
+    return "signs" if is_sign(name) else None
+
+
+@dataclass
+class KnownOrder:
+    """Order of things by the time at which an agent's beliefs first had them.
+
+    Things that it has at the same time are in the order of their names or positions. A number
+    never changes: a new thing gets the next one, and a thing that is gone keeps its own.
+
+    Args:
+        declared: Names of items that everybody knows by the rules; they come first.
+    """
+
+    declared: Collection[str] = ()
+    _known: dict[str, dict[Any, int]] = field(init=False)
+    _seen: dict[BeliefPath, tuple[Terrain, int]] = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        self._known = {kind: {} for kind in KINDS}
+        self._add("items", self.declared)
+
+    @property
+    def things(self) -> Things:
+        """The things by now, in order."""
+        return Things(**{kind: tuple(known) for kind, known in self._known.items()})
+
+    def number(self, kind: str, thing: object) -> int | None:
+        """Return the number of a thing; None: the beliefs have had no such thing so far."""
+        return self._known[kind].get(thing)
+
+    def note(self, state: State) -> None:
+        """Take in a later state of the agent's belief, or of a belief below it."""
+        terrain, (before, said) = state.blocks.terrain, self._seen.get(state.path, (None, 0))
+        self._seen[state.path] = terrain, len(state.chat)
+        self._add("agents", _agents_in(state, said))
+        self._add("items", _items_in(state))
+        self._add("containers", state.containers)
+        self._add("signs", state.signs)
+        if before is None or not _is_same(before, terrain):
+            x, y, z = state.box.low
+            for kind, states in placed_states().items():
+                cells = terrain.find(states).tolist()
+                self._add(kind, [(x + i, y + j, z + k) for i, j, k in cells])
+
+    def _add(self, kind: str, things: Iterable[Any]) -> None:
+        known = self._known[kind]
+        for thing in sorted({*things} - known.keys()):
+            known[thing] = len(known)
+
+
+def _agents_in(state: State, said: int) -> set[str]:
+    """Return the agents that a simulator has perceived or heard; `said`: lines known before."""
+    found = {
+        name
+        for name, agent in state.agents.items()
+        if agent.position is not None or agent.basis is not None or agent.inventory
+    }
+    found |= {speaker for _, speaker, _ in state.chat[said:]}
+    return found if state.owner is None else found | {state.owner}
+
+
+def _items_in(state: State) -> set[str]:
+    """Return the items that a simulator believes to exist."""
+    found = {name for each in state.containers.values() for name in each.items}
+    for agent in state.agents.values():
+        found |= {*agent.inventory, *(agent.equipment or {}).values()}
+    return found | {each.name for each in state.items.values()}
+
+
+def _is_same(known: Terrain, blocks: Terrain) -> bool:
+    """Return True if two terrains are the same; False if that would take long to find out."""
+    if known is blocks:
+        return True
+    both_small = known.is_dense and blocks.is_dense
+    return both_small and np.array_equal(known.dense(), blocks.dense())
