@@ -33,6 +33,11 @@ from beliefnest.world.texts import is_well_formed
 __all__ = ["app", "run_command_line"]
 
 _INTERRUPTED = 130
+_LONGEST_MESSAGE = 390
+"""Greatest number of characters of a message, so that its line has at most 400."""
+_END = 100
+"""Number of characters of the end of a longer message that are shown."""
+
 _BAD_USAGE = 2
 _NO_ROOM = 3
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -120,6 +125,9 @@ def _print_version(asked: bool) -> None:
 
 def _fail(message: str, status: int) -> int:
     line = printable(" ".join(message.split()))
+    if len(line) > _LONGEST_MESSAGE:
+        # What to do stands at the end.
+        line = f"{line[: _LONGEST_MESSAGE - _END - 5]} ... {line[-_END:]}"
     print(f"beliefnest: {line}", file=sys.stderr)  # noqa: T201
     return status
 

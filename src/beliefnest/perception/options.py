@@ -10,6 +10,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.world.forms import note
 from beliefnest.world.limits import FARTHEST
+from beliefnest.world.texts import quoted
 
 __all__ = [
     "HEAR_ALL",
@@ -85,7 +86,7 @@ def _hearing(value: object) -> Hearing:
             return Radius(float(spelled[1]))
         case _:
             raise InputError(
-                f"hearing is {value!r}; it must be 'global', 'sight' or {{'radius': BLOCKS}} "
+                f"hearing is {quoted(value)}; it must be 'global', 'sight' or {{'radius': BLOCKS}} "
                 "with BLOCKS above 0"
             )
 
@@ -146,28 +147,31 @@ class Perception(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         distance = self.max_visible_distance
         if distance is not None and not distance > 0:
             raise InputError(
-                f"max_visible_distance is {distance!r}; it must be above 0, or null "
+                f"max_visible_distance is {quoted(distance)}; it must be above 0, or null "
                 "(None in Python) for no limit"
             )
         if not 0 < self.field_of_view <= 360:
             raise InputError(
-                f"field_of_view is {self.field_of_view!r} degrees; it must be above 0 and up to 360"
+                f"field_of_view is {quoted(self.field_of_view)} degrees; it must be above 0 and "
+                "up to 360"
             )
         if self.containers not in ("opaque", "transparent"):
             raise InputError(
-                f"containers is {self.containers!r}; it must be 'opaque' or 'transparent'"
+                f"containers is {quoted(self.containers)}; it must be 'opaque' or 'transparent'"
             )
         if self.testimony not in ("none", "accept", "informed"):
             raise InputError(
-                f"testimony is {self.testimony!r}; it must be 'none', 'accept' or 'informed'"
+                f"testimony is {quoted(self.testimony)}; it must be 'none', 'accept' or 'informed'"
             )
         if not isinstance(self.grace, int) or isinstance(self.grace, bool) or self.grace < 0:
-            raise InputError(f"grace is {self.grace!r}; it must be a whole number of ticks from 0")
+            raise InputError(
+                f"grace is {quoted(self.grace)}; it must be a whole number of ticks from 0"
+            )
         speech = self.speech_ticks
         if not isinstance(speech, int) or isinstance(speech, bool) or speech < 0:
-            raise InputError(f"speech_ticks is {speech!r}; it must be a whole number from 0")
+            raise InputError(f"speech_ticks is {quoted(speech)}; it must be a whole number from 0")
         if not isinstance(self.sincere, bool):
-            raise InputError(f"sincere is {self.sincere!r}; it must be True or False")
+            raise InputError(f"sincere is {quoted(self.sincere)}; it must be True or False")
         msgspec.structs.force_setattr(self, "hearing", _hearing(self.hearing))
         msgspec.structs.force_setattr(
             self, "transparent_blocks", tuple(sorted(set(self.transparent_blocks)))

@@ -11,10 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.errors import BeliefNestError, ScenarioError
+from beliefnest.world.texts import quoted, shortened
 
 __all__ = [
     "LABELLED",
+    "MAX_CHARACTERS",
     "MAX_DEPTH",
+    "MAX_VALUES",
     "Document",
     "KeyPath",
     "YamlNode",
@@ -26,6 +29,12 @@ __all__ = [
 
 MAX_DEPTH = 40
 """Greatest nesting depth of lists and mappings."""
+
+MAX_VALUES = 50_000
+"""Greatest number of values and keys of a document, aliases and parameters filled in."""
+
+MAX_CHARACTERS = 16 * 2**20
+"""Greatest number of characters of all texts of a document, aliases and parameters filled in."""
 
 LABELLED = ("script", "probes", "expectations")
 """Lists whose entries a condition may change one by one, by label."""
@@ -107,7 +116,7 @@ class Document:
 def _key_text(path: KeyPath, origin: str = "") -> str:
     text = origin
     for key in path:
-        text += f"[{key}]" if isinstance(key, int) else f".{key}"
+        text += f"[{quoted(key)}]" if isinstance(key, int) else f".{shortened(str(key))}"
     return f"{text.removeprefix('.')}: " if text else ""
 
 
@@ -192,7 +201,7 @@ def _check_labels(document: Document, path: KeyPath, entries: YamlNode, change: 
     for label in change.value:
         if labels.count(label) != 1:
             found = "several entries are" if label in labels else "no entry is"
-            written = ", ".join(repr(known) for known in labels if known)
+            written = ", ".join(quoted(known) for known in labels if known)
             raise document.fault(
                 (*path, label), f"{found} labelled so; labels are {written or 'not given'}"
             )

@@ -8,7 +8,7 @@ from beliefnest.errors import InputError, ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain
 from beliefnest.scenarios.format import ScenarioFile, WrittenFile
 from beliefnest.scenarios.json_schema import allowed_keys, allowed_values
-from beliefnest.world.texts import is_well_formed
+from beliefnest.world.texts import is_well_formed, quoted, shortened
 from beliefnest.world.words import nearest_or_all
 
 __all__ = ["check_form", "check_written"]
@@ -19,6 +19,9 @@ _UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.
 _MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
 
 _Form = type[ScenarioFile] | type[WrittenFile]
+
+_LONGEST_FAULT = 160
+"""Greatest number of characters of a fault that the validation found; it may quote the value."""
 
 _MOST_BITS = 64
 """Bits of whole numbers that messages repeat; Python refuses to format very long ones."""
@@ -78,16 +81,16 @@ def _error_of(root: YamlNode, form: _Form) -> str:
 def _fault(document: Document, error: str, form: _Form) -> ScenarioError:
     match = _FAULT.fullmatch(error)
     if match is None:
-        return document.fault((), error)
+        return document.fault((), shortened(error, _LONGEST_FAULT))
     what = match["what"]
     steps = [step.groupdict() for step in _FAULT_STEP.finditer(match["path"] or "$")]
     path = _locate(document.root, steps, error, form)
     if unknown := _UNKNOWN_FIELD.fullmatch(what):
         name = unknown["name"]
-        return document.fault((*path, name), f"unknown key{_hint(name, path)}")
+        return document.fault((*path, name), f"unknown key{_hint(shortened(name), path)}")
     if missing := _MISSING_FIELD.fullmatch(what):
         return document.fault(path, f"the key {missing['name']!r} is missing")
-    what = what[:1].lower() + what[1:].replace("`", "'")
+    what = shortened(what[:1].lower() + what[1:].replace("`", "'"), _LONGEST_FAULT)
     if match["key"]:
         quotes = "; put it into quotes" if what.startswith("expected 'str'") else ""
         return document.fault(path, f"a key in it: {what}{quotes}")
@@ -101,7 +104,7 @@ def _found(root: YamlNode, path: KeyPath, what: str) -> str:
         isinstance(value, int) and value.bit_length() <= _MOST_BITS
     )
     told = not what.startswith("expected") or ", got" in what
-    return f", got {value!r}" if is_short and not told else ""
+    return f", got {quoted(value)}" if is_short and not told else ""
 
 
 def _allowed(path: KeyPath, what: str) -> str:
@@ -117,7 +120,7 @@ def _hint(name: str, path: KeyPath) -> str:
     allowed = allowed_keys(path)
     inner = [key for key in allowed if name in allowed_keys((*path, key))]
     if inner:
-        return f"; it stands under {inner[0]!r}"
+        return f"; it stands under {quoted(inner[0])}"
     return nearest_or_all(name, allowed, "keys are")
 
 

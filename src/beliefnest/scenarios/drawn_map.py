@@ -20,6 +20,7 @@ from beliefnest.world.cuboids import cuboids
 from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Position
 
 __all__ = ["with_map"]
@@ -262,7 +263,7 @@ class _Drawing:
                     if character not in self._legend:
                         known = " ".join(self._legend)
                         raise self._wrong(
-                            cell, f"{character!r} is not in the legend, which has {known}"
+                            cell, f"{quoted(character)} is not in the legend, which has {known}"
                         )
                     yield cell
 
@@ -416,7 +417,7 @@ class _Drawing:
                 continue
             if name in first:
                 other = self._place(first[name].floor, first[name].row, first[name].column)
-                raise self._wrong(cell, f"{key} {name!r} is drawn twice; first at {other}")
+                raise self._wrong(cell, f"{key} {quoted(name)} is drawn twice; first at {other}")
             first[name] = cell
             yield name, cell
 

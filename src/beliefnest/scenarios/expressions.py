@@ -10,6 +10,7 @@ import operator
 from collections.abc import Callable, Mapping
 
 from beliefnest.errors import InputError
+from beliefnest.world.texts import quoted
 
 __all__ = ["evaluate", "names_in"]
 
@@ -70,7 +71,7 @@ def evaluate(text: str, values: Mapping[str, object]) -> object:
     try:
         return _value(body, values, text)
     except (TypeError, ArithmeticError, LookupError, ValueError) as error:
-        raise InputError(f"{text!r} cannot be computed: {error}") from None
+        raise InputError(f"{quoted(text)} cannot be computed: {error}") from None
 
 
 @functools.lru_cache(maxsize=1024)
@@ -80,7 +81,7 @@ def _parsed(text: str) -> ast.expr:
     try:
         return ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError):
-        raise InputError(f"{text!r} is no expression") from None
+        raise InputError(f"{quoted(text)} is no expression") from None
 
 
 # One return for each allowed kind of node.
@@ -95,7 +96,9 @@ def _value(  # noqa: PLR0911
             return value
         case ast.Name(id=name):
             if name not in values:
-                raise InputError(f"{text!r} names {name!r}; there are {', '.join(values)}")
+                raise InputError(
+                    f"{quoted(text)} names {quoted(name)}; there are {', '.join(values)}"
+                )
             return values[name]
         case ast.List(elts=parts) | ast.Tuple(elts=parts):
             return [inner(part) for part in parts]
@@ -113,13 +116,13 @@ def _value(  # noqa: PLR0911
         case ast.Call(func=ast.Name(id=name), args=parts, keywords=[]) if name in _CALLS:
             return _CALLS[name](*(inner(part) for part in parts))
     written = ast.unparse(node)
-    raise InputError(f"{text!r}: {written!r} is not allowed in an expression")
+    raise InputError(f"{quoted(text)}: {quoted(written)} is not allowed in an expression")
 
 
 def _compared(left: object, ops: list[ast.cmpop], others: list[object], text: str) -> bool:
     for op, right in zip(ops, others, strict=True):
         if type(op) not in _COMPARE:
-            raise InputError(f"{text!r}: compare with ==, !=, <, <=, >, >=, in, not in")
+            raise InputError(f"{quoted(text)}: compare with ==, !=, <, <=, >, >=, in, not in")
         if not _COMPARE[type(op)](_plain(left), _plain(right)):
             return False
         left = right
@@ -134,7 +137,7 @@ def _plain(value: object) -> object:
 def _number(value: object) -> object:
     """Return a number; refuse texts, since a text times a number could have any length."""
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"{value!r} is no number")
+        raise TypeError(f"{quoted(value)} is no number")
     return value
 
 
@@ -143,4 +146,4 @@ def _element(whole: object, index: object) -> object:
         return whole[index]
     if isinstance(whole, dict):
         return whole[index]
-    raise TypeError(f"{whole!r} has no element {index!r}")
+    raise TypeError(f"{quoted(whole)} has no element {quoted(index)}")

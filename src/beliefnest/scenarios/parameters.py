@@ -8,16 +8,26 @@ out, lists with commas, so that `new Vec3(${spot})` is a position.
 import json
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, under, wrapped
+from beliefnest.scenarios.document import (
+    MAX_CHARACTERS,
+    MAX_VALUES,
+    Document,
+    KeyPath,
+    YamlNode,
+    plain,
+    under,
+    wrapped,
+)
 from beliefnest.scenarios.expressions import evaluate, names_in
 from beliefnest.scenarios.format import ParameterEntry
+from beliefnest.world.texts import quoted, shortened
 
 __all__ = [
     "broken_constraint",
@@ -83,7 +93,8 @@ def _declared(document: Document, name: object, entry: YamlNode) -> ParameterEnt
     except msgspec.ValidationError as error:
         raise document.fault(
             path,
-            f"{error}; write {{default: ..., values: [...]}} or {{default: ..., range: [...]}}",
+            f"{shortened(str(error), 200)}; write {{default: ..., values: [...]}} or "
+            "{default: ..., range: [...]}",
         ) from None
     if found.values and found.range is not None:
         raise document.fault(path, "give 'values' or 'range', not both")
@@ -137,7 +148,9 @@ def check_declared(
     unknown = [name for name in given if name not in declared]
     if unknown:
         known = ", ".join(declared) or "none"
-        raise document.fault((), f"there is no parameter {unknown[0]!r}; declared are {known}")
+        raise document.fault(
+            (), f"there is no parameter {quoted(unknown[0])}; declared are {known}"
+        )
 
 
 def with_parameters(
@@ -163,7 +176,7 @@ def with_parameters(
     broken = broken_constraint(document, values, condition)
     if broken is not None:
         chosen = ", ".join(f"{name} {json.dumps(value)}" for name, value in values.items())
-        raise document.fault(("constraints",), f"{broken!r} does not hold for {chosen}")
+        raise document.fault(("constraints",), f"{quoted(broken)} does not hold for {chosen}")
     root = _Filling(document, values).node(_without_declarations(document.root), ())
     return replace(document, root=root)
 
@@ -200,8 +213,26 @@ class _Filling:
     def __init__(self, document: Document, values: Mapping[str, object]) -> None:
         self._document = document
         self._values = values
+        self._count = self._characters = 0
 
     def node(self, node: YamlNode, path: KeyPath) -> YamlNode:
+        filled = self._filled(node, path)
+        self._check_size(filled, path)
+        return filled
+
+    def _check_size(self, node: YamlNode, path: KeyPath) -> None:
+        """Refuse a value that makes the document larger than a file may be."""
+        self._count += 1
+        if isinstance(node.value, str):
+            self._characters += len(node.value)
+        if self._count > MAX_VALUES or self._characters > MAX_CHARACTERS:
+            raise self._document.fault(
+                path,
+                f"makes more than {MAX_VALUES:,} values or {MAX_CHARACTERS:,} characters of the "
+                "file; insert less",
+            )
+
+    def _filled(self, node: YamlNode, path: KeyPath) -> YamlNode:
         if isinstance(node.value, dict):
             filled = {}
             for key, child in node.value.items():
@@ -217,7 +248,12 @@ class _Filling:
         if whole is None:
             return YamlNode(self._text(node.value, path), node.line)
         found = self._found(whole, path)
-        return node if found is None else _on_line(wrapped(found[0]), node.line)
+        if found is None:
+            return node
+        value = _on_line(wrapped(found[0]), node.line)
+        for part in _parts(value):
+            self._check_size(part, path)
+        return value
 
     def _text(self, text: str, path: KeyPath) -> str:
         if "${" not in text:
@@ -241,6 +277,14 @@ class _Filling:
         with self._document.naming(path):
             return (evaluate(hole[1], self._values),)
         raise AssertionError("unreachable")
+
+
+def _parts(node: YamlNode) -> Iterator[YamlNode]:
+    """Yield all values inside a value."""
+    inner = node.value.values() if isinstance(node.value, dict) else node.value
+    for part in inner if isinstance(inner, list) or isinstance(node.value, dict) else ():
+        yield part
+        yield from _parts(part)
 
 
 def _on_line(node: YamlNode, line: int) -> YamlNode:

@@ -7,6 +7,7 @@ from pathlib import Path
 from beliefnest.errors import UnknownNameError
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.yaml_reading import read_yaml
+from beliefnest.world.texts import quoted
 
 __all__ = ["builtin_file", "builtin_names", "read_document"]
 
@@ -40,7 +41,7 @@ def read_document(name_or_path: str) -> Document:
     looks_like_path = path.suffix in _SUFFIXES or len(path.parts) > 1
     if not path.name or (not looks_like_path and not path.exists()):
         raise UnknownNameError(
-            f"there is no scenario {name_or_path!r}; built in are {', '.join(names)}, "
+            f"there is no scenario {quoted(name_or_path)}; built in are {', '.join(names)}, "
             "or give the path of a .yaml file"
         )
     return read_yaml(path)

@@ -10,9 +10,10 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.scalarstring import LiteralScalarString
 
 from beliefnest.errors import InputError, ScenarioError
+from beliefnest.scenarios.document import MAX_VALUES
 from beliefnest.scenarios.loading import scenario_in
 from beliefnest.scenarios.terrain_entry import entry_of
-from beliefnest.scenarios.yaml_reading import LONGEST, MAX_VALUES, parse_yaml
+from beliefnest.scenarios.yaml_reading import LONGEST, parse_yaml
 from beliefnest.world.cuboids import cuboids, distinct_cells
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry

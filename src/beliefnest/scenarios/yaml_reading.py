@@ -16,14 +16,21 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode
 from beliefnest.errors import ScenarioError
 from beliefnest.files import decode_json, read_regular_text
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
-from beliefnest.scenarios.document import MAX_DEPTH, Document, KeyPath, YamlNode
+from beliefnest.scenarios.document import (
+    MAX_CHARACTERS,
+    MAX_DEPTH,
+    MAX_VALUES,
+    Document,
+    KeyPath,
+    YamlNode,
+)
+from beliefnest.world.texts import quoted, shortened
 
-__all__ = ["LONGEST", "MAX_VALUES", "parse_yaml", "read_yaml", "template_text", "templates_file"]
+__all__ = ["LONGEST", "parse_yaml", "read_yaml", "template_text", "templates_file"]
 
-MAX_VALUES = 50_000
-"""Greatest number of values and keys of a scenario file."""
 LONGEST = 16 * 2**20
 """Greatest size of a scenario file in bytes."""
+_LONGEST_PROBLEM = 200
 _NO_KEY = "a key is no text; put it into quotes"
 _FLOW = ("while parsing a flow mapping", "while parsing a flow sequence")
 _IN_BRACES = (
@@ -34,6 +41,13 @@ _TOO_MUCH = (
     f"holds more than {MAX_VALUES} values or is nested more than {MAX_DEPTH} deep, "
     "aliases counted in"
 )
+_TOO_LONG = f"has texts of more than {MAX_CHARACTERS:,} characters, aliases counted in"
+_REFUSALS = (
+    *(ArithmeticError, AssertionError, AttributeError, LookupError, NotImplementedError),
+    *(RecursionError, TypeError, ValueError),
+)
+"""Exceptions that the parser raises instead of its own for content that it did not foresee, such as
+a merge key that is an alias of itself, or an escape of no character."""
 
 
 def read_yaml(path: Path) -> Document:
@@ -71,7 +85,8 @@ def template_text(document: Document, path: KeyPath, name: str) -> str:
         return read_regular_text(file)
     except FileNotFoundError:
         message = (
-            f"there is no template {name!r}; give a file beside the scenario, or the name of a "
+            f"there is no template {quoted(name)}; give a file beside the scenario, or the name "
+            "of a "
             f"built-in template: {', '.join(BUILT_IN_TEMPLATES)}"
         )
         raise document.fault(path, message) from None
@@ -94,19 +109,28 @@ def parse_yaml(text: str, source: str) -> Document:
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = f":{mark.line + 1}" if mark is not None else ""
-        problem = " ".join((error.problem or "it cannot be parsed").split())
+        problem = shortened(error.problem or "it cannot be parsed", _LONGEST_PROBLEM)
         hint = _IN_BRACES if error.context in _FLOW else ""
         raise ScenarioError(f"{source}{line}: broken YAML: {problem}{hint}") from None
-    except (TypeError, ValueError) as error:
+    except _REFUSALS as error:
         # The parser builds collections late, when it no longer knows their lines.
-        said = " ".join(str(error).split())
-        raise ScenarioError(f"{source}: broken YAML: a key or value cannot be: {said}") from None
+        raise ScenarioError(
+            f"{source}: broken YAML: a key or value cannot be: {_said(error)}"
+        ) from None
     except YAMLError as error:
-        raise ScenarioError(f"{source}: broken YAML: {' '.join(str(error).split())}") from None
+        said = shortened(str(error), _LONGEST_PROBLEM)
+        raise ScenarioError(f"{source}: broken YAML: {said}") from None
     if not isinstance(content, CommentedMap):
         raise ScenarioError(f"{source}: is not a mapping of keys to values")
     root = _Conversion(source).node(content, 1, 0)
     return Document(source=source, root=root, folder=Path(), text=text)
+
+
+def _said(error: Exception) -> str:
+    """Return what an exception of the parser says of a value."""
+    if isinstance(error, TypeError | ValueError | OverflowError):
+        return shortened(str(error).partition(";")[0])
+    return "it contains itself, or is no value of the type that its tag names"
 
 
 def _text(path: Path) -> str:
@@ -161,8 +185,8 @@ class _Constructor(RoundTripConstructor):
     def construct_object(self, node: Any, deep: bool = False) -> Any:
         try:
             return super().construct_object(node, deep)
-        except (ValueError, OverflowError, TypeError) as error:
-            problem = f"a value cannot be read: {str(error).partition(';')[0]}"
+        except _REFUSALS as error:
+            problem = f"a value cannot be read: {_said(error)}"
             raise ConstructorError(None, None, problem, node.start_mark) from None
 
 
@@ -175,6 +199,13 @@ class _Conversion:
     def __init__(self, source: str) -> None:
         self._source = source
         self._values = 0
+        self._characters = 0
+
+    def _count(self, text: object, line: int) -> None:
+        if isinstance(text, str):
+            self._characters += len(text)
+            if self._characters > MAX_CHARACTERS:
+                raise ScenarioError(f"{self._source}:{line}: {_TOO_LONG}")
 
     def node(self, value: object, line: int, depth: int) -> YamlNode:
         self._values += 1
@@ -186,6 +217,7 @@ class _Conversion:
                 if not isinstance(_scalar(key), str | int | float | None):
                     place = f"{self._source}:{_line(lines, key, line)}"
                     raise ScenarioError(f"{place}: {_NO_KEY}")
+                self._count(key, line)
             return YamlNode(
                 {
                     _scalar(key): self.node(child, _line(lines, key, line), depth + 1)
@@ -202,6 +234,7 @@ class _Conversion:
                 ],
                 line,
             )
+        self._count(value, line)
         return YamlNode(_scalar(value), line)
 
 

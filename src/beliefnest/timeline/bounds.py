@@ -70,7 +70,7 @@ class Bounds:
             if name not in self.agents:
                 raise StoreError(f"an entry names the unknown agent {quoted(name)}")
             if agent is not None and (fault := agent_fault(agent, self.registry)):
-                raise StoreError(f"an entry has agent {name!r} as it cannot be: {fault}")
+                raise StoreError(f"an entry has agent {quoted(name)} as it cannot be: {fault}")
 
     def check_path(self, path: BeliefPath) -> None:
         """Raise StoreError if a path names an unknown agent, or one twice in a row."""

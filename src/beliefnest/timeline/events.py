@@ -8,6 +8,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.event_kinds import EventDetail, EventKind, Sense
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Event
 
 __all__ = ["event_from"]
@@ -29,36 +30,40 @@ def event_from(
             type.
     """
     if kind not in set(EventKind):
-        raise InputError(f"unknown event {kind!r}; events are {', '.join(EventKind)}")
+        raise InputError(f"unknown event {quoted(kind)}; events are {', '.join(EventKind)}")
     known = EventKind(kind)
     if actor is None and known.traits.sense is not Sense.PLACE:
-        raise InputError(f"event {kind!r} has no actor; name the agent who did it")
+        raise InputError(f"event {quoted(kind)} has no actor; name the agent who did it")
     try:
         typed = msgspec.convert(detail, EventDetail)
     except msgspec.ValidationError as fault:
-        raise InputError(f"detail of event {kind!r}: {fault}") from fault
+        raise InputError(f"detail of event {quoted(kind)}: {fault}") from fault
     given = msgspec.structs.asdict(typed)
     values = {name: value for name, value in given.items() if value is not msgspec.UNSET}
     missing = [name for name in known.traits.needs if name not in values]
     if missing:
-        raise InputError(f"event {kind!r} lacks the detail {', '.join(missing)}")
+        raise InputError(f"event {quoted(kind)} lacks the detail {', '.join(missing)}")
     if "to" in values and known is not EventKind.CHAT:
-        raise InputError(f"event {kind!r} has the detail 'to', which only a whispered chat has")
+        raise InputError(
+            f"event {quoted(kind)} has the detail 'to', which only a whispered chat has"
+        )
     if "claims" in values:
         if known is not EventKind.CHAT and not (
             known is EventKind.BLOCK_UPDATE and "text" in values
         ):
             raise InputError(
-                f"event {kind!r} has the detail 'claims', which only a chat and a block_update "
+                f"event {quoted(kind)} has the detail 'claims', which only a chat and a "
+                "block_update "
                 "with the text of a sign have"
             )
         values["claims"] = tuple(claim.plain() for claim in claims_from_plain(values["claims"]))
     elif "claims_from" in values:
-        raise InputError(f"event {kind!r} has the detail 'claims_from' without 'claims'")
+        raise InputError(f"event {quoted(kind)} has the detail 'claims_from' without 'claims'")
     for name in (actor, values.get("other"), values.get("to")):
         if name is not None and name not in agents:
             known_agents = ", ".join(sorted(agents))
             raise InputError(
-                f"event {kind!r} names an unknown agent {name!r}; agents are {known_agents}"
+                f"event {quoted(kind)} names an unknown agent {quoted(name)}; agents are "
+                f"{known_agents}"
             )
     return Event(known, actor, values)

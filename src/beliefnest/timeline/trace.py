@@ -36,6 +36,7 @@ from beliefnest.world.limits import (
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
 from beliefnest.world.terrain import Terrain
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
     AgentState,
@@ -341,7 +342,7 @@ class _Reader:
         for name, count in items.items():
             self._registry.item_stack(name)
             if count < 1:
-                raise InputError(f"{count} of item {name!r}; counts must be positive")
+                raise InputError(f"{count} of item {quoted(name)}; counts must be positive")
         _check(items_fault(items, self._registry, slots, holder))
         return dict(items)
 
@@ -361,26 +362,28 @@ class _Reader:
 
     def _agent(self, name: str, line: _AgentLine | None) -> AgentState | None:
         if name not in self.names:
-            raise InputError(f"unknown agent {name!r}; list every agent in the first line")
+            raise InputError(f"unknown agent {quoted(name)}; list every agent in the first line")
         if line is None:
             return None
         given = {k: v for k, v in msgspec.structs.asdict(line).items() if v is not None}
         before = self._agents.get(name)
         if before is None and line.position is None:
-            raise InputError(f"agent {name!r} appears without a position; give one")
+            raise InputError(f"agent {quoted(name)} appears without a position; give one")
         if line.position is not None:
             self._inside(line.position)
         numbers = (line.yaw, line.pitch, line.health, line.food)
         if not all(math.isfinite(number) for number in numbers if number is not None):
             raise InputError(
-                f"agent {name!r} has a yaw, pitch, health or food that is not a finite number"
+                f"agent {quoted(name)} has a yaw, pitch, health or food that is not a finite number"
             )
-        self._items(line.inventory or {}, _AGENT_SLOTS, f"agent {name!r}")
+        self._items(line.inventory or {}, _AGENT_SLOTS, f"agent {quoted(name)}")
         for slot, item in (line.equipment or {}).items():
             self._registry.item_stack(item)
             if slot not in EQUIPMENT_SLOTS:
                 slots = ", ".join(EQUIPMENT_SLOTS)
-                raise InputError(f"agent {name!r} has an unknown slot {slot!r}; slots are {slots}")
+                raise InputError(
+                    f"agent {quoted(name)} has an unknown slot {quoted(slot)}; slots are {slots}"
+                )
         return AgentState(**given) if before is None else replace(before, **given)
 
     def _inside(self, point: Point) -> None:
@@ -408,7 +411,8 @@ class _Reader:
         names = [self._registry.name(state) for state in states]
         if kind in AT_CONTAINERS and not any(map(self._registry.is_container, names)):
             raise InputError(
-                f"event {kind.value!r}: the block at {place} is {names[-1]}, which holds no items"
+                f"event {quoted(kind.value)}: the block at {place} is {names[-1]}, which holds "
+                "no items"
             )
 
 

@@ -15,6 +15,7 @@ import msgspec
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Event, EventKind, Point, Position, Sign, block_at
 
 __all__ = [
@@ -93,7 +94,7 @@ class Claim:
             InputError: The place is not a point, or the name is empty.
         """
         if not isinstance(agent, str) or not agent:
-            raise InputError(f"a claim about an agent names {agent!r}; give an agent's name")
+            raise InputError(f"a claim about an agent names {quoted(agent)}; give an agent's name")
         return Claim(ClaimKind.POSITION, _point(place), agent=agent)
 
     @staticmethod
@@ -110,7 +111,9 @@ class Claim:
             UnknownNameError: There is no such block, property or value.
         """
         if not isinstance(state, str):
-            raise InputError(f"a claim about a block says {state!r}; write name[property=value]")
+            raise InputError(
+                f"a claim about a block says {quoted(state)}; write name[property=value]"
+            )
         return Claim(ClaimKind.BLOCK, _block_position(place), state=_stated(state))
 
     @property
@@ -168,7 +171,7 @@ class _Plain(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         needed = {"position": "agent", "block": "state"}.get(self.kind, "item")
         for name in (needed, "place"):
             if getattr(self, name) is None:
-                raise InputError(f"a claim of kind {self.kind!r} lacks {name!r}")
+                raise InputError(f"a claim of kind {quoted(self.kind)} lacks {quoted(name)}")
         match self.kind:
             case "located":
                 return Claim.located(self.item, self.place)
@@ -188,13 +191,13 @@ def claims_from_plain(plain: object) -> tuple[Claim, ...]:
         UnknownNameError: There is no such item or block.
     """
     if not isinstance(plain, list | tuple):
-        raise InputError(f"claims are {plain!r}; give a list of claims")
+        raise InputError(f"claims are {quoted(plain)}; give a list of claims")
     return tuple(_claim(number, each) for number, each in enumerate(plain, 1))
 
 
 def _claim(number: int, plain: object) -> Claim:
     if not isinstance(plain, Mapping):
-        raise InputError(f"claim {number} is {plain!r}, which is no claim")
+        raise InputError(f"claim {number} is {quoted(plain)}, which is no claim")
     try:
         return msgspec.convert(plain, _Plain).value()
     except msgspec.ValidationError as fault:
@@ -234,12 +237,13 @@ def with_claims(
     """
     told: object = claims
     if isinstance(told, str) or not isinstance(told, Iterable):
-        raise InputError(f"claims are {told!r}; give a list of claims, [] for none")
+        raise InputError(f"claims are {quoted(told)}; give a list of claims, [] for none")
     given = tuple(told)
     for claim in given:
         if not isinstance(claim, Claim):
             raise InputError(
-                f"{claim!r} is no claim; make one with Claim.located, absent, position or block"
+                f"{quoted(claim)} is no claim; make one with Claim.located, absent, position or "
+                "block"
             )
         claim.check(box, agents)
     plain = {"claims": tuple(claim.plain() for claim in given)} if given else {}
@@ -248,7 +252,7 @@ def with_claims(
 
 def _item(name: str) -> str:
     if not isinstance(name, str):
-        raise InputError(f"a claim is about the item {name!r}; give an item's name")
+        raise InputError(f"a claim is about the item {quoted(name)}; give an item's name")
     Registry.load().item_stack(name)
     return name.removeprefix("minecraft:")
 
@@ -271,7 +275,7 @@ def _stated(text: str) -> str:
 def _block_position(place: object) -> Position:
     point = _point(place)
     if any(value != math.floor(value) for value in point):
-        raise InputError(f"a claim is about the block at {place!r}; give three whole numbers")
+        raise InputError(f"a claim is about the block at {quoted(place)}; give three whole numbers")
     x, y, z = (int(value) for value in point)
     return (x, y, z)
 
@@ -279,6 +283,6 @@ def _block_position(place: object) -> Position:
 def _point(place: object) -> Point:
     values = tuple(place) if isinstance(place, Iterable) else ()
     if len(values) != 3 or not all(isinstance(v, int | float) and math.isfinite(v) for v in values):
-        raise InputError(f"a claim is about the place {place!r}; give three finite numbers")
+        raise InputError(f"a claim is about the place {quoted(place)}; give three finite numbers")
     x, y, z = (float(value) for value in values)
     return (x, y, z)

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Iterable
 
 from beliefnest.errors import PathError
+from beliefnest.world.texts import quoted
 
 __all__ = [
     "AND_BELOW",
@@ -21,8 +22,6 @@ AND_BELOW = "**"
 """Last part of a path pattern. It means the node and everything below it; alone it means every
 belief."""
 
-_LONGEST_TOLD = 100
-
 _DEEPEST = 50
 """Greatest number of names in a path. Each name adds a state, which is computed from those
 before it."""
@@ -40,17 +39,17 @@ def parse_path(text: str, agents: Collection[str]) -> BeliefPath:
 def _parsed(text: str, written: str, agents: Collection[str]) -> BeliefPath:
     """Parse a path; `written` is the text that messages quote."""
     if not isinstance(text, str) or not text.startswith("/"):
-        raise PathError(f"{_short(written)} is not a belief path; write '/' or '/agent/agent'")
+        raise PathError(f"{quoted(written)} is not a belief path; write '/' or '/agent/agent'")
     if text == "/":
         return ()
     names = text[1:].removesuffix("/").split("/")
     if "" in names:
-        raise PathError(f"{_short(written)} is not a belief path: a name between slashes is empty")
+        raise PathError(f"{quoted(written)} is not a belief path: a name between slashes is empty")
     for name in names:
         if name not in agents:
             there = ", ".join(sorted(agents))
             raise PathError(
-                f"{_short(written)} names an unknown agent {_short(name)}; agents are {there}"
+                f"{quoted(written)} names an unknown agent {quoted(name)}; agents are {there}"
             )
     return normalised(names)
 
@@ -66,7 +65,7 @@ def parse_pattern(text: str, agents: Collection[str]) -> BeliefPath:
     above = text.removesuffix(f"/{AND_BELOW}")
     if above == text or AND_BELOW in above.split("/"):
         raise PathError(
-            f"{_short(text)} is not a belief path: '/{AND_BELOW}' may only stand at its end, once"
+            f"{quoted(text)} is not a belief path: '/{AND_BELOW}' may only stand at its end, once"
         )
     return (*_parsed(above or "/", text, agents), AND_BELOW)
 
@@ -82,7 +81,7 @@ def normalised(names: Iterable[str]) -> BeliefPath:
         if not path or path[-1] != name:
             path.append(name)
     if len(path) > _DEEPEST:
-        short = _short(path_text(path))
+        short = quoted(path_text(path))
         raise PathError(f"{short} is {len(path)} beliefs deep; at most {_DEEPEST} are possible")
     return tuple(path)
 
@@ -100,9 +99,3 @@ def paths_below(root: BeliefPath, depth: int, agents: Iterable[str]) -> list[Bel
         level = [(*path, name) for path in level for name in names if path[-1:] != (name,)]
         found = found + level
     return found
-
-
-def _short(text: object) -> str:
-    """Return the text for a message, shortened if it is long."""
-    written = repr(text)
-    return written if len(written) <= _LONGEST_TOLD else f"{written[:_LONGEST_TOLD]}..."

@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 from beliefnest.errors import BodyError, InputError, UnknownNameError
 from beliefnest.world.bundled import Bundled, read_bundled
+from beliefnest.world.texts import quoted
 
 __all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "block_name", "parse_state"]
 
@@ -75,7 +76,7 @@ class _Block:
             value = chosen.get(name, default)
             if value not in values:
                 raise UnknownNameError(
-                    f"block {self.name!r} has no {name}={value}; "
+                    f"block {quoted(self.name)} has no {name}={value}; "
                     f"{name} is one of {', '.join(values)}"
                 )
             offset = offset * len(values) + values.index(value)
@@ -147,7 +148,9 @@ class Registry:
         for property_name in chosen:
             if property_name not in known:
                 has = f"it has {', '.join(known)}" if known else "it has none"
-                raise UnknownNameError(f"block {name!r} has no property {property_name!r}; {has}")
+                raise UnknownNameError(
+                    f"block {quoted(name)} has no property {quoted(property_name)}; {has}"
+                )
         return block.state_id(chosen)
 
     def text(self, state_id: int) -> str:
@@ -255,7 +258,7 @@ class Registry:
         bare = _bare(name)
         if bare not in self._items:
             raise UnknownNameError(
-                f"no item {name!r} in Minecraft {self.version}"
+                f"no item {quoted(name)} in Minecraft {self.version}"
                 f"{_nearest(bare, self._items) or _EXAMPLES}"
             )
         return self._items[bare]
@@ -263,7 +266,7 @@ class Registry:
     def _block(self, name: str) -> _Block:
         if name not in self._blocks:
             raise UnknownNameError(
-                f"no block {name!r} in Minecraft {self.version}{_nearest(name, self._blocks)}"
+                f"no block {quoted(name)} in Minecraft {self.version}{_nearest(name, self._blocks)}"
             )
         return self._blocks[name]
 
@@ -297,15 +300,15 @@ def parse_state(text: str) -> tuple[str, dict[str, str]]:
     """Parse a block state text into name and chosen properties; InputError if it is invalid."""
     match = _STATE_TEXT.fullmatch(text.strip())
     if match is None:
-        raise InputError(f"{text!r} is not a block; write name or name[property=value,...]")
+        raise InputError(f"{quoted(text)} is not a block; write name or name[property=value,...]")
     name, inner = match.groups()
     chosen: dict[str, str] = {}
     for part in inner.split(",") if inner else ():
         pair = _PROPERTY_TEXT.fullmatch(part)
         if pair is None:
-            raise InputError(f"{part!r} in {text!r} is not of the form property=value")
+            raise InputError(f"{quoted(part)} in {quoted(text)} is not of the form property=value")
         if pair[1] in chosen:
-            raise InputError(f"{text!r} gives {pair[1]!r} twice; give it once")
+            raise InputError(f"{quoted(text)} gives {quoted(pair[1])} twice; give it once")
         chosen[pair[1]] = pair[2]
     return name, chosen
 

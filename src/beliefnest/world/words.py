@@ -4,6 +4,7 @@ import difflib
 from collections.abc import Iterable, Sequence
 
 from beliefnest.world.signs import is_sign
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items
 
 __all__ = [
@@ -126,4 +127,4 @@ def nearest_or_all(name: str, known: Sequence[str], listing: str = "there are") 
         listing: Words before the list of all names.
     """
     close = difflib.get_close_matches(name, known, n=1)
-    return f"; did you mean {close[0]!r}?" if close else f"; {listing} {', '.join(known)}"
+    return f"; did you mean {quoted(close[0])}?" if close else f"; {listing} {', '.join(known)}"
