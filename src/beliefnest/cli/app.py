@@ -390,6 +390,14 @@ def reproduce(
     page: Annotated[
         Path | None, typer.Option(help="Write the table to this Markdown file.")
     ] = None,
+    trust: Annotated[
+        bool,
+        typer.Option(
+            "--trust",
+            help="Run the Python code of a supplement's policies and judging functions. Without "
+            "it the command lists this code and stops.",
+        ),
+    ] = False,
     json: Json = False,
 ) -> int:
     """Play a supplement again and compare all rows; or the paper's experiments and its claims."""
@@ -398,7 +406,7 @@ def reproduce(
             raise InputError("--copies and --page are for the paper's experiments; leave them out")
         from beliefnest.cli.supplement import reproduce_supplement
 
-        return reproduce_supplement(supplement, jobs, as_json=json)
+        return reproduce_supplement(supplement, jobs, trust=trust, as_json=json)
     from beliefnest.cli.reproduce import run_reproduction
 
     return run_reproduction(4 if copies is None else copies, jobs, page, as_json=json)

@@ -7,7 +7,7 @@ from threading import Lock
 from typing import Any
 
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.files import read_regular_text
+from beliefnest.files import read_regular_text, replace_file
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.editing import drawn_starter, edited
@@ -16,6 +16,7 @@ from beliefnest.scenarios.sources import builtin_names
 from beliefnest.scenarios.yaml_reading import parse_yaml
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import is_well_formed
 
 __all__ = ["FileEditor"]
 
@@ -72,16 +73,18 @@ class FileEditor:
         Raises:
             InputError: The request has a wrong form.
         """
-        text, edits = _text(request), request.get("edits", [])
+        text, edits, viewer = _text(request), request.get("edits", []), request.get("viewer")
         if not isinstance(edits, list) or not all(isinstance(each, dict) for each in edits):
             raise InputError("edits is no list of objects")
+        if not isinstance(viewer, str | None):
+            raise InputError("viewer is no name of an agent")
         try:
             for edit in edits:
                 text = edited(text, edit)
         except BeliefNestError as error:
             return {"text": _text(request), "refused": str(error)}
         try:
-            return {"text": text, "scene": self._scene(text, request.get("viewer"))}
+            return {"text": text, "scene": self._scene(text, viewer)}
         except BeliefNestError as error:
             return {"text": text, "problem": str(error)}
 
@@ -92,13 +95,15 @@ class FileEditor:
             InputError: Another program has changed the file, or it cannot be written.
         """
         text = _text(request)
+        if not is_well_formed(text):
+            raise InputError("the text has half a character in it; write whole ones")
         with self._turn:
             if self._on_disk() != self._saved:
                 raise InputError(
                     f"{self._file} was changed by another program; copy your text and load anew"
                 )
             try:
-                self._file.write_text(text, encoding="utf-8")
+                replace_file(self._file, text)
             except OSError as error:
                 raise InputError(f"{self._file} cannot be written: {error.strerror}") from None
             self._saved = text
@@ -113,7 +118,7 @@ class FileEditor:
         except (OSError, ValueError) as error:
             raise InputError(f"{self._file} cannot be read: {error}") from None
 
-    def _scene(self, text: str, viewer: object) -> dict[str, Any]:
+    def _scene(self, text: str, viewer: str | None) -> dict[str, Any]:
         """Return the first tick of a scenario as data of the page, and who sees what in it."""
         source = Scenario.varied(self._document(text), None)
         snapshot = source.setting.snapshot

@@ -12,18 +12,28 @@ from typing import Any
 from beliefnest.cli.console import progress_on
 from beliefnest.cli.options import RunOptions
 from beliefnest.cli.run import run_scenarios
+from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError
+from beliefnest.files import replace_file
 from beliefnest.llm.stored_exchange import encode_exchange
 from beliefnest.nest.past.versions import own_versions
+from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.archive import damaged_files, unpack
-from beliefnest.studies.bundling import opened
+from beliefnest.studies.bundling import Results, kind_of, opened
 from beliefnest.studies.comparing import ERROR, Difference, differing_contents, differing_rows
+from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
 from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.methods import run_facts
 from beliefnest.studies.plainframe import csv_rows, read_csv_rows
-from beliefnest.studies.reproducing import Reproduction, reproduce_study
+from beliefnest.studies.reproducing import (
+    Reproduction,
+    check_templates,
+    code_in_study,
+    reproduce_study,
+)
 from beliefnest.studies.run_result import RunResult
 from beliefnest.studies.study_record import StudyRecord
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import WORLDS
 
@@ -35,25 +45,38 @@ _OF_MACHINE = ("seconds", "run_dir", "model", "table")
 other keys for people."""
 
 
-def reproduce_supplement(supplement: Path, jobs: int, *, as_json: bool) -> int:
+def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: bool) -> int:
     """Play a study or run again, without any model, and compare all rows.
 
     Args:
         supplement: ZIP file of `beliefnest bundle`, its folder, or a folder of a study or run.
         jobs: Number of cells to play in parallel.
+        trust: Run the Python code of the supplement's makers, if there is any.
         as_json: Print one JSON object.
 
     Returns:
         Exit status: 0 if everything is equal, else 1.
 
     Raises:
-        BeliefNestError: There are no results, or they cannot be played again.
+        BeliefNestError: There are no results, they cannot be played again, or there is code that is
+            not trusted, or that is not what was bundled.
     """
     with tempfile.TemporaryDirectory() as scratch:
         folder = supplement
         if not supplement.is_dir():
             folder = unpack(supplement, Path(scratch, "unpacked"))
         result = opened(folder)
+        damaged = damaged_files(folder, kind_of(result))
+        if damaged and trust:
+            raise InputError(
+                f"{supplement} is not what was bundled: {damaged[0].text}"
+                f"{f', and {len(damaged) - 1} more' if len(damaged) > 1 else ''}; no code of it is "
+                "run. Without --trust the rest of it is compared"
+            )
+        codes = sorted({code.text for code in _code_of(result)})
+        if codes:
+            listed = "".join(f"runs Python code: {text}\n" for text in codes)
+            sys.stderr.write(printable(listed) + "\n")
         again = Path(scratch, "again")
         with progress_on("reproduce") as on_progress:
 
@@ -61,19 +84,28 @@ def reproduce_supplement(supplement: Path, jobs: int, *, as_json: bool) -> int:
                 on_progress("playing", progress.done + progress.failed, progress.total)
 
             if isinstance(result, StudyRecord):
-                found = reproduce_study(folder, again, jobs, told)
+                found = reproduce_study(folder, again, jobs, told, trust=trust)
                 recorded = dict(result.plan.get("versions", {}))
             else:
                 on_progress("playing", 0, 0)
-                found = _reproduce_run(result, again)
+                found = _reproduce_run(result, again, trust=trust)
                 recorded = dict(result.report.get("versions", {}))
-        differences = [*damaged_files(folder), *found.differences]
+        differences = [*damaged, *found.differences]
     other = _other_versions(recorded)
     if as_json:
         sys.stdout.write(json.dumps(_report(found, differences, other), indent=2) + "\n")
     else:
-        sys.stdout.write("\n".join(_lines(found, differences, other)) + "\n")
+        sys.stdout.write(printable("\n".join(_lines(found, differences, other))) + "\n")
     return 1 if differences else 0
+
+
+def _code_of(result: Results) -> list[Code]:
+    """Return the Python code that playing a study or run again runs."""
+    if isinstance(result, StudyRecord):
+        return code_in_study(result.folder.path)
+    document = read_document(str(result.folder / "scenario.yaml"))
+    check_templates(document)
+    return [code_of(name) for name in functions_in(document.root)]
 
 
 def _report(
@@ -84,6 +116,8 @@ def _report(
         "cells": found.cells,
         "left_out": found.left_out,
         "rows": found.rows,
+        "compared": list(_compared(found)),
+        "not_compared": list(_not_compared(found)),
         "differences": [each.plain() for each in differences],
         "other_versions": other,
     }
@@ -106,6 +140,24 @@ def _lines(
         yield f"NOT EQUAL: {counted(len(differences), 'difference')} in {rows}; {played}"
     else:
         yield f"equal: all of {rows}; {played}"
+    yield f"compared: {'; '.join(_compared(found))}"
+    yield f"not compared: {'; '.join(_not_compared(found))}"
+
+
+def _compared(found: Reproduction) -> Iterator[str]:
+    """Yield words for what was compared."""
+    yield "the digest of each file with the manifest, if there is one"
+    yield "rows.csv with the recorded results"
+    yield f"{counted(found.cells, 'cell')} with the same played again from the inputs inside"
+
+
+def _not_compared(found: Reproduction) -> Iterator[str]:
+    """Yield words for what was not compared."""
+    yield "answers of models with models: they are taken as recorded"
+    yield "figures, pages and paragraphs with the rows: only their digests are checked"
+    yield "wall times and costs"
+    if found.left_out:
+        yield f"{counted(found.left_out, 'cell')} without a recorded result"
 
 
 def _other_versions(recorded: Mapping[str, str]) -> dict[str, tuple[str, str]]:
@@ -118,29 +170,36 @@ def _other_versions(recorded: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     }
 
 
-def _reproduce_run(result: RunResult, again: Path) -> Reproduction:
+def _reproduce_run(result: RunResult, again: Path, *, trust: bool) -> Reproduction:
     """Run the conditions of a run again, with its recorded answers, and compare the results."""
     folder, settings = result.folder, result.report["settings"]
+    check_trust(_code_of(result), trust=trust)
     models = _replaying(result, again.with_name("answers"))
     if settings["world"] not in WORLDS:
         raise InputError(
             f"{folder} was run in the world {settings['world']}, which is in real time and cannot "
             f"be repeated; runs in {', '.join(WORLDS)} can"
         )
-    options = RunOptions(
-        scenario=str(folder / "scenario.yaml"),
-        condition=list(settings["conditions"]),
-        world=settings["world"],
-        models=",".join(models[name] for name in settings["models"]),
-        repeat=settings["repeat"],
-        out=again,
-        seed=settings["seed"],
-        cache="off",
-        attempts=settings["attempts"],
-        temperature=settings["temperature"],
-        claims_from=models.get(settings.get("claims_from", "")),
-        json=True,
-    )
+    try:
+        options = RunOptions(
+            scenario=str(folder / "scenario.yaml"),
+            condition=list(settings["conditions"]),
+            world=settings["world"],
+            models=",".join(models[name] for name in settings["models"]),
+            repeat=settings["repeat"],
+            out=again,
+            seed=settings["seed"],
+            cache="off",
+            attempts=settings["attempts"],
+            temperature=settings["temperature"],
+            claims_from=models.get(settings.get("claims_from", "")),
+            json=True,
+        )
+    except (KeyError, TypeError) as error:
+        raise InputError(
+            f"{folder / 'run.json'} has settings that cannot be: {quoted(str(error))} is unknown "
+            "or missing"
+        ) from None
     # What a command prints is not the result here: the report in the folder is.
     with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(ModelError):
         run_scenarios(options)
@@ -162,7 +221,7 @@ def _replaying(result: RunResult, folder: Path) -> dict[str, str]:
         if name != "offline":
             file = folder / f"{number}.jsonl"
             own = [encode_exchange(each) for each in exchanges if each.model == name]
-            file.write_bytes(b"".join(line + b"\n" for line in own))
+            replace_file(file, b"".join(line + b"\n" for line in own))
             models[name] = f"replay:{file}"
     return models
 

@@ -21,6 +21,7 @@ from beliefnest.scenarios.document_form import check_written
 from beliefnest.scenarios.format import LegendEntry
 from beliefnest.scenarios.parameters import with_parameters
 from beliefnest.scenarios.yaml_reading import parse_yaml
+from beliefnest.world.texts import quoted, shortened
 from beliefnest.world.values import Position
 
 __all__ = ["drawn_starter", "edited"]
@@ -63,7 +64,20 @@ def edited(text: str, edit: Mapping[str, Any]) -> str:
     yaml.preserve_quotes = True
     yaml.width = _WIDTH
     yaml.indent(mapping=2, sequence=4, offset=2)
-    content = yaml.load(text)
+    out = StringIO()
+    try:
+        content = yaml.load(text)
+        _edit(content, edit)
+        yaml.dump(content, out)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        # Entries may be aliases, merged or tagged, which have the form and take no edits.
+        raise InputError(
+            f"the file cannot take this edit ({shortened(str(error))}); change its text"
+        ) from error
+    return out.getvalue()
+
+
+def _edit(content: CommentedMap, edit: Mapping[str, Any]) -> None:
     form = _MapEdits(content) if isinstance(content.get("map"), dict) else _ListEdits(content)
     match edit.get("do"):
         case "put":
@@ -73,10 +87,7 @@ def edited(text: str, edit: Mapping[str, Any]) -> str:
         case "grow":
             form.grow(str(edit.get("side")))
         case other:
-            raise InputError(f"{other!r} is no edit; edits are put, clear and grow")
-    out = StringIO()
-    yaml.dump(content, out)
-    return out.getvalue()
+            raise InputError(f"{quoted(other)} is no edit; edits are put, clear and grow")
 
 
 class _MapEdits:
@@ -115,7 +126,7 @@ class _MapEdits:
             elif side == "south":
                 self._write(number, [*rows, rows[-1]])
             else:
-                raise InputError(f"{side!r} is no side to grow; give east or south")
+                raise InputError(f"{quoted(side)} is no side to grow; give east or south")
 
     def _cell(self, at: Position) -> tuple[int, int, int]:
         column, row = at[0] - self._origin[0], at[2] - self._origin[2]
@@ -255,7 +266,7 @@ class _ListEdits:
         """Move the eastern or southern side of the box by one."""
         axis = {"east": 0, "south": 2}.get(side)
         if axis is None:
-            raise InputError(f"{side!r} is no side to grow; give east or south")
+            raise InputError(f"{quoted(side)} is no side to grow; give east or south")
         low, high = self._box()
         farther = high if high[axis] >= low[axis] else low
         farther[axis] += 1
@@ -340,7 +351,7 @@ def _written_position(name: str, value: Any) -> Position:
 
 def _parameter(name: str, value: object) -> InputError:
     """Return the error about a value that a parameter decides."""
-    return InputError(f"{name} is {value!r}, a parameter; change it in the text of the file")
+    return InputError(f"{name} is {quoted(value)}, a parameter; change it in the text of the file")
 
 
 def _position(value: object) -> Position:
@@ -350,7 +361,7 @@ def _position(value: object) -> Position:
         and all(isinstance(part, int) and not isinstance(part, bool) for part in value)
     ):
         return (value[0], value[1], value[2])
-    raise InputError(f"{value!r} is no position; give three whole numbers")
+    raise InputError(f"{quoted(value)} is no position; give three whole numbers")
 
 
 def _thing(value: object) -> Any:
@@ -359,7 +370,8 @@ def _thing(value: object) -> Any:
         msgspec.convert(value, form)
     except msgspec.ValidationError as error:
         raise InputError(
-            f"{value!r} is no thing ({error}); give a block, or a mapping as in a map's legend"
+            f"{quoted(value)} is no thing ({shortened(str(error))}); give a block, or a mapping as "
+            "in a map's legend"
         ) from None
     if not value:
         raise InputError("the thing is empty; name a block")

@@ -129,7 +129,7 @@ def parse_yaml(text: str, source: str) -> Document:
 def _said(error: Exception) -> str:
     """Return what an exception of the parser says of a value."""
     if isinstance(error, TypeError | ValueError | OverflowError):
-        return shortened(str(error).partition(";")[0])
+        return shortened(str(error).partition(";")[0], _LONGEST_PROBLEM)
     return "it contains itself, or is no value of the type that its tag names"
 
 

@@ -2,7 +2,11 @@
 
 import hashlib
 import json
+import lzma
+import stat
+import struct
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -10,12 +14,21 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular
+from beliefnest.files import open_regular, read_regular, replacing
 from beliefnest.llm.secrets import Secrets
 from beliefnest.scenarios.record_forms import read_json
-from beliefnest.studies.comparing import HASH, Difference
+from beliefnest.studies.comparing import ADDED, HASH, Difference
+from beliefnest.world.texts import is_well_formed, quoted, shortened
 
-__all__ = ["MANIFEST", "check_secrets", "damaged_files", "unpack", "with_manifest", "write_zip"]
+__all__ = [
+    "MANIFEST",
+    "check_secrets",
+    "damaged_files",
+    "inside",
+    "unpack",
+    "with_manifest",
+    "write_zip",
+]
 
 MANIFEST = "bundle.json"
 _FORM = "beliefnest bundle 1"
@@ -23,6 +36,15 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 """Time of all files in a ZIP file, so that equal files give equal bytes."""
 _LARGEST = 4 * 2**30
 """Greatest size of an unpacked supplement in bytes."""
+_MOST_FILES = 200_000
+_BLOCK = 2**20
+_READ_BELOW = ("inputs", "answers", "cells")
+"""Folders of a supplement whose files are all in its manifest."""
+_UNREADABLE = (
+    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error, EOFError),
+    *(OSError, RuntimeError, NotImplementedError, ValueError, OverflowError),
+)
+"""Exceptions by which `zipfile` refuses a damaged file, or a kind of packing that it lacks."""
 
 
 class _Manifest(msgspec.Struct):
@@ -73,9 +95,8 @@ def write_zip(files: Mapping[str, bytes], out: Path) -> None:
     Raises:
         InputError: The file cannot be written.
     """
-    draft = out.with_name(f"{out.name}.part")
     try:
-        with zipfile.ZipFile(draft, "w") as archive:
+        with replacing(out) as file, zipfile.ZipFile(file, "w") as archive:
             for name in sorted(files):
                 entry = zipfile.ZipInfo(name, _EPOCH)
                 entry.compress_type = zipfile.ZIP_DEFLATED
@@ -83,7 +104,6 @@ def write_zip(files: Mapping[str, bytes], out: Path) -> None:
                 entry.create_system = 3
                 entry.external_attr = 0o644 << 16
                 archive.writestr(entry, files[name], compresslevel=9)
-        draft.replace(out)
     except OSError as error:
         raise InputError(f"{out} cannot be written: {error.strerror}") from None
 
@@ -95,26 +115,85 @@ def unpack(file: Path, folder: Path) -> Path:
         InputError: The file is no supplement.
     """
     try:
-        with zipfile.ZipFile(file) as archive:
-            if sum(entry.file_size for entry in archive.infolist()) > _LARGEST:
-                raise InputError(f"{file} is larger than {_LARGEST:,} bytes when unpacked")
-            archive.extractall(folder)
+        with open_regular(file) as opened, zipfile.ZipFile(opened) as archive:
+            _unpack_all(archive, file, folder)
     except FileNotFoundError:
         raise InputError(f"there is no file {file}; give a supplement's ZIP file") from None
-    except (zipfile.BadZipFile, OSError, RuntimeError, NotImplementedError) as error:
+    except _UNREADABLE as error:
         raise InputError(
-            f"{file} cannot be unpacked: {error}; give a supplement's ZIP file"
+            f"{file} cannot be unpacked: {shortened(str(error))}; give a supplement's ZIP file"
         ) from None
     # Archives that were packed again by hand often have one folder around everything.
     inner = [each.parent for each in folder.glob(f"*/{MANIFEST}")]
     return folder if (folder / MANIFEST).is_file() or not inner else inner[0]
 
 
-def damaged_files(folder: Path) -> list[Difference]:
-    """Return the files of a supplement that are missing or have changed; empty without manifest.
+def _unpack_all(archive: zipfile.ZipFile, file: Path, folder: Path) -> None:
+    entries = archive.infolist()
+    size = sum(entry.file_size for entry in entries)
+    if size > _LARGEST or len(entries) > _MOST_FILES:
+        raise InputError(
+            f"{file} would unpack to {len(entries):,} files of {size:,} bytes; at most "
+            f"{_MOST_FILES:,} files of {_LARGEST:,} bytes are read"
+        )
+    # Names that differ in capitals alone are one file on some systems.
+    seen: set[str] = set()
+    for entry in entries:
+        name = entry.filename
+        if not _is_inside(name) or name.casefold() in seen:
+            why = "twice" if name.casefold() in seen else "outside of its folder"
+            raise InputError(f"{file} has the file {quoted(name)} {why}; it is no supplement")
+        if stat.S_IFMT(entry.external_attr >> 16) not in (0, stat.S_IFREG, stat.S_IFDIR):
+            raise InputError(f"{file}: {quoted(name)} is no regular file; it is no supplement")
+        seen.add(name.casefold())
+        path = folder / name
+        if entry.is_dir():
+            path.mkdir(parents=True, exist_ok=True)
+            continue
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with archive.open(entry) as packed, path.open("xb") as unpacked:
+            # An entry may hold more than it declares.
+            left = entry.file_size
+            while block := packed.read(min(_BLOCK, left + 1)):
+                left -= len(block)
+                if left < 0:
+                    raise InputError(f"{file}: {quoted(name)} is longer than it says")
+                unpacked.write(block)
+
+
+def _is_inside(name: str) -> bool:
+    """Return True if the name of a file is relative, and stays in its folder on any system."""
+    path = PurePosixPath(name)
+    strange = path.is_absolute() or ".." in path.parts or any(c in name for c in "\\:\0")
+    return bool(path.parts) and not strange and is_well_formed(name)
+
+
+def inside(folder: Path, name: str) -> Path:
+    """Return the path of a file that a supplement names.
 
     Raises:
-        InputError: The manifest is damaged.
+        InputError: The file is not inside the supplement.
+    """
+    path = folder / name
+    if not _is_inside(name) or not path.resolve().is_relative_to(folder.resolve()):
+        raise InputError(
+            f"{folder} names the file {quoted(name)}, which is not inside of it; a supplement "
+            "holds all that it needs"
+        )
+    return path
+
+
+def damaged_files(folder: Path, kind: str) -> list[Difference]:
+    """Return the files of a supplement that are missing, have changed, or were added.
+
+    The list is empty if there is no manifest: the folder is no supplement.
+
+    Args:
+        folder: The folder.
+        kind: What the folder holds: `study` or `run`.
+
+    Raises:
+        InputError: The manifest is damaged, or is that of another kind of results.
     """
     file = folder / MANIFEST
     if not file.is_file():
@@ -126,11 +205,21 @@ def damaged_files(folder: Path) -> list[Difference]:
     except msgspec.ValidationError as error:
         raise InputError(f"{file} is damaged: {error}; {remedy}") from None
     found = []
+    if manifest.form != _FORM or manifest.kind != kind:
+        raise InputError(
+            f"{file} is that of a {quoted(manifest.kind)} in the form {quoted(manifest.form)}, "
+            f"and the folder holds a {kind} of the form {_FORM!r}; {remedy}"
+        )
     for name, known in manifest.sha256.items():
-        if PurePosixPath(name).is_absolute() or ".." in PurePosixPath(name).parts:
-            raise InputError(f"{file} names {name!r}, which is outside of the folder; {remedy}")
-        path = folder / name
+        path = inside(folder, name)
         there = hashlib.sha256(read_regular(path)).hexdigest() if path.is_file() else None
         if there != known:
             found.append(Difference(name, HASH, known, there))
-    return found
+    there = {
+        path.relative_to(folder).as_posix()
+        for name in _READ_BELOW
+        for path in (folder / name).rglob("*")
+        if path.is_file() and path.suffix != ".lock"
+    }
+    added = sorted(there - manifest.sha256.keys())
+    return [*found, *(Difference(name, ADDED, None, None) for name in added)]

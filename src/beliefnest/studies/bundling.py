@@ -17,7 +17,7 @@ from beliefnest.studies.plainframe import csv_text
 from beliefnest.studies.run_result import RunResult
 from beliefnest.studies.study_record import StudyRecord
 
-__all__ = ["Results", "bundled", "facts_of", "opened"]
+__all__ = ["Results", "bundled", "facts_of", "kind_of", "opened"]
 
 Results = StudyRecord | RunResult
 
@@ -56,10 +56,11 @@ def bundled(result: Results, environment: Mapping[str, str], *, runs: bool) -> d
     """
     files = _files(result, runs=runs)
     check_secrets(files, _secrets(environment))
-    return with_manifest(files, _kind(result), facts_of(result).versions)
+    return with_manifest(files, kind_of(result), facts_of(result).versions)
 
 
-def _kind(result: Results) -> str:
+def kind_of(result: Results) -> str:
+    """Return the kind of results, as manifests name it: `study` or `run`."""
     return "study" if isinstance(result, StudyRecord) else "run"
 
 
@@ -132,7 +133,7 @@ def _secrets(environment: Mapping[str, str]) -> Secrets:
 def _readme(result: Results, facts: Facts, files: Mapping[str, bytes]) -> str:
     version = facts.versions.get("beliefnest", "")
     pin = f"=={version}" if version else ""
-    kind = _kind(result)
+    kind = kind_of(result)
     contents = "\n".join(
         f"| `{name}` | {told} |"
         for name, told in _CONTENTS[kind].items()

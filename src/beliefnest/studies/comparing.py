@@ -4,7 +4,9 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-__all__ = ["ERROR", "HASH", "Difference", "differing_contents", "differing_rows"]
+from beliefnest.world.texts import quoted
+
+__all__ = ["ADDED", "ERROR", "HASH", "Difference", "differing_contents", "differing_rows"]
 
 
 ERROR = "error"
@@ -13,7 +15,8 @@ ERROR = "error"
 HASH = "sha256"
 """Key of a difference whose file is not the one that was bundled."""
 
-_LONGEST = 80
+ADDED = "added"
+"""Key of a difference whose file was not bundled."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,16 +42,13 @@ class Difference:
             return f"{self.where}: no result now: {self.again}"
         if self.what == HASH:
             return f"{self.where} {'is missing' if self.again is None else 'has changed'}"
-        return f"{self.where}: {self.what} is {_short(self.recorded)}, now {_short(self.again)}"
+        if self.what == ADDED:
+            return f"{self.where} is not in the manifest"
+        return f"{self.where}: {self.what} is {quoted(self.recorded)}, now {quoted(self.again)}"
 
     def plain(self) -> dict[str, Any]:
         """Return the values by name."""
         return {name: getattr(self, name) for name in self.__slots__}
-
-
-def _short(value: object) -> str:
-    told = repr(value)
-    return told if len(told) <= _LONGEST else f"{told[: _LONGEST - 3]}..."
 
 
 def differing_rows(

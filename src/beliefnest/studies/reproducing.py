@@ -7,26 +7,30 @@ from typing import Any
 
 import msgspec
 
-from beliefnest.episodes.policies import policy_of_file
+from beliefnest.episodes.policies import is_own_policy, policy_of_file
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.files import read_regular_text
 from beliefnest.llm.budget import RunLimits
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template, built_in_template
-from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.document import Document, YamlNode
 from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.allocation import LABEL, PARTICIPANT
+from beliefnest.studies.archive import inside
 from beliefnest.studies.cells import Cell, CellKey, Keyed, planned_cell
 from beliefnest.studies.comparing import ERROR, Difference, differing_contents, differing_rows
 from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
+from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
 from beliefnest.studies.inputs import InputIndex, no_inputs
 from beliefnest.studies.jobs import OnStudyProgress, run_cells
 from beliefnest.studies.plainframe import csv_rows, read_csv_rows
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.studies.terms import Terms
+from beliefnest.world.texts import quoted
 
-__all__ = ["Reproduction", "reproduce_study"]
+__all__ = ["Reproduction", "check_templates", "code_in_study", "reproduce_study"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +56,12 @@ class Reproduction:
 
 
 def reproduce_study(
-    folder: Path, again: Path, jobs: int, on_progress: OnStudyProgress
+    folder: Path,
+    again: Path,
+    jobs: int,
+    on_progress: OnStudyProgress,
+    *,
+    trust: bool = False,
 ) -> Reproduction:
     """Play all cells of a study again that have a result, and compare rows and contents.
 
@@ -64,10 +73,11 @@ def reproduce_study(
         again: Empty folder for the new results.
         jobs: Number of cells to play in parallel.
         on_progress: Function that receives the progress.
+        trust: Run the Python code of the study's makers, if there is any.
 
     Raises:
         InputError: The folder holds no study, or not its inputs, or other inputs than those that
-            its cells were played with.
+            its cells were played with; or there is code in it that is not trusted.
         BodyError: A worker process ended unexpectedly.
     """
     recorded = StudyRecord.read(folder)
@@ -80,6 +90,7 @@ def reproduce_study(
         if (content := found[cell["name"]]) is not None and content["error"] is None
     ]
     inputs = _Inputs.of(folder, plan)
+    check_trust(inputs.code(), trust=trust)
     cells = [inputs.cell(cell) for cell in ended]
     place = StudyFolder.open(again)
     place.write_plan({**plan, "cells": ended})
@@ -103,6 +114,15 @@ def reproduce_study(
     )
     left_out = len(plan["cells"]) - len(ended)
     return Reproduction(len(ended), left_out, judged, tuple(differences))
+
+
+def code_in_study(folder: Path) -> list[Code]:
+    """Return the Python code that playing a study again runs.
+
+    Raises:
+        InputError: The folder holds no study, or not its inputs.
+    """
+    return list(_Inputs.of(folder, StudyRecord.read(folder).folder.plan()).code())
 
 
 def _restore(
@@ -174,12 +194,14 @@ class _Inputs:
         index: Names and files.
         documents: Documents of scenarios and tasks, by name.
         names: Names with files of this folder in them, and the recorded names.
+        policies: Names of all policies of the cells.
     """
 
     folder: Path
     index: InputIndex
     documents: Mapping[str, Document]
     names: Mapping[str, str]
+    policies: frozenset[str]
 
     @classmethod
     def of(cls, folder: Path, plan: Mapping[str, Any]) -> "_Inputs":
@@ -191,9 +213,14 @@ class _Inputs:
         except msgspec.ValidationError as error:
             raise InputError(f"{folder / 'study.json'} is damaged: {error}") from None
         documents = {
-            name: _document(folder, file)
+            name: _document(inside(folder, file))
             for name, file in {**index.scenarios, **index.tasks}.items()
         }
+        named = (index.scenarios, index.tasks, index.templates, index.policies, index.models)
+        for file in (file for files in named for file in files.values()):
+            inside(folder, file)
+        for document in documents.values():
+            check_templates(document)
         root = folder.absolute()
         moved = {
             **{
@@ -203,7 +230,10 @@ class _Inputs:
             },
             **{f"{name.partition(':')[0]}:{root / f}": name for name, f in index.models.items()},
         }
-        return cls(folder, index, documents, moved)
+        policies = frozenset(
+            name for cell in plan["cells"] for name in cell["key"].get("policies", {}).values()
+        )
+        return cls(folder, index, documents, moved, policies)
 
     def cell(self, planned: Mapping[str, Any]) -> Keyed:
         """Return a cell to play, from its entry in the plan.
@@ -223,6 +253,8 @@ class _Inputs:
 
     def _probes(self, key: dict[str, Any], label: str) -> Cell:
         recorded = CellKey(**key)
+        if recorded.scenario not in self.documents:
+            raise InputError(f"its scenario {quoted(recorded.scenario)} is not among the inputs")
         cell = planned_cell(recorded, self.documents[recorded.scenario], self._template(recorded))
         if cell.key.content != recorded.content:
             raise InputError(
@@ -237,18 +269,37 @@ class _Inputs:
             return None
         if key.template in BUILT_IN_TEMPLATES:
             return built_in_template(key.template)
+        if key.template not in self.index.templates:
+            raise InputError(f"its template {quoted(key.template)} is not among the inputs")
         file = self.folder / self.index.templates[key.template]
-        return Template(key.template, file.read_text(encoding="utf-8"))
+        try:
+            return Template(key.template, read_regular_text(file))
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{file} cannot be read: {error}") from None
 
     def _episode(self, key: dict[str, Any]) -> EpisodeCell:
         recorded = EpisodeKey(**key)
         source = recorded.task
         if recorded.task in self.index.tasks:
             source = str(self.folder / self.index.tasks[recorded.task])
+        elif recorded.task not in builtin_tasks():
+            raise InputError(f"its task {quoted(recorded.task)} is not among the inputs")
         document = None if source in builtin_tasks() else Task.scenario_document(source)
         task = task_of_cell(recorded, source, document)
         policies = {agent: self._here(name) for agent, name in recorded.policies.items()}
         return EpisodeCell(replace(recorded, policies=policies), task, draws=True)
+
+    def code(self) -> Iterator[Code]:
+        """Yield the Python code that playing the cells runs."""
+        for name, file in self.index.policies.items():
+            if is_own_policy(name):
+                yield code_of(self._here(name), file, name)
+        for name in sorted(self.policies):
+            if name not in self.index.policies and is_own_policy(name):
+                yield code_of(self._here(name), "", name)
+        for document in self.documents.values():
+            for name in functions_in(document.root):
+                yield code_of(name)
 
     def _here(self, name: str) -> str:
         """Return the name of a policy or model with its file in this folder."""
@@ -258,8 +309,34 @@ class _Inputs:
         return name
 
 
-def _document(folder: Path, file: str) -> Document:
+def _document(file: Path) -> Document:
     try:
-        return read_document(str(folder / file))
+        return read_document(str(file))
     except BeliefNestError as error:
         raise InputError(f"an input of the study cannot be read: {error}") from None
+
+
+def check_templates(document: Document) -> None:
+    """Refuse a document of a supplement that names a template outside of it.
+
+    Raises:
+        InputError: A template is neither built in nor kept with the document.
+    """
+    known = {*BUILT_IN_TEMPLATES, *document.templates}
+    for name in _templates_in(document.root):
+        if name not in known:
+            raise InputError(
+                f"{document.source} names the template {quoted(name)}, which the supplement does "
+                "not hold"
+            )
+
+
+def _templates_in(node: YamlNode) -> Iterator[str]:
+    if isinstance(node.value, dict):
+        for key, child in node.value.items():
+            if key == "template" and isinstance(child.value, str):
+                yield child.value
+            yield from _templates_in(child)
+    elif isinstance(node.value, list):
+        for child in node.value:
+            yield from _templates_in(child)

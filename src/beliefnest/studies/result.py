@@ -284,15 +284,22 @@ class StudyResult(StudyRecord):
         """
         return methods_text(study_facts(self.whole), form)
 
-    def reproduce(self, jobs: int = 1) -> Reproduction:
+    def reproduce(self, jobs: int = 1, *, trust: bool = False) -> Reproduction:
         """Play all cells with a result again, without any model, and compare all rows.
 
+        Args:
+            jobs: Number of cells to play in parallel.
+            trust: Run the Python code of policies and judging functions, if there is any.
+
         Raises:
-            InputError: The folder does not have the inputs of the study.
+            InputError: The folder does not have the inputs of the study, or has code and is not
+                trusted; the message lists the code.
             BodyError: A worker process ended unexpectedly.
         """
         with tempfile.TemporaryDirectory() as again:
-            return reproduce_study(self.folder.path, Path(again), jobs, lambda progress: None)
+            return reproduce_study(
+                self.folder.path, Path(again), jobs, lambda progress: None, trust=trust
+            )
 
     def write_tables(self) -> tuple[Path, Path]:
         """Write `rows.csv` and `rows.parquet` into the folder, with the type of each column.

@@ -23,6 +23,7 @@ __all__ = [
     "Scripted",
     "draws_by_seed",
     "file_of_policy",
+    "is_own_policy",
     "is_program",
     "policy_beside",
     "policy_of_file",
@@ -84,7 +85,7 @@ def resolve_policy(
             return _planning(kind, order_of(rest, name))
     if name in _WITHOUT_OPTIONS:
         return _WITHOUT_OPTIONS[name]()
-    if _is_of_user(name):
+    if is_own_policy(name):
         return _of_user(name)
     close = difflib.get_close_matches(kind, sorted(_KINDS), n=1)
     hint = f"did you mean {close[0]!r}? Policies are" if close else "give one of"
@@ -115,7 +116,8 @@ def _planning(kind: str, order: int) -> Policy:
     return Search(order)
 
 
-def _is_of_user(name: str) -> bool:
+def is_own_policy(name: str) -> bool:
+    """Return True if a policy is a Python object that a user names: code that would be imported."""
     return name.partition(":")[0] not in _KINDS and is_object_name(name)
 
 
@@ -159,7 +161,7 @@ def text_of_policy(name: str) -> str:
     Raises:
         InputError: The file cannot be read.
     """
-    if _is_of_user(name):
+    if is_own_policy(name):
         return text_of_object(name)
     return _text(name.partition(":")[2]) if is_program(name) else ""
 
@@ -172,7 +174,7 @@ def is_program(name: str) -> bool:
 
 def policy_beside(name: str, folder: Path) -> str:
     """Return the name of a policy; if it has a file, look for a relative path in `folder`."""
-    if _is_of_user(name):
+    if is_own_policy(name):
         file, _, made = name.rpartition(":")
         return f"{folder / file}:{made}" if file.endswith(".py") else name
     kind, _, file = name.partition(":")
@@ -181,7 +183,7 @@ def policy_beside(name: str, folder: Path) -> str:
 
 def file_of_policy(name: str) -> str:
     """Return the file in the name of a policy; empty if it names none."""
-    if _is_of_user(name):
+    if is_own_policy(name):
         file = name.rpartition(":")[0]
         return file if file.endswith(".py") else ""
     return name.partition(":")[2] if is_program(name) else ""
@@ -189,7 +191,7 @@ def file_of_policy(name: str) -> str:
 
 def policy_of_file(name: str, file: Path) -> str:
     """Return the name of a policy with another file in it."""
-    if _is_of_user(name):
+    if is_own_policy(name):
         return f"{file}:{name.rpartition(':')[2]}"
     return f"{name.partition(':')[0]}:{file}"
 

@@ -18,7 +18,7 @@ from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.viewer.page.html import page_html
 from beliefnest.viewer.serving.guard import Guard
 from beliefnest.viewer.serving.host import Host
-from beliefnest.world.texts import visible_json
+from beliefnest.world.texts import quoted, visible_json
 
 __all__ = ["page_app"]
 
@@ -194,6 +194,6 @@ def _text(query: Mapping[str, str], name: str) -> str:
 
 def _number(query: Mapping[str, str], name: str) -> int:
     text = query.get(name, "0")
-    if not text.isdecimal() or len(text) > 12:
-        raise InputError(f"{name} is {text!r}; give a whole number")
+    if not (text.isascii() and text.isdecimal()) or len(text) > 12:
+        raise InputError(f"{name} is {quoted(text)}; give a whole number")
     return int(text)
