@@ -1,11 +1,13 @@
 """Files of curves: points as CSV, drawings as SVG. Drawing needs matplotlib."""
 
 import csv
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.files import replace_file
 from beliefnest.studies.accuracy_figure import COLOURS, svg_of
 from beliefnest_benchmarks.curves import Aim, Curve, Point
 
@@ -53,11 +55,12 @@ def save_curve(curve: Curve, points: Sequence[Point], folder: Path) -> Sequence[
     """
     table, picture = folder / f"{curve.name}.csv", folder / f"{curve.name}.svg"
     try:
-        with table.open("w", encoding="utf-8", newline="") as opened:
-            rows = csv.writer(opened, lineterminator="\n")
-            rows.writerow(("series", curve.x, curve.ms, curve.mb))
-            rows.writerows((p.series, f"{p.x:g}", f"{p.ms:.4g}", f"{p.mb:.4g}") for p in points)
-        picture.write_text(svg_of(drawn(curve, points)), encoding="utf-8")
+        written = io.StringIO(newline="")
+        rows = csv.writer(written, lineterminator="\n")
+        rows.writerow(("series", curve.x, curve.ms, curve.mb))
+        rows.writerows((p.series, f"{p.x:g}", f"{p.ms:.4g}", f"{p.mb:.4g}") for p in points)
+        replace_file(table, written.getvalue())
+        replace_file(picture, svg_of(drawn(curve, points)))
     except OSError as error:
         raise InputError(
             f"--curves: {error.filename} cannot be written: {error.strerror}"

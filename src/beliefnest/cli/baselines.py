@@ -18,6 +18,7 @@ from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import parameters_of, source_of
 from beliefnest.errors import InputError, ModelError
+from beliefnest.files import replace_file, replacing
 from beliefnest.studies.accuracy_figure import plot_accuracy
 from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
@@ -67,7 +68,7 @@ def run_baselines(options: PlayOptions) -> int:
     found = _played(names, options)
     if options.page is not None:
         _draw(names, found, options.page.parent / "img")
-        options.page.write_text(page_of(names, found, options.seeds), encoding="utf-8")
+        replace_file(options.page, page_of(names, found, options.seeds))
     if options.json:
         content = {"seeds": options.seeds, "baselines": found}
         sys.stdout.write(json.dumps(content, indent=2) + "\n")
@@ -161,7 +162,8 @@ def _draw(names: Sequence[str], found: Sequence[Group], folder: Path) -> None:
     folder.mkdir(exist_ok=True)
     figure = plot_accuracy(found, ("task", "policy"))
     figure.set_size_inches(*_INCHES)
-    figure.savefig(folder / "baselines.png", dpi=150)
+    with replacing(folder / "baselines.png") as out:
+        figure.savefig(out, format="png", dpi=150)
     for name in names:
         with Episode(Task.load(name)) as episode:
             episode.nest.figure(["/"]).save(str(folder / f"task-{name}.png"))

@@ -7,7 +7,7 @@ from pathlib import Path
 from beliefnest.cli.options import CaptureOptions
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.files import read_regular
+from beliefnest.files import new_file, read_regular
 from beliefnest.scenarios.writing import scenario_text
 from beliefnest.world.values import Box
 from beliefnest.worlds.servers.address import ServerAddress, is_server
@@ -36,8 +36,8 @@ def write_capture(options: CaptureOptions) -> None:
     captured = _captured(options)
     text = scenario_text(options.name or _name(out), _description(options), captured.snapshot)
     try:
-        with out.open("x", encoding="utf-8") as file:
-            file.write(text)
+        with new_file(out) as file:
+            file.write(text.encode())
     except OSError as error:
         raise InputError(f"{out} cannot be written: {error.strerror}") from None
     for sentence in captured.left_out:

@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import read_regular_text
+from beliefnest.files import read_regular_text, replace_file
 from beliefnest.locking import holding, is_lock
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.record_forms import (
@@ -331,6 +331,4 @@ def _json(value: Mapping[str, object]) -> str:
 
 def _write(path: Path, text: str) -> None:
     """Replace a file as a whole, so that readers never find half of it."""
-    draft = path.with_name(path.name + ".part")
-    draft.write_text(text, encoding="utf-8")
-    draft.replace(path)
+    replace_file(path, text)

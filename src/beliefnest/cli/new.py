@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from beliefnest.errors import InputError
+from beliefnest.files import new_file
 from beliefnest.scenarios.sources import builtin_names
 
 __all__ = ["write_starter"]
@@ -26,8 +27,8 @@ def write_starter(name: str) -> None:
     text = (files("beliefnest.scenarios") / "starter" / "starter.yaml").read_text(encoding="utf-8")
     path = Path(f"{name}.yaml")
     try:
-        with path.open("x", encoding="utf-8") as file:
-            file.write(text.replace("{name}", name))
+        with new_file(path) as file:
+            file.write(text.replace("{name}", name).encode())
     except FileExistsError:
         raise InputError(f"{path} exists already; choose another name") from None
     except OSError as error:

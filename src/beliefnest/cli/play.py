@@ -20,6 +20,7 @@ from beliefnest.episodes.helping import Help
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, NotBegunError
+from beliefnest.files import new_file
 from beliefnest.locking import holding
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
@@ -71,8 +72,8 @@ def play_task(options: PlayOptions) -> int:
 def _export(task: Task, file: Path) -> int:
     """Write a task as a scenario file, which must be new."""
     try:
-        with file.open("x", encoding="utf-8") as out:
-            out.write(task.text())
+        with new_file(file) as out:
+            out.write(task.text().encode())
     except FileExistsError:
         raise InputError(f"{file} exists; name a new file") from None
     except OSError as error:

@@ -15,6 +15,7 @@ from rich.table import Table
 
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.errors import InputError
+from beliefnest.files import replace_file
 from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
 
@@ -211,6 +212,6 @@ def _write_page(page: Path, lines: Sequence[Mapping[str, Any]], about: str) -> N
         f"{text}\n\n{about.rpartition(',')[0]}.\n"
     )
     try:
-        page.write_text(content, encoding="utf-8")
+        replace_file(page, content)
     except OSError as error:
         raise InputError(f"{page} cannot be written: {error.strerror}") from None

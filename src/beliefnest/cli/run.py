@@ -33,6 +33,7 @@ from beliefnest.cli.run_report import report_html
 from beliefnest.cli.terminal_text import printable
 from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
+from beliefnest.files import replace_file
 from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.claim_reader import claims_from_model
@@ -257,7 +258,7 @@ def _run(
         told = accounts(nest, outcome)
         figure = overview([picture], picture.title)
         figure.save(place.picture)
-        place.picture_svg.write_text(figure._repr_html_(), encoding="utf-8")
+        replace_file(place.picture_svg, figure._repr_html_())
         readings = {} if claims_from is None else {"readings": _readings(nest)}
     place.write_result({**outcome_json(outcome, cell.model, place.path, told), **readings})
     return picture

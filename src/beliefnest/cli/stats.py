@@ -14,6 +14,7 @@ from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.options import PowerOptions, StatsOptions
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError
+from beliefnest.files import replacing
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
 from beliefnest.studies.regression import Effect
@@ -66,7 +67,8 @@ def _draw(result: StudyResult, file: Path, by: list[str] | None) -> None:
         raise InputError(f"{file} is no picture; give a name that ends with {', '.join(kinds)}")
     figure = result.plot(by)
     try:
-        figure.savefig(file)
+        with replacing(file) as out:
+            figure.savefig(out, format=file.suffix[1:])
     except OSError as error:
         raise InputError(f"{file} cannot be written: {error.strerror}") from None
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from beliefnest.errors import InputError
+from beliefnest.files import replace_file
 from beliefnest.pictures.bars import BarChart, draw_bars
 from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import XY, Drawing, scaled
@@ -105,7 +106,7 @@ class Figure:
             )
         content = _FORMS[ending](self.drawing(size), dpi)
         try:
-            file.write_bytes(content)
+            replace_file(file, content)
         except OSError as error:
             raise InputError(
                 f"the figure {file} cannot be written ({error.strerror or error}); check the path"

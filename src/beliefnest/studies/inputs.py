@@ -15,7 +15,7 @@ from beliefnest.episodes.policies import file_of_policy, text_of_policy
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.files import read_regular_text
+from beliefnest.files import read_regular_text, replace_file
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
@@ -143,9 +143,7 @@ class Inputs:
         for name, text in self.texts.items():
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
-            draft = path.with_name(f"{path.name}.part")
-            draft.write_text(text, encoding="utf-8")
-            draft.replace(path)
+            replace_file(path, text)
 
     def _new(self, kind: str, name: str) -> str:
         """Return a path below the folder that no other input has."""

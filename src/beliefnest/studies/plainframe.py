@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.files import replace_file, replacing
 from beliefnest.world.texts import formula_free
 
 if TYPE_CHECKING:  # pandas and pyarrow are optional, and imported when a table is made.
@@ -87,8 +88,7 @@ def write_csv(columns: Mapping[str, Typed], file: Path) -> None:
 
     An apostrophe precedes texts that a spreadsheet would take as formulas.
     """
-    with file.open("w", newline="", encoding="utf-8") as out:
-        _write_csv(columns, out)
+    replace_file(file, csv_text(columns))
 
 
 def _write_csv(columns: Mapping[str, Typed], out: TextIO) -> None:
@@ -97,7 +97,7 @@ def _write_csv(columns: Mapping[str, Typed], out: TextIO) -> None:
         for column in columns.values()
     ]
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(columns)
+    writer.writerow(map(formula_free, columns))
     for row in zip(*cells, strict=True):
         writer.writerow(formula_free(v) if isinstance(v, str) else v for v in row)
 
@@ -139,9 +139,9 @@ def write_parquet(columns: Mapping[str, Typed], file: Path) -> None:
     except ModuleNotFoundError:
         raise MissingExtraError("Parquet files need pyarrow", "study") from None
     # Write no pandas metadata: with it, pandas would read back types that are not plain.
-    parquet.write_table(
-        pyarrow.table({name: _arrow(column) for name, column in columns.items()}), file
-    )
+    table = pyarrow.table({name: _arrow(column) for name, column in columns.items()})
+    with replacing(file) as out:
+        parquet.write_table(table, out)
 
 
 def _arrow(column: Typed) -> "pyarrow.Array":

@@ -12,6 +12,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
+from beliefnest.files import replace_file, replacing
 from beliefnest.locking import holding, is_lock
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
 from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form
@@ -296,13 +297,10 @@ def append_line(file: Path, line: str) -> None:
 
 def _copy(source: Path, target: Path) -> None:
     target.parent.mkdir(exist_ok=True)
-    draft = target.with_name(f"{target.name}.{os.getpid()}.part")
-    shutil.copyfile(source, draft)
-    draft.replace(target)
+    with source.open("rb") as theirs, replacing(target) as ours:
+        shutil.copyfileobj(theirs, ours)
 
 
 def _write(path: Path, text: str) -> None:
     """Replace a file as a whole, so that readers never find half of it."""
-    draft = path.with_name(f"{path.name}.{os.getpid()}.part")
-    draft.write_text(text, encoding="utf-8")
-    draft.replace(path)
+    replace_file(path, text)

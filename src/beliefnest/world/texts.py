@@ -43,7 +43,7 @@ _HIDDEN = re.compile(
 """Characters that `visible` escapes: controls except tabs and line ends, marks of direction,
 invisible characters."""
 
-_FORMULA = re.compile(r"[=+\-@\t\r\uff1d\uff0b\uff0d\uff20]")
+_FORMULA = re.compile(r"\s*[=+\-@\t\r\n\uff1d\uff0b\uff0d\uff20]")
 _NUMBERS = re.compile(r"[-+]?[\d.][-+\d., eE]*", re.ASCII)
 
 

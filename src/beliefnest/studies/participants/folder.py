@@ -8,6 +8,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from beliefnest.errors import InputError
+from beliefnest.files import replace_file
 from beliefnest.locking import holding
 from beliefnest.studies.cells import digest, variation_id
 from beliefnest.studies.participants.film import Film
@@ -153,7 +154,7 @@ def write_folder(folder: Path, contents: Mapping[str, str]) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         with holding(folder, "name another folder with -o"):
             for name, text in contents.items():
-                (folder / name).write_text(text, encoding="utf-8")
+                replace_file(folder / name, text)
     except OSError as error:
         raise InputError(f"the folder {folder} cannot be written: {error.strerror}") from None
 

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from beliefnest.errors import InputError
+from beliefnest.files import replace_file
 from beliefnest.nest.face.reader import Reader
 from beliefnest.viewer.page.html import page_html
 from beliefnest.viewer.page.reasons import ahead
@@ -56,7 +57,7 @@ def write_still_page(
     """
     text = still_page(runs, depth, first)
     try:
-        file.write_text(text, encoding="utf-8")
+        replace_file(file, text)
     except OSError as error:
         raise InputError(
             f"the page {file} cannot be written ({error.strerror or error}); check the path"
