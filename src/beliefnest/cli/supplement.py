@@ -232,7 +232,9 @@ def _differences(
     file = recorded.folder / "rows.csv"
     if file.is_file():
         yield from differing_rows(
-            read_csv_rows(file), csv_rows(recorded.typed()), lambda n: f"rows.csv:{n + 1}"
+            read_csv_rows(file, recorded.typed()),
+            csv_rows(recorded.typed()),
+            lambda n: f"rows.csv:{n + 1}",
         )
 
     def key(run: Mapping[str, Any], model: str) -> tuple[Any, ...]:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from beliefnest.errors import InputError, MissingExtraError
+from beliefnest.errors import MissingExtraError
 from beliefnest.files import replace_file, replacing
+from beliefnest.studies.sheets import read_sheet
 from beliefnest.world.texts import formula_free
 
 if TYPE_CHECKING:  # pandas and pyarrow are optional, and imported when a table is made.
@@ -114,17 +115,27 @@ def csv_rows(columns: Mapping[str, Typed]) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(csv_text(columns), newline="")))
 
 
-def read_csv_rows(file: Path) -> list[dict[str, str]]:
+def read_csv_rows(file: Path, columns: Mapping[str, Typed]) -> list[dict[str, str]]:
     """Return the rows of a CSV file, each value as text.
 
+    A decimal comma becomes a point, as `write_csv` writes it.
+
+    Args:
+        file: The file.
+        columns: Table that the file is compared with.
+
     Raises:
-        InputError: The file is not CSV in UTF-8.
+        InputError: The file cannot be read, or is no CSV.
     """
-    try:
-        with file.open(newline="", encoding="utf-8") as opened:
-            return list(csv.DictReader(opened))
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise InputError(f"{file} cannot be read: {error}") from None
+    sheet = read_sheet(file)
+    rows = [row for _, row in sheet.rows]
+    if sheet.delimiter == ",":
+        return rows
+    decimals = {name for name, each in columns.items() if each.found_kind == "float64"}
+    return [
+        {name: v.replace(",", ".") if name in decimals else v for name, v in row.items()}
+        for row in rows
+    ]
 
 
 def write_parquet(columns: Mapping[str, Typed], file: Path) -> None:

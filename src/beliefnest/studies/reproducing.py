@@ -156,7 +156,9 @@ def _differing_table(recorded: StudyRecord) -> Iterator[Difference]:
     if file.is_file():
         # The first row is line 2, below the header.
         yield from differing_rows(
-            read_csv_rows(file), csv_rows(recorded.typed()), lambda number: f"rows.csv:{number + 1}"
+            read_csv_rows(file, recorded.typed()),
+            csv_rows(recorded.typed()),
+            lambda number: f"rows.csv:{number + 1}",
         )
 
 

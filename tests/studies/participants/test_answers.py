@@ -294,3 +294,40 @@ def test_intervals_of_people_are_clustered_both_ways(study, answers, tmp_path):
     assert counted["interval"] == "two-way bootstrap"
     assert math.isclose(counted["accuracy"], 10 / 12)
     assert counted["low"] < 10 / 12 <= counted["high"] == 1
+
+
+def test_answers_that_a_spreadsheet_has_saved_are_read_or_refused_with_their_row(
+    study, answers, tmp_path
+):
+    text = (answers / "b.csv").read_text(encoding="utf-8")
+    rows = list(csv.reader(text.splitlines()))
+
+    def saved(name, delimiter, end, encoding, changed=lambda column, cell: cell):
+        file = tmp_path / name
+        cells = [[changed(c, v) for c, v in zip(rows[0], row, strict=True)] for row in rows[1:]]
+        with file.open("w", encoding=encoding, newline="") as out:
+            csv.writer(out, delimiter=delimiter, lineterminator=end).writerows([rows[0], *cells])
+        return file
+
+    plain, _ = study.read_participants(tmp_path / "plain", [answers / "b.csv"])
+    for number, form in enumerate(
+        [(";", "\r\n", "utf-8-sig"), ("\t", "\r\n", "utf-16"), (";", "\r", "cp1252")]
+    ):
+        file = saved(f"{number}.csv", *form)
+        result, notes = study.read_participants(tmp_path / f"out{number}", [file])
+        assert notes == ()
+        assert result.rows == plain.rows
+    for spoilt in ("5E+23", "1,23457E+15", "01. Mrz"):
+        file = saved(
+            "spoilt.csv",
+            ";",
+            "\n",
+            "utf-8",
+            lambda c, v, to=spoilt: to if c == "participant" else v,
+        )
+        with pytest.raises(bn.InputError, match=r"spoilt\.csv:2, column participant: '.*' is a"):
+            study.read_participants(tmp_path / "never", [file])
+    entries = [{**each, "participant": "5E+23"} for each in json.loads(
+        (answers / "a.json").read_text(encoding="utf-8"))]  # fmt: skip
+    with pytest.raises(bn.InputError, match=r"spoilt\.json, entry 1, column participant: '5E\+23'"):
+        study.read_participants(tmp_path / "never", [in_json(tmp_path / "spoilt.json", entries)])

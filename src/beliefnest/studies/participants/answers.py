@@ -1,9 +1,8 @@
 """Answers of participants, as files of the page or of jsPsych hold them."""
 
-import csv
-import io
+import codecs
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,13 +10,18 @@ from typing import Any
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import decode_json, read_regular_text
+from beliefnest.files import decode_json, read_regular
+from beliefnest.studies.sheets import decode_sheet, spoilt_number, spoilt_text
 
 __all__ = ["Answer", "answer_files", "read_answers", "with_pseudonyms"]
 
 _TRIAL = "beliefnest-question"
 """Value of `trial_type` of our trials, which jsPsych writes as well."""
 _NEEDED = ("participant", "cell", "question", "response")
+
+
+_IDS = ("participant", "cell", "question", "study")
+"""Columns of ids, which spreadsheets may take for numbers or dates."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +84,20 @@ def read_answers(file: Path) -> list[Answer]:
         InputError: The file has another form; the message names file, row and column.
     """
     try:
-        text = read_regular_text(file)
+        content = read_regular(file)
     except OSError as error:
         raise InputError(f"{file} cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{file} is not UTF-8; give it as the page wrote it") from None
-    rows = _json_rows(file, text) if text.lstrip().startswith("[") else _csv_rows(file, text)
-    found = [_answer(where, row) for where, row in rows if row.get("trial_type", _TRIAL) == _TRIAL]
+    if content.removeprefix(codecs.BOM_UTF8).lstrip().startswith(b"["):
+        rows = _json_rows(file, content)
+        spoilt = spoilt_number
+    else:
+        rows = _csv_rows(file, content)
+        spoilt = spoilt_text
+    found = [
+        _answer(where, row, spoilt)
+        for where, row in rows
+        if row.get("trial_type", _TRIAL) == _TRIAL
+    ]
     if not found:
         raise InputError(f"{file} has no answers: no row has the trial_type {_TRIAL!r}")
     return found
@@ -110,33 +121,35 @@ def with_pseudonyms(answers: Sequence[Answer]) -> list[Answer]:
     ]
 
 
-def _json_rows(file: Path, text: str) -> list[tuple[str, Mapping[str, Any]]]:
+_Rows = list[tuple[str, Mapping[str, Any]]]
+
+
+def _json_rows(file: Path, content: bytes) -> _Rows:
     try:
-        rows = decode_json(text, list[dict[str, Any]])
+        rows = decode_json(content.removeprefix(codecs.BOM_UTF8), list[dict[str, Any]])
     except msgspec.MsgspecError as error:
         raise InputError(f"{file} is no JSON list of answers: {error}") from None
     return [(f"{file}, entry {number}", row) for number, row in enumerate(rows, 1)]
 
 
-def _csv_rows(file: Path, text: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    reader = csv.DictReader(io.StringIO(text.removeprefix("\ufeff"), newline=""))
-    missing = [name for name in _NEEDED if name not in (reader.fieldnames or ())]
-    if missing:
-        raise InputError(
-            f"{file}:1 has no column {missing[0]!r}; give the file as the page or jsPsych wrote it"
-        )
-    try:
-        for row in reader:
-            yield f"{file}:{reader.line_num}", row
-    except csv.Error as error:
-        raise InputError(f"{file}:{reader.line_num} cannot be read: {error}") from None
+def _csv_rows(file: Path, content: bytes) -> _Rows:
+    sheet = decode_sheet(content, str(file), _NEEDED)
+    return [(f"{file}:{line}", row) for line, row in sheet.rows]
 
 
-def _answer(where: str, row: Mapping[str, Any]) -> Answer:
+def _answer(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) -> Answer:
+    """Return the answer in a row; `spoilt` says what a spreadsheet has made of an id."""
     texts = {name: _text(where, row, name) for name in (*_NEEDED, "reason", "study", "started")}
     for name in _NEEDED[:-1]:
         if not texts[name]:
             raise InputError(f"{where}, column {name}: is empty; give the row as it was written")
+    for name in _IDS:
+        told = spoilt(texts[name])
+        if told:
+            raise InputError(
+                f"{where}, column {name}: {texts[name]!r} is {told}, which a spreadsheet has made "
+                "of an id; give the file as it was written, without opening it in a spreadsheet"
+            )
     return Answer(where=where, options=_options(where, row), plain=dict(row), **texts)
 
 
