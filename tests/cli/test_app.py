@@ -222,6 +222,10 @@ def test_doctor_finds_everything_in_order(capsys: pytest.CaptureFixture[str]) ->
         "kernels:",
         "world:",
         "model:",
+        "limits:",
+        "folder:",
+        "modules:",
+        "routes:",
     ]
     assert all(line.startswith("ok") for line in lines)
 

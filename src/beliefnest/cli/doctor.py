@@ -9,6 +9,7 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import asdict, dataclass
 
+from beliefnest.cli.machine_checks import MACHINE_CHECKS
 from beliefnest.errors import BeliefNestError, BodyError, InputError, ModelError
 from beliefnest.worlds.servers.address import ServerAddress, is_server
 
@@ -252,4 +253,5 @@ _CHECKS: tuple[tuple[str, Callable[[], str]], ...] = (
     ("kernels", _kernels),
     ("world", _world),
     ("model", _model),
+    *MACHINE_CHECKS,
 )

@@ -24,25 +24,26 @@ def _limits() -> str:
 def _folder() -> str:
     """Write a small run file in the current folder, where runs are kept by default."""
     from beliefnest.locking import holding
-    from beliefnest.timeline.store import SqliteJournal
+    from beliefnest.nest.face.nest import Nest
+    from beliefnest.worlds.scripted.world import ScriptedWorld
 
-    here = Path.cwd()
     try:
-        with TemporaryDirectory(prefix=".beliefnest-doctor-", dir=here) as scratch:
+        with TemporaryDirectory(prefix=".beliefnest-doctor-", dir=Path()) as scratch:
             folder = Path(scratch)
             with holding(folder):
                 soft = any(each.name.endswith("-soft") for each in folder.iterdir())
-                SqliteJournal.create(folder / "run.bn").close()
+                world = ScriptedWorld(((0, 0, 0), (2, 2, 2)), {}, {"ann": (1.5, 0.0, 1.5)})
+                Nest(world, store=folder / "run.bn").close()
     except OSError as error:
         raise InputError(
-            f"{here} cannot be written ({error.strerror}); name a folder with --out"
+            f"the current folder cannot be written ({error.strerror}); go to another one"
         ) from None
     if soft:
         return (
-            f"the disk of {here} has no locks (flock): a run that is killed leaves its folder "
+            f"the disk of {Path.cwd()} has no locks (flock): a run that is killed leaves its folder "
             "locked until its process is known to be gone; keep runs on a local disk if you can"
         )
-    return f"runs can be recorded in {here}"
+    return f"runs can be recorded in {Path.cwd()}"
 
 
 def _imports() -> str:
@@ -57,14 +58,15 @@ def _imports() -> str:
     )
     if hiding:
         raise InputError(
-            f"{', '.join(hiding[:3])} hides a module of Python's own from `python -m beliefnest` "
-            "and from whatever reads PYTHONPATH; rename the file, or set PYTHONSAFEPATH=1"
+            f"modules of Python's own are hidden by {', '.join(hiding[:3])} from "
+            "`python -m beliefnest`, and from all that reads PYTHONPATH; rename the file, or set "
+            "PYTHONSAFEPATH=1"
         )
     return "no file of yours hides a module of Python's own"
 
 
 def _own_folders(environment: Mapping[str, str]) -> Iterator[Path]:
-    yield Path.cwd()
+    yield Path()
     yield from map(Path, filter(None, environment.get("PYTHONPATH", "").split(os.pathsep)))
 
 
@@ -81,7 +83,7 @@ def _routes() -> str:
             )
     proxies = sorted(name for name in os.environ if name.lower().endswith("_proxy"))
     if proxies:
-        return f"{', '.join(proxies)} apply to providers, never to servers of this machine"
+        return f"{', '.join(proxies)}: for providers, never for servers of this machine"
     return "no proxy; certificates and keys are well formed"
 
 

@@ -60,8 +60,9 @@ def _lossy(stream: TextIO | None, number: int) -> TextIO:
 
 
 def print_warnings_as_lines() -> None:
-    """Print warnings of this package as messages, without the line of source that gave them."""
+    """Print warnings of this package as messages, once each, without a line of source."""
     usual = warnings.showwarning
+    shown: set[str] = set()
 
     def show(
         message: Warning | str,
@@ -72,7 +73,9 @@ def print_warnings_as_lines() -> None:
         line: str | None = None,
     ) -> None:
         if category.__module__.partition(".")[0] == __name__.partition(".")[0]:
-            print(f"beliefnest: warning: {message}", file=sys.stderr)  # noqa: T201
+            if str(message) not in shown:
+                print(f"beliefnest: warning: {message}", file=sys.stderr)  # noqa: T201
+            shown.add(str(message))
         else:
             usual(message, category, filename, lineno, file, line)
 
