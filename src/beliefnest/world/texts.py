@@ -6,6 +6,7 @@ import unicodedata
 __all__ = [
     "LONGEST_QUOTE",
     "LONGEST_UTTERANCE",
+    "MOST_UTTERANCES",
     "escaped",
     "fault_of",
     "formula_free",
@@ -22,6 +23,9 @@ LONGEST_UTTERANCE = 256
 
 LONGEST_QUOTE = 80
 """Greatest number of characters of a value that a message quotes."""
+
+MOST_UTTERANCES = 20
+"""Greatest number of utterances and thoughts of an agent in a tick, as in Minecraft."""
 
 _LAST_OF_FOUR_DIGITS = 0xFFFF
 

@@ -21,18 +21,24 @@ ROOM: dict[str, Any] = {
 FLOOR = {"block": "stone", "fill": [[0, 0, 0], [9, 0, 6]]}
 WALL = {"block": "bricks", "fill": [[WALL_X, 1, 0], [WALL_X, 3, 6]]}
 
-# All that a program can read, whatever it is called.
+# All that a program can read.
 READ = """
-const told = {}
-for (const key of Object.keys(bot)) {
-  const value = bot[key]
-  const read = key === 'inventory' ? value.items() : value
-  told[key] = typeof value === 'function' ? 'a function' : read
+const bodyOf = body => body && Object.fromEntries(
+  ['type', 'name', 'username', 'position', 'yaw', 'pitch', 'height'].map(key => [key, body[key]]))
+const told = {
+  username: bot.username,
+  entity: bodyOf(bot.entity),
+  players: Object.fromEntries(Object.entries(bot.players).map(([name, player]) =>
+    [name, {...player, entity: bodyOf(player.entity)}])),
+  entities: Object.entries(bot.entities).map(([number, body]) => [number, bodyOf(body)]),
+  inventory: bot.inventory.items(),
+  health: bot.health,
+  food: bot.food
 }
 const blocks = []
 for (let x = 0; x <= 9; x++) for (let y = 0; y <= 3; y++) for (let z = 0; z <= 6; z++) {
   const block = bot.blockAt(new Vec3(x, y, z))
-  blocks.push(block === null ? null : [block.name, block.position, block.getProperties()])
+  blocks.push(block === null ? null : [block.name, block.position.toArray(), block.getProperties()])
 }
 console.log(JSON.stringify({told, blocks}))
 """

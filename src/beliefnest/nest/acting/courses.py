@@ -23,7 +23,7 @@ from beliefnest.world.signs import plain_state
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Items, Point, Position, block_at, feet_in
 from beliefnest.worlds.protocol import Fault, RunRules
-from beliefnest.worlds.scripted.engines import Engines
+from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.programs import RunningPrograms
 from beliefnest.worlds.scripted.world import ScriptedWorld
@@ -81,9 +81,9 @@ class CoursePlan:
         return Grounds()
 
     @cached_property
-    def engines(self) -> Engines:
-        """Pool of reusable JavaScript engines."""
-        return Engines()
+    def desk(self) -> Desk:
+        """Desk of their programs."""
+        return Desk()
 
     @cached_property
     def failures(self) -> dict[tuple[str, str], Fault]:
@@ -274,7 +274,7 @@ class Course:
             RunRules(self.plan.speech_ticks),
             self._seed_text,
             self.plan.grounds,
-            self.plan.engines,
+            self.plan.desk,
         )
         self._programs[name] = programs
 

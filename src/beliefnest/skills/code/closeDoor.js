@@ -1,4 +1,5 @@
 'use strict'
+const { blockPosition } = require('./lib/arguments')
 const { useDoor } = require('./lib/switches')
 
 module.exports = {
@@ -10,5 +11,6 @@ module.exports = {
     { name: 'position', type: 'Vec3', description: 'position of the door, of either half', aim: 'uses', action: ['door'] }
   ],
   example: 'await closeDoor(bot, new Vec3(4, -51, -3))',
+  check: (context, position) => [blockPosition(context, 'position', position)],
   run: (context, position) => useDoor(context, position, false)
 }

@@ -18,9 +18,8 @@ module.exports = {
     { name: 'items', type: '{[name: string]: number}', description: 'how many of which items', action: ['item', 'count'] }
   ],
   example: 'await depositItemIntoChest(bot, new Vec3(-2, -51, -4), {diamond: 1})',
-  async run (context, chestPosition, items) {
-    const position = blockPosition(context, 'chestPosition', chestPosition)
-    const wanted = checkItems(context, 'items', items)
+  check: (context, chestPosition, items) => [blockPosition(context, 'chestPosition', chestPosition), checkItems(context, 'items', items)],
+  async run (context, position, wanted) {
     const outcomes = await withContainer(context, position, window => move(context, window, 'inventory', 'chest', wanted))
     const missing = outcomes.filter(({ moved, count }) => moved < count).map(outcome => shortfall(position, outcome))
     if (missing.length) context.fail(`${missing.join('; ')}. Get more first, or put in less.`)

@@ -8,5 +8,6 @@ module.exports = {
   fails: 'never',
   parameters: [],
   example: 'await doNothing(bot)',
+  check: () => [],
   run: context => ticks(context, 1)
 }

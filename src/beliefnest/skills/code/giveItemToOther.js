@@ -1,5 +1,5 @@
 'use strict'
-const { count: checkCount, item: checkItem } = require('./lib/arguments')
+const { count: checkCount, item: checkItem, otherAgent } = require('./lib/arguments')
 const { walkNear } = require('./lib/walking')
 const { bodyOf } = require('./lib/others')
 const { countOf, contents } = require('./lib/inventory')
@@ -45,11 +45,11 @@ module.exports = {
     { name: 'num', type: 'number', description: 'how many; 1 if left out', action: ['count'] }
   ],
   example: 'await giveItemToOther(bot, "anne", "diamond", 1)',
-  async run (context, otherName, itemName, num = 1) {
+  check: (context, otherName, item, num = 1) =>
+    [otherAgent(context, 'otherName', otherName), checkItem(context, 'item', item), checkCount(context, 'num', num)],
+  async run (context, otherName, item, wanted) {
     const { bot, fail } = context
     const body = bodyOf(context, 'otherName', otherName)
-    const item = checkItem(context, 'item', itemName)
-    const wanted = checkCount(context, 'num', num)
     if (countOf(bot, item) < wanted) fail(`cannot give ${wanted} ${item.name}: the inventory holds ${countOf(bot, item)} of them. It holds: ${contents(bot)}.`)
     await walkNear(context, body.position.clone(), NEAR, otherName)
     if (bot.entity.position.distanceTo(body.position) < TOO_NEAR) await stepBack(context, body)

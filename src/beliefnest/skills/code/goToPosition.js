@@ -14,10 +14,10 @@ module.exports = {
     { name: 'dist', type: 'number', description: 'greatest distance at the end, in blocks; 0: stand in exactly this block', default: '2', action: 0 }
   ],
   example: 'await goToPosition(bot, new Vec3(0, -51, -8))',
-  async run (context, position, dist = 2, doors = {}) {
-    const target = checkPosition(context, 'position', position)
-    const near = distance(context, 'dist', dist)
-    await walkNear(context, target, near, 'the position', flags(context, 'doors', doors, DOORS))
+  check: (context, position, dist = 2, doors = {}) =>
+    [checkPosition(context, 'position', position), distance(context, 'dist', dist), flags(context, 'doors', doors, DOORS)],
+  async run (context, target, near, doors) {
+    await walkNear(context, target, near, 'the position', doors)
     context.emit({ kind: 'move_to', detail: { destination: [target.x, target.y, target.z] } })
   }
 }

@@ -10,8 +10,10 @@
  *   target of the skill (a position or the name of an agent): `walks` if the agent walks there, `uses` if it uses what is
  *   there; `action`: the parts of a structured action (adapters/pettingzoo/actions.py) from which the argument is made,
  *   or the value that it always has there
+ * - `check(context, ...args)` returns the arguments for `run`, or fails; the scripted world reads it as well, so that it
+ *   uses no more of the bot than `username`, `players` and `registry`. Left out, `run` gets the arguments as they are
  * - `takesBot`: false if `bot` is no parameter; otherwise `bot` is the first one, unless it is listed elsewhere
- * - `run(context, ...args)`: `args` are the arguments without `bot`, which is `context.bot`
+ * - `run(context, ...args)`: `args` are what `check` returned, or the arguments without `bot`, which is `context.bot`
  */
 const { numbers } = require('./lib/answers')
 const { show, shortened } = require('./lib/arguments')
@@ -111,24 +113,45 @@ function untilAborted ({ bot, emit }, signal, fail) {
 }
 
 function bind (skill, body, signal, memory) {
-  const fail = (message, cause) => { throw new SkillError(skill.name, shortened(`${skill.name}: ${message}`, LONGEST_MESSAGE), cause) }
+  const fail = (message, cause) => { throw failure(skill, message, cause) }
   const context = { ...body, ...untilAborted(body, signal, fail), fail }
-  const place = skill.parameters.findIndex(({ name }) => name === 'bot')
   const act = async (...own) => {
     try {
-      return await skill.run(context, ...own)
+      return await skill.run(context, ...(skill.check === undefined ? own : skill.check(context, ...own)))
     } catch (error) {
       if (error instanceof SkillError) throw error
       fail(error instanceof Error ? error.message : show(error), error)
     }
   }
   return async (...args) => {
-    if (place !== -1 && args[place] !== body.bot) fail(`argument ${place + 1} of ${skill.signature} must be bot, your own bot`)
-    const own = args.filter((_, index) => index !== place)
+    const own = ownOf(skill, { bot: body.bot, fail }, args)
     return memory === null ? act(...own) : memory.call(skill.name, own, act)
   }
 }
 
+/** Return the arguments of a call without the bot, which must be the caller's own. */
+function ownOf (skill, { bot, fail }, args) {
+  const place = skill.parameters.findIndex(({ name }) => name === 'bot')
+  if (place !== -1 && args[place] !== bot) fail(`argument ${place + 1} of ${skill.signature} must be bot, your own bot`)
+  return args.filter((_, index) => index !== place)
+}
+
+/**
+ * Check a call of a skill without making it, as hosts without bots do.
+ * @param {object} skill
+ * @param {{bot: object, Vec3: Function}} body `bot` has `username`, `players` and `registry`
+ * @param {Array} args arguments of the call
+ * @returns {{own: Array, checked: Array}} the arguments without the bot, and what `run` gets
+ * @throws {SkillError}
+ */
+function admitted (skill, body, args) {
+  const context = { ...body, fail: message => { throw failure(skill, message) } }
+  const own = ownOf(skill, context, args)
+  return { own, checked: skill.check(context, ...own) }
+}
+
+const failure = (skill, message, cause) => new SkillError(skill.name, shortened(`${skill.name}: ${message}`, LONGEST_MESSAGE), cause)
+
 const BY_NAME = new Map(SKILLS.map(skill => [skill.name, skill]))
 
-module.exports = { BY_NAME, SKILLS, SkillError, bindSkills }
+module.exports = { BY_NAME, SKILLS, SkillError, admitted, bindSkills }

@@ -11,8 +11,9 @@ module.exports = {
     { name: 'position', type: 'Vec3', description: 'what to look at' }
   ],
   example: 'await lookAt(bot, new Vec3(2.5, -50, -3.5))',
+  check: (context, position) => [checkPosition(context, 'position', position)],
   async run (context, position) {
-    await context.bot.lookAt(checkPosition(context, 'position', position), true)
+    await context.bot.lookAt(position, true)
     await ticks(context, 1)
   }
 }

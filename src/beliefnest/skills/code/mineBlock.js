@@ -12,8 +12,8 @@ module.exports = {
     { name: 'name', type: 'string', description: 'name of the block that is there' }
   ],
   example: 'await mineBlock(bot, new Vec3(4, -51, 2), "oak_log")',
-  async run (context, position, name) {
-    const place = blockPosition(context, 'position', position)
-    await mine(context, place, checkBlock(context, 'name', name).name)
+  check: (context, position, name) => [blockPosition(context, 'position', position), checkBlock(context, 'name', name)],
+  async run (context, place, { name }) {
+    await mine(context, place, name)
   }
 }

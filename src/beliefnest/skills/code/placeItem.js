@@ -52,10 +52,10 @@ module.exports = {
     { name: 'position', type: 'Vec3', description: 'where to place it', aim: 'uses' }
   ],
   example: 'await placeItem(bot, "crafting_table", new Vec3(4, -51, 2))',
-  async run (context, name, position) {
+  check: (context, name, position) => [checkItem(context, 'name', name), blockPosition(context, 'position', position)],
+  async run (context, item, place) {
     const { bot, fail } = context
-    const item = checkItem(context, 'name', name)
-    const place = blockPosition(context, 'position', position)
+    const { name } = item
     stackOf(context, item)
     const there = bot.blockAt(place)
     if (!there || !FREE.has(there.name)) {

@@ -1,4 +1,5 @@
 'use strict'
+const { blockPosition } = require('./lib/arguments')
 const { pressButton } = require('./lib/switches')
 
 module.exports = {
@@ -10,5 +11,6 @@ module.exports = {
     { name: 'position', type: 'Vec3', description: 'position of the button', aim: 'uses', action: ['button'] }
   ],
   example: 'await pressButton(bot, new Vec3(3, -50, 0))',
+  check: (context, position) => [blockPosition(context, 'position', position)],
   run: pressButton
 }

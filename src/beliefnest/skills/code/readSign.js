@@ -1,4 +1,5 @@
 'use strict'
+const { blockPosition } = require('./lib/arguments')
 const { read } = require('./lib/signs')
 
 module.exports = {
@@ -10,5 +11,6 @@ module.exports = {
     { name: 'position', type: 'Vec3', description: 'position of the sign' }
   ],
   example: 'const text = await readSign(bot, new Vec3(4, -51, -3))',
+  check: (context, position) => [blockPosition(context, 'position', position)],
   run: (context, position) => read(context, position)
 }

@@ -15,9 +15,8 @@ module.exports = {
     PARAMETER
   ],
   example: 'await say(bot, "Hello, Anne! The diamond is here.", [located("diamond", new Vec3(2, -51, -4))])',
-  async run (context, msg, claims) {
-    const text = speech(context, 'msg', msg)
-    const told = checked(context, claims)
+  check: (context, msg, claims) => [speech(context, 'msg', msg), checked(context, claims)],
+  async run (context, text, told) {
     if (told.length > 0) context.emit({ kind: 'claims', detail: { text, claims: told } })
     await context.bot.chat(text)
     await ticks(context, 1)

@@ -11,7 +11,8 @@ module.exports = {
     { name: 'msg', type: 'string', description: 'the thought' }
   ],
   example: 'await think(bot, "Where is the diamond?")',
-  async run (context, msg) {
-    context.emit({ kind: 'think', detail: { text: utterance(context, 'msg', msg) } })
+  check: (context, msg) => [utterance(context, 'msg', msg)],
+  async run (context, text) {
+    context.emit({ kind: 'think', detail: { text } })
   }
 }

@@ -12,9 +12,9 @@ module.exports = {
     { name: 'number', type: 'number', description: 'how many ticks at most', default: '100' }
   ],
   example: 'const answer = await waitForChat(bot, 200)',
-  async run (context, number = 100) {
+  check: (context, number = 100) => [count(context, 'number', number)],
+  async run (context, limit) {
     const { bot, listen } = context
-    const limit = count(context, 'number', number)
     let heard = null
     const hear = whispered => (speaker, text) => {
       if (speaker !== bot.username) heard ??= { speaker, text, whispered }

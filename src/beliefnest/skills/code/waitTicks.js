@@ -11,5 +11,6 @@ module.exports = {
     { name: 'number', type: 'number', description: 'how many ticks' }
   ],
   example: 'await waitTicks(bot, 20)',
-  run: async (context, number) => ticks(context, count(context, 'number', number))
+  check: (context, number) => [count(context, 'number', number)],
+  run: ticks
 }

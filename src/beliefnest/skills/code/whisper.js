@@ -19,10 +19,9 @@ module.exports = {
     PARAMETER
   ],
   example: 'await whisper(bot, "anne", "The diamond is in the left chest.", [located("diamond", new Vec3(2, -51, -4))])',
-  async run (context, otherName, msg, claims) {
-    const to = otherAgent(context, 'otherName', otherName)
-    const text = speech(context, 'msg', msg, LONGEST)
-    const told = checked(context, claims)
+  check: (context, otherName, msg, claims) =>
+    [otherAgent(context, 'otherName', otherName), speech(context, 'msg', msg, LONGEST), checked(context, claims)],
+  async run (context, to, text, told) {
     if (told.length > 0) context.emit({ kind: 'claims', detail: { text, to, claims: told } })
     await context.bot.whisper(to, text)
     await ticks(context, 1)

@@ -1,6 +1,7 @@
 'use strict'
+const { blockPosition } = require('./lib/arguments')
 const { claims: checked, PARAMETER } = require('./lib/claims')
-const { write } = require('./lib/signs')
+const { signText, write } = require('./lib/signs')
 
 module.exports = {
   name: 'writeSign',
@@ -15,5 +16,6 @@ module.exports = {
     PARAMETER
   ],
   example: 'await writeSign(bot, new Vec3(4, -51, -3), "tools\\nno food")',
-  run: (context, position, lines, claims) => write(context, position, lines, checked(context, claims))
+  check: (context, position, lines, claims) => [blockPosition(context, 'position', position), signText(context, lines, claims), checked(context, claims)],
+  run: write
 }

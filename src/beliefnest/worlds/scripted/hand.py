@@ -14,6 +14,7 @@ from typing import Any
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
 from beliefnest.world.registry import AIR, Registry
+from beliefnest.world.texts import MOST_UTTERANCES
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position, block_at, feet_in
 from beliefnest.worlds.protocol import NO_WAY
 from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach
@@ -73,6 +74,7 @@ class Hand:
         ground: True ground, which carries and stops the body.
         speech_ticks: Ticks per utterance; 0 if it is said in the next tick.
         mouth: Utterances that it is about to make, in order.
+        uttered: Ticks of its latest utterances.
         heard: Speech of the latest tick: speaker, text, and the recipient of a whisper.
         stride: Function that returns the number of ticks, from the current one on, in which nothing
             but this agent acts and nobody watches. Steps of so many ticks are taken at once, and
@@ -87,6 +89,7 @@ class Hand:
     ground: Callable[[], Ground]
     speech_ticks: int = 0
     mouth: list[object] = field(default_factory=list)
+    uttered: list[int] = field(default_factory=list)
     heard: list[tuple[str, str, str | None]] = field(default_factory=list)
     stride: Callable[[], int] = _one_tick
 
@@ -105,6 +108,16 @@ class Hand:
         else:
             return
         raise SkillError(f"{what} at {place} cannot be reached from here: {fault}")
+
+    def may_utter(self) -> bool:
+        """Count an utterance of this tick; return False if there have been too many.
+
+        As in Minecraft, where the server drops what is too much.
+        """
+        now = self.world.now
+        self.uttered[:] = [tick for tick in self.uttered if tick == now]
+        self.uttered.append(now)
+        return len(self.uttered) <= MOST_UTTERANCES
 
     @property
     def feet(self) -> Point:

@@ -1,191 +1,557 @@
-"""Agent program of the scripted world, in a JavaScript engine of its own.
+"""Agent program of the scripted world: its session with the host, which answers what it asks for.
 
-The engine is that of the bots' sandbox, inside this process. A program can use only the values it
-is given. It has 64 MB of memory and at most two seconds of computing time between two ticks.
+It is the twin of `worlds/minecraft/node/src/sandbox/session.js`. What both check, the desk checks.
 """
 
 import json
-import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.worlds.protocol import Fault
-from beliefnest.worlds.scripted.engines import (
-    MEMORY_BYTES,
-    Engines,
-    JavaScriptEngine,
-    leaves_nothing,
-    only_acts,
-)
+from beliefnest.skills.manifests import skills as all_skills
+from beliefnest.worlds.protocol import Fault, Unfinished
+from beliefnest.worlds.scripted.bot_reads import Body, BotReads, Window, state_of
+from beliefnest.worlds.scripted.desk import Desk, Facts, Prepared, TooIntricateError
+from beliefnest.worlds.scripted.guest import Guest, GuestEndedError, parsed
+from beliefnest.worlds.scripted.sandbox_parts import parts
+from beliefnest.worlds.scripted.sfc32 import Sfc32
 
-__all__ = ["JavaScriptProgram"]
+__all__ = ["JavaScriptProgram", "Request"]
 
-_MOST_JOBS = 100_000
-_NOTHING: Mapping[str, Any] = {"log": [], "done": None, "waiting": 0, "listens": False}
-_FIRST_LINE = 1000
-"""Line number of a program's first line.
+_HEARD = ("chat", "whisper", "messagestr")
+"""Events to which a program can listen here."""
+_UNDEFINED = {"$": "u"}
+_NOTHING: Mapping[str, Any] = {"waitForChat": None}
+"""What programs get from skills that return nothing, where that is not `undefined`."""
+_NOBODY = 0
+_NEAR = 1_000_000
+"""Coordinates below this are in the world; the desk looks at others."""
+_ERROR_COST = 30_000
+"""Fuel for an error that the desk describes, about what the desk itself computes for it."""
+_LOG_CUT = " ... (the rest of the output is left out)"
+_INTRICATE = "the program is too intricate to be read; write it in simpler parts"
+_ELSEWHERE = 'open the nest with world="embedded" for that'
+_HAS: Mapping[str, tuple[str, ...]] = {
+    "bot": (
+        "username",
+        "entity",
+        "entities",
+        "players",
+        "inventory",
+        "health",
+        "food",
+        "blockAt",
+        "chat",
+        "whisper",
+        "openContainer",
+        "openChest",
+        "closeWindow",
+        "waitForTicks",
+        "on",
+        "once",
+        "off",
+    ),
+    "entity": ("type", "name", "username", "position", "yaw", "pitch", "height"),
+}
 
-The engine reports no file names, so that large line numbers mark the program.
-"""
-_PLACE = re.compile(r"<input>:(\d+)(?::(\d+))?")
-_WHOLE = re.compile(r"\s*(?:async\s+)?function\b")
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """Call of a program.
+
+    Attributes:
+        number: Its number.
+        name: What it calls.
+        args: Arguments as the program gave them, as plain data.
+        checked: Arguments that the skill gets.
+        aim: What it aims at, as the desk says.
+        error: Error of its arguments, for the program.
+    """
+
+    number: int
+    name: str
+    args: list[Any]
+    checked: list[Any]
+    aim: Mapping[str, Any] | None = None
+    error: Mapping[str, Any] | None = None
+
+
+class RefusedError(Exception):
+    """Something that a program cannot have, described for its author."""
+
+
+class _RequestError(Exception):
+    """Error for the program, as the desk wrote it."""
+
+    def __init__(self, wire: Mapping[str, Any]) -> None:
+        super().__init__(wire["message"])
+        self.wire = wire
 
 
 class JavaScriptProgram:
     """Program that begins with `start`.
 
     Args:
-        username: The agent that runs it.
-        skills: Names of the skills in its scope.
+        reads: What it may read; it also says whose program it is.
+        skills: Names of the skills that the world has.
         code: Its text.
         seed: Seed of its random numbers.
-        engines: Pool of engines to share.
-
-    Attributes:
-        reads: False if the program learns about the world only from the results of skills.
+        desk: Desk to share.
+        speech_lasts: True if what it says takes time, so that its bot returns promises.
     """
 
     def __init__(
-        self, username: str, skills: Collection[str], code: str, seed: str, engines: Engines
+        self,
+        reads: BotReads,
+        skills: Collection[str],
+        code: str,
+        seed: str,
+        desk: Desk,
+        *,
+        speech_lasts: bool = False,
     ) -> None:
-        self._code = code
-        self._engines = engines
-        self._leaves_nothing = leaves_nothing(code, skills)
-        self.reads = _WHOLE.match(code) is not None or not only_acts(code, skills)
-        if self._leaves_nothing:
-            self._engine = engines.take(username, skills)
-        else:
-            self._engine = JavaScriptEngine(username, skills, seed)
-        self._call = self._engine.call
+        self._reads, self._skills, self._code, self._desk = reads, skills, code, desk
+        self._speech_lasts = speech_lasts
+        self._random = Sfc32(seed)
+        self._bag = Window("bot.inventory", lambda: reads.me.inventory, "items")
+        self._guest: Guest | None = None
+        self._prepared: Prepared | None = None
+        self._objects: list[object] = [None]
+        self._kinds = ["bot"]
+        self._requests: list[Request] = []
+        self._under_way: dict[int, tuple[str, int]] = {}
+        self._began: dict[int, int] = {}
+        self._listeners: list[tuple[str, int, bool]] = []
+        self._next = 1
+        self._log: list[str] = []
+        self._room = parts().limits.log_characters
+        self._outcome: Mapping[str, Any] | None = None
+        self._last = 0
+        self._under: list[str] = []
         self._fault: Fault | None = None
-        self._blocks: str | None = None
-        self._taken: dict[str, Any] = {
-            "calls": [],
-            "log": [],
-            "done": None,
-            "waiting": 0,
-            "listens": False,
-        }
+
+    # For the host
 
     def start(self) -> None:
         """Start the program, and run it until it waits."""
-        code = self._code
-        whole = _WHOLE.match(code) is not None
-        lines = "\n" * _FIRST_LINE
-        head = f"({'' if whole else 'async '}function ({self._engine.names}) {{ 'use strict'; "
-        body = f"return ({lines}{code}\n)" if whole else f"{lines}{code}\n"
         try:
-            main = self._engine.read(f"{head}{body}}})")
-            self._call("start", main, whole)
-            self._drain()
-        except self._engine.failed as error:
-            self._fault = _fault_of(str(error), kind="syntax")
+            prepared = self._desk.prepare(self._code)
+        except TooIntricateError:
+            prepared = {"message": _INTRICATE, "kind": "syntax"}
+        if not isinstance(prepared, Prepared):
+            self._outcome, self._fault = {"ok": False}, _fault(prepared)
+            return
+        self._prepared = prepared
+        guest = self._guest = Guest(self._answer, lambda: self._reads.now_ms, self._random.fraction)
+        try:
+            guest.start(prepared.text, prepared.marks)
+            self._look()
+        except GuestEndedError as ended:
+            self._finish({"ok": False, "ended": ended})
 
     @property
     def draws(self) -> int:
         """Number of random numbers that it has drawn."""
-        return 0 if self._leaves_nothing else self._engine.draws
+        return self._random.draws
 
     def reseed(self, seed: str) -> None:
         """Let a seed decide about its random numbers from now on."""
-        if not self._leaves_nothing:
-            self._engine.reseed(seed)
+        self._random.reseed(seed)
 
     def end(self) -> None:
-        """Return a shareable engine to the pool; the program must not continue."""
-        is_over = self._taken["done"] is not None and self._is_stuck and self._fault is None
-        if self._leaves_nothing and is_over:
-            self._engines.give_back(self._engine)
-
-    def see(self, told: Mapping[str, object], blocks: str) -> None:
-        """Set what the program reads of the world from now on."""
-        # Convert only a new text: handing over a large map takes long.
-        new = blocks != self._blocks
-        self._blocks = blocks
-        self._call("see", json.dumps(told), blocks if new else None)
+        """Free what the program holds; it must not continue."""
+        if self._guest is not None:
+            self._guest.close()
+            self._guest = None
 
     @property
     def listens(self) -> bool:
         """True if the program listens for speech."""
-        return bool(self._taken["listens"])
+        return bool(self._listeners) and not self.ended
 
     def hear(self, heard: Sequence[tuple[str, str, str | None]]) -> None:
         """Report what its agent heard: speaker, text, and the recipient of a whisper."""
-        self._turn("hear", json.dumps(heard))
+        for speaker, words, to in heard:
+            me = self._reads.name
+            if to is None:
+                self._tell("chat", speaker, words)
+            elif to == me:
+                self._tell("whisper", speaker, words)
+            line = f"<{speaker}> {words}"
+            if to is not None:
+                about = f"{speaker} whispers to you" if to == me else f"You whisper to {to}"
+                line = f"{about}: {words}"
+            self._tell("messagestr", line)
 
-    def settle(self, number: int, *, ok: bool, value: object) -> None:
-        """Answer a call, and run until the program waits again."""
-        self._turn("settle", number, ok, json.dumps(value))
+    def settle(self, number: int, value: object) -> None:
+        """Give a call its result, and run until the program waits again."""
+        if number in self._under_way:
+            name = self._under_way.pop(number)[0]
+            self._wake(["settle", number, True, self._wire(name, value)])
 
-    def _turn(self, part: str, *given: object) -> None:
-        """Call a part of the prelude, and run until the program waits again."""
-        try:
-            self._call(part, *given)
-            self._drain()
-        except self._engine.failed as error:
-            self._fault = _fault_of(str(error), kind="error")
+    def fail(self, number: int, error: Mapping[str, Any]) -> None:
+        """Let a call fail, and run until the program waits again.
 
-    def calls(self) -> list[tuple[int, str, list[Any]]]:
-        """Return number, name and arguments of the skill calls since the last request."""
-        called = [(number, name, args) for number, name, args in self._taken["calls"]]
-        self._taken["calls"] = []
-        return called
+        Args:
+            number: The call.
+            error: Message, and a reason or None; or an error of the desk.
+        """
+        if number in self._under_way:
+            name = self._under_way.pop(number)[0]
+            self._wake(["settle", number, False, _error_of(name, error)])
+
+    def requests(self) -> list[Request]:
+        """Return the calls since the last request."""
+        made, self._requests = self._requests, []
+        return made
 
     @property
     def log(self) -> tuple[str, ...]:
         """Lines that the program wrote to its console."""
-        return tuple(self._taken["log"])
+        return tuple(self._log)
 
     @property
     def ended(self) -> bool:
-        """True if the program has ended or can never end."""
-        return self._fault is not None or self._taken["done"] is not None or self._is_stuck
+        """True if the program has ended."""
+        return self._outcome is not None
 
     @property
     def fault(self) -> Fault | None:
         """Reason of its failure; None if it has not failed."""
-        if self._fault is not None:
-            return self._fault
-        done = self._taken["done"]
-        if done is None:
+        return self._fault
+
+    def unfinished(self, number: int, name: str) -> Unfinished:
+        """Describe a call that was stopped."""
+        if self._prepared is None:
+            return Unfinished(name)
+        return Unfinished(name, self._desk.line(self._prepared, self._began[number]))
+
+    # Its end
+
+    def _look(self) -> None:
+        """Look whether it has ended, or waits for what can never happen."""
+        assert self._guest is not None
+        result = self._guest.result()
+        failed = result is not None and not result["ok"]
+        stray = None if failed else self._guest.stray_error()
+        if stray is not None:
+            self._finish({"ok": False, "error": stray, "stray": True})
+        elif result is not None:
+            self._finish(result)
+        elif not self._under_way and not self._listeners:
             message = "the program waits for a promise that nothing will settle"
-            return Fault(message, "stuck") if self._is_stuck else None
-        if done["ok"]:
-            return None
-        kind = done["kind"] or ("error" if done["skill"] is None else "skill")
-        named = done["name"] != "Error" and not done["skill"]
-        message = f"{done['name']}: {done['message']}" if named else done["message"]
-        line, column = _place_in(done["stack"])
-        return Fault(message, kind, line, column, done["skill"], done["reason"])
+            self._finish({"ok": False, "ended": GuestEndedError("stuck", message)})
+
+    def _finish(self, outcome: Mapping[str, Any]) -> None:
+        """End the program; only the first outcome counts."""
+        if self._outcome is not None:
+            return
+        assert self._guest is not None and self._prepared is not None
+        self._outcome = outcome
+        under = [what for what, _ in self._under_way.values()]
+        last = self._guest.last_statement
+        self._guest.end("ended", "the program has ended")
+        if outcome["ok"]:
+            return
+        ended = outcome.get("ended")
+        if isinstance(ended, GuestEndedError):
+            told = {"kind": ended.kind, "message": ended.message, "guestStack": ended.stack}
+            outcome = {**outcome, "ended": told}
+        try:
+            error = self._desk.outcome(self._prepared, outcome, last, under)
+        except TooIntricateError:
+            error = {"message": _INTRICATE, "kind": "error"}
+        self._fault = _fault(error or {})
+
+    def _wake(self, message: list[object]) -> None:
+        """Send a message; its error ends the program, for nobody else can catch it."""
+        if self._outcome is not None:
+            return
+        assert self._guest is not None
+        try:
+            told = self._guest.send(message)
+            if not told["ok"]:
+                self._finish({"ok": False, "error": told["value"]})
+            elif self._guest.idle:
+                self._look()
+        except GuestEndedError as ended:
+            self._finish({"ok": False, "ended": ended})
+
+    def _tell(self, event: str, *values: str) -> None:
+        for each in [each for each in self._listeners if each[0] == event]:
+            if each not in self._listeners:
+                continue
+            if each[2]:
+                self._listeners.remove(each)
+            self._wake(["invoke", each[1], list(values), _NOBODY])
+
+    # What it asks for
+
+    def _answer(self, text: str) -> str:
+        """Answer a request of the program."""
+        assert self._guest is not None
+        cost, most = parts().cost, parts().limits.message
+        self._guest.charge(cost.each + cost.character * min(len(text), most))
+        try:
+            answer = json.dumps({"ok": True, "value": self._asked(text)})
+        except RefusedError as error:
+            told = {"$": "e", "message": str(error), "name": "Error", "skill": None}
+            return json.dumps({"ok": False, "value": {**told, "kind": "refused"}})
+        except _RequestError as error:
+            return json.dumps({"ok": False, "value": error.wire})
+        except TooIntricateError:
+            told = {"$": "e", "message": "the arguments are too large", "name": "Error"}
+            return json.dumps({"ok": False, "value": {**told, "skill": None, "kind": "refused"}})
+        self._guest.charge(cost.answered * len(answer))
+        return answer
+
+    def _asked(self, text: str) -> Any:
+        most = parts().limits.message
+        if len(text) > most:
+            raise RefusedError(
+                f"more than {most} characters leave the program at once, which is the limit"
+            )
+        action, *args = parsed(text)
+        return _ACTIONS[action](self, *args)
+
+    def _object(self, wire: Any) -> tuple[str, object]:
+        number = wire["id"]
+        return self._kinds[number], self._objects[number]
+
+    def _handle(self, kind: str, value: object) -> dict[str, Any]:
+        if value not in self._objects:
+            self._objects.append(value)
+            self._kinds.append(kind)
+        return {"$": "h", "id": self._objects.index(value), "k": kind}
 
     @property
-    def _is_stuck(self) -> bool:
-        return bool(self._taken["waiting"] == 0)
+    def _facts(self) -> Facts:
+        return Facts(self._reads.name, self._reads.agents, self._kinds)
 
-    def _drain(self) -> None:
-        jobs = 0
-        while self._engine.advance():
-            jobs += 1
-            if jobs > _MOST_JOBS:
-                self._fault = Fault("the program goes on without ever waiting", "fuel")
+    def _get(self, wire: Any, name: str) -> Any:
+        kind, held = self._object(wire)
+        if isinstance(held, Body):
+            value = self._reads.member(held, name)
+            if value is not None:
+                return value
+        if kind == "bot" and name in _GETS:
+            return _GETS[name](self)
+        raise self._lacks(kind, held, name)
+
+    def _set(self, wire: Any, name: str, _: Any) -> Any:
+        raise self._lacks(*self._object(wire), name)
+
+    def _call(self, wire: Any, name: str, wires: list[Any]) -> Any:
+        kind, held = self._object(wire)
+        if isinstance(held, Window):
+            if name == held.gives:
+                return [_item(*each) for each in held.items().items()]
+            if name == "close":
+                return _UNDEFINED
+        if kind != "bot" or name not in _CALLS:
+            raise self._lacks(kind, held, name)
+        if name == "blockAt" and _is_plain_place(wires):
+            return self._reads.block(tuple(wires[0]["c"]))
+        told = self._desk.admit_call("bot", name, wires, self._facts)
+        self._charge(told)
+        if "error" in told:
+            raise _RequestError(told["error"])
+        return _CALLS[name](self, told)
+
+    def _skill(self, name: str, wires: list[Any]) -> Any:
+        if name not in self._skills:
+            raise RefusedError(f"the scripted world has no {name}; {_ELSEWHERE}")
+        told = self._desk.admit_skill(name, wires, self._facts)
+        self._charge(told)
+        if "error" in told and not told.get("later"):
+            raise _RequestError(told["error"])
+        return self._promise(name, told)
+
+    def _charge(self, told: Mapping[str, Any]) -> None:
+        assert self._guest is not None
+        self._guest.charge(told["cost"] + (_ERROR_COST if "error" in told else 0))
+
+    def _promise(self, name: str, told: Mapping[str, Any]) -> Any:
+        """Note a call, and return the promise of its result."""
+        most = parts().limits.calls
+        if len(self._under_way) >= most:
+            raise RefusedError(f"{most} calls are under way, which is the limit")
+        number = self._ask(name, told)
+        self._under_way[number] = (name, self._began[number])
+        return {"$": "p", "id": number}
+
+    def _ask(self, name: str, told: Mapping[str, Any]) -> int:
+        assert self._guest is not None
+        number, self._next = self._next, self._next + 1
+        self._began[number] = self._guest.last_statement
+        own, checked = told.get("own", []), told.get("checked", [])
+        made = Request(number, name, own, checked, told.get("aim"), told.get("error"))
+        self._requests.append(made)
+        return number
+
+    def _speak(self, name: str, told: Mapping[str, Any]) -> Any:
+        if self._speech_lasts:
+            return self._promise(f"bot.{name}", told)
+        self._ask(f"bot.{name}", told)
+        return _UNDEFINED
+
+    def _open(self, told: Mapping[str, Any]) -> Any:
+        [target] = told["checked"]
+        if not isinstance(target, dict) or "position" not in target:
+            raise RefusedError(f"the scripted world opens blocks alone; {_ELSEWHERE}")
+        place = [target["position"]]
+        return self._promise("openContainer", {**told, "own": place, "checked": place})
+
+    def _listen(self, event: str, wire: Any, once: bool) -> Any:
+        if event not in _HEARD:
+            known = event in parts().events
+            if known:
+                raise RefusedError(f"the scripted world has no event {event}; {_ELSEWHERE}")
+            raise RefusedError(
+                f"a program cannot listen to the event {_shown(event)}; "
+                f"it can to {', '.join(parts().events)}"
+            )
+        most = parts().limits.listeners
+        if len(self._listeners) >= most:
+            raise RefusedError(f"the program has {most} listeners, which is the limit")
+        self._listeners.append((event, wire["id"], once))
+        return None
+
+    def _unlisten(self, event: str, wire: Any) -> Any:
+        for each in self._listeners:
+            if each[:2] == (event, wire["id"]):
+                self._listeners.remove(each)
                 break
-        taken = json.loads(self._call("take"))
-        self._taken = {**taken, "calls": [*self._taken["calls"], *taken["calls"]]}
+        return None
+
+    def _settled(self, ticket: int, ok: bool, wire: Any) -> Any:
+        if not ok:
+            self._finish({"ok": False, "error": wire})
+        return None
+
+    def _write(self, _: str, text: str) -> Any:
+        limits = parts().limits
+        if len(self._log) >= limits.log_lines or self._room <= 0:
+            return None
+        written = text[: self._room]
+        self._room -= len(written)
+        is_last = len(self._log) == limits.log_lines - 1 or self._room <= 0
+        self._log.append(f"{written}{_LOG_CUT}" if is_last else written)
+        return None
+
+    def _timer(self, *_: Any) -> Any:
+        raise RefusedError(
+            f"the scripted world has no timers: write await waitTicks(bot, number), or {_ELSEWHERE}"
+        )
+
+    def _data(self, table: str, *_: Any) -> Any:
+        raise RefusedError(f"the scripted world has no mcData.{table}; {_ELSEWHERE}")
+
+    def _lacks(self, kind: str, held: object, name: str) -> RefusedError:
+        what = held.what if isinstance(held, Window) else kind
+        has = (held.gives, "close") if isinstance(held, Window) else _HAS.get(kind, ())
+        there = f", only {', '.join(has)}" if has else ""
+        return RefusedError(f"the scripted world has no {what}.{name}{there}; {_ELSEWHERE}")
+
+    def _wire(self, name: str, value: Any) -> Any:
+        """Return the result of a call for the program."""
+        if value is None:
+            return _NOTHING.get(name, _UNDEFINED)
+        if name == "openContainer":
+            window = Window("the window of a container", lambda: value, "containerItems")
+            return self._handle("window", window)
+        return _plain(value)
+
+    @property
+    def _players(self) -> Any:
+        return _plain(
+            {name: {"username": name, "entity": self._body(name)} for name in self._reads.agents}
+        )
+
+    def _body(self, name: str) -> Any:
+        return self._handle("entity", Body(name)) if self._reads.is_there(name) else None
+
+    @property
+    def _entities(self) -> Any:
+        others = enumerate(self._reads.others, 1)
+        return _plain({str(number): self._body(name) for number, name in others})
+
+    @property
+    def _inventory(self) -> Any:
+        return self._handle("window", self._bag)
 
 
-def _fault_of(text: str, kind: str) -> Fault:
-    message = text.partition("\n")[0]
-    line, column = _place_in(text)
-    if "interrupted" in message:
-        return Fault("the program computes without end; is there an endless loop?", "fuel", line)
-    if "out of memory" in message:
-        return Fault(f"the program takes more than {MEMORY_BYTES >> 20} MB", "memory", line)
-    return Fault(message, kind, line, column)
+_GETS: Mapping[str, Callable[[JavaScriptProgram], Any]] = {
+    "username": lambda program: program._reads.name,
+    "entity": lambda program: program._body(program._reads.name),
+    "players": lambda program: program._players,
+    "entities": lambda program: program._entities,
+    "inventory": lambda program: program._inventory,
+    "health": lambda program: program._reads.me.health,
+    "food": lambda program: program._reads.me.food,
+}
+
+_CALLS: Mapping[str, Callable[[JavaScriptProgram, Mapping[str, Any]], Any]] = {
+    "blockAt": lambda program, told: program._reads.block(tuple(told["checked"][0])),
+    "chat": lambda program, told: program._speak("chat", told),
+    "whisper": lambda program, told: program._speak("whisper", told),
+    "openContainer": lambda program, told: program._open(told),
+    "openChest": lambda program, told: program._open(told),
+    "closeWindow": lambda program, told: _UNDEFINED,
+    "waitForTicks": lambda program, told: program._promise("waitTicks", told),
+}
+
+_ACTIONS: Mapping[str, Callable[..., Any]] = {
+    "get": JavaScriptProgram._get,
+    "set": JavaScriptProgram._set,
+    "call": JavaScriptProgram._call,
+    "skill": JavaScriptProgram._skill,
+    "on": JavaScriptProgram._listen,
+    "off": JavaScriptProgram._unlisten,
+    "timer": JavaScriptProgram._timer,
+    "untimer": lambda *_: None,
+    "log": JavaScriptProgram._write,
+    "data": JavaScriptProgram._data,
+    "keys": JavaScriptProgram._data,
+    "state": lambda _, state: state_of(state),
+    "settled": JavaScriptProgram._settled,
+}
 
 
-def _place_in(stack: str) -> tuple[int | None, int | None]:
-    for found in _PLACE.finditer(stack):
-        line = int(found[1]) - _FIRST_LINE
-        if line > 0:
-            return line, None if found[2] is None else int(found[2])
-    return None, None
+def _is_plain_place(wires: list[Any]) -> bool:
+    """Return True for a place that needs no check by the desk: programs read many blocks."""
+    if not wires or not isinstance(wires[0], dict) or wires[0].get("$") != "v":
+        return False
+    return all(type(part) in (int, float) and abs(part) < _NEAR for part in wires[0]["c"])
+
+
+def _fault(error: Mapping[str, Any]) -> Fault:
+    keys = ("line", "column", "skill", "reason")
+    return Fault(error["message"], error["kind"], **{key: error.get(key) for key in keys})
+
+
+def _error_of(name: str, error: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the error of a call for the program."""
+    if "$" in error:
+        return error
+    is_skill = any(name == each.name for each in all_skills())
+    reason = {"reason": error["reason"]} if error["reason"] else {}
+    told = {"$": "e", "message": f"{name}: {error['message']}", "skill": name, "kind": "skill"}
+    return {**told, "name": "SkillError" if is_skill else "Error", **reason}
+
+
+def _item(name: str, count: int) -> Any:
+    return _plain({"name": name, "count": count})
+
+
+def _plain(value: Any) -> Any:
+    """Return plain data for the program; handles stay as they are."""
+    if isinstance(value, Mapping) and "$" not in value:
+        return {"$": "o", "o": [[key, _plain(each)] for key, each in value.items()]}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return value
+
+
+def _shown(event: object) -> str:
+    return f'the text "{event[:40]}"' if isinstance(event, str) else str(event)

@@ -6,7 +6,7 @@ from types import MappingProxyType
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import Snapshot
 from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
-from beliefnest.worlds.scripted.engines import Engines
+from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -23,13 +23,13 @@ class ScriptedBody:
     lost = goes_on = False
 
     def __init__(
-        self, world: ScriptedWorld, sink: Sink, seed: str, grounds: Grounds, engines: Engines
+        self, world: ScriptedWorld, sink: Sink, seed: str, grounds: Grounds, desk: Desk
     ) -> None:
         self.world = world
         self._sink = sink
         self._seed = seed
         self._grounds = grounds
-        self._engines = engines
+        self._desk = desk
         self._recording = True
         world.listen(sink)
 
@@ -69,7 +69,7 @@ class ScriptedBody:
             rules,
             self._seed,
             self._grounds,
-            self._engines,
+            self._desk,
         )
 
     def step(self, ticks: int) -> None:
@@ -96,7 +96,7 @@ class ScriptedNestWorld:
     def __init__(self, first: ScriptedWorld | None = None) -> None:
         self._first = first
         self._grounds = Grounds()
-        self._engines = Engines()
+        self._desk = Desk()
 
     def open_body(self, name: str, seed: str, snapshot: Snapshot, sink: Sink) -> ScriptedBody:
         """Create a body.
@@ -105,7 +105,7 @@ class ScriptedNestWorld:
         """
         world, self._first = self._first, None
         world = world or ScriptedWorld.from_snapshot(snapshot)
-        return ScriptedBody(world, sink, seed, self._grounds, self._engines)
+        return ScriptedBody(world, sink, seed, self._grounds, self._desk)
 
     def another(self) -> "ScriptedNestWorld":
         """Return another empty world."""

@@ -4,13 +4,11 @@ A program's code before its first wait belongs to the first tick. A skill that i
 acts in the next ones. Agents act in the order of their programs.
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.errors import BeliefNestError
-from beliefnest.skills.calls import callables
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, Box, Event, EventKind, Point
 from beliefnest.worlds.protocol import (
@@ -20,13 +18,13 @@ from beliefnest.worlds.protocol import (
     RunRules,
     Sense,
     Sensed,
-    Unfinished,
 )
-from beliefnest.worlds.scripted.engines import Engines
+from beliefnest.worlds.scripted.bot_reads import BotReads
+from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.hand import Doing, Hand, SkillError
-from beliefnest.worlds.scripted.javascript_program import JavaScriptProgram
+from beliefnest.worlds.scripted.javascript_program import JavaScriptProgram, Request
 from beliefnest.worlds.scripted.program_memory import Memory
 from beliefnest.worlds.scripted.skills import CALLS, SKILLS, UTTERANCES
 from beliefnest.worlds.scripted.world import ScriptedWorld
@@ -34,9 +32,6 @@ from beliefnest.worlds.scripted.world import ScriptedWorld
 __all__ = ["RunningPrograms", "run_programs"]
 
 _MOST_AIMS = 100
-_EPOCH_MS = 1_704_067_200_000
-"""Start of the worlds' time, as in Minecraft's: 2024-01-01, in UTC."""
-_TICK_MS = 50
 _DOINGS = {**SKILLS, **CALLS}
 _ENDS_WITH_PROGRAM = SKILLS.keys() - UTTERANCES
 
@@ -65,7 +60,7 @@ def run_programs(
     rules: RunRules,
     seed: str,
     grounds: Grounds,
-    engines: Engines,
+    desk: Desk,
 ) -> Mapping[str, ProgramResult]:
     """Run programs by agent until the last has ended.
 
@@ -78,9 +73,9 @@ def run_programs(
         rules: Rules of the run.
         seed: Seed of random numbers.
         grounds: Cache of the data of grids.
-        engines: Pool of engines to share.
+        desk: Desk of programs to share.
     """
-    under_way = RunningPrograms(world, programs, senses, rules, seed, grounds, engines)
+    under_way = RunningPrograms(world, programs, senses, rules, seed, grounds, desk)
     last = world.now + timeout_ticks
     try:
         while True:
@@ -111,28 +106,18 @@ class RunningPrograms:
         rules: RunRules,
         seed: str,
         grounds: Grounds,
-        engines: Engines,
+        desk: Desk,
     ) -> None:
-        self._world, self._rules, self._grounds = world, rules, grounds
+        self._world, self._rules, self._grounds, self._desk = world, rules, grounds, desk
         self._first = world.now
         self._happened: list[tuple[int, Event]] = []
         self._latest: list[Event] = []
         self._done: list[tuple[_Run, list[tuple[int, bool, object]]]] = []
         world.listen(self._hear)
         try:
-            begun = {
-                agent: JavaScriptProgram(
-                    agent,
-                    SKILLS,
-                    code,
-                    f"{seed} {_begin_of(rules, agent, world.now)} {agent}",
-                    engines,
-                )
-                for agent, code in programs.items()
-            }
             self._runs = [
-                _begun(world, agent, program, senses, rules, grounds, self._latest)
-                for agent, program in begun.items()
+                self._begun(agent, code, senses, f"{seed} {_begin_of(rules, agent, world.now)}")
+                for agent, code in programs.items()
             ]
         except BaseException:
             self.leave()
@@ -160,10 +145,12 @@ class RunningPrograms:
     def settle(self) -> None:
         """Tell the programs the effects of the tick, after it has ended."""
         for run in self._runs:
-            _hear(run, self._grounds)
+            _hear(run)
         for run, answers in self._done:
             for number, ok, value in answers:
-                _settle(run, self._grounds, number, ok=ok, value=value)
+                del run.doing[number]
+                _answer(run, number, ok=ok, value=value)
+                _take_calls(run)
         for run in self._runs:
             if run.end_tick is None and run.program.ended and not _goes_on(run):
                 run.end_tick = self._world.now
@@ -177,7 +164,7 @@ class RunningPrograms:
         self._world.unlisten(self._hear)
 
     def results(self) -> Mapping[str, ProgramResult]:
-        """Give the engines back, and return what became of the programs."""
+        """Free the programs, and return what became of them."""
         for run in self._runs:
             run.program.end()
         happened, remembers = tuple(self._happened), self._rules.remembers
@@ -185,6 +172,44 @@ class RunningPrograms:
             run.hand.name: _result(run, self._first, happened, remembers=remembers)
             for run in self._runs
         }
+
+    def _begun(self, agent: str, code: str, senses: Mapping[str, Sense], seed: str) -> _Run:
+        world, rules, grounds, latest = self._world, self._rules, self._grounds, self._latest
+
+        def all_of_it() -> Sensed:
+            others, heard = _others(world.agents, agent), _heard_by(agent, latest)
+            return Sensed(world.terrain, others, heard=heard, signs=world.signs)
+
+        def ground() -> Ground:
+            return grounds.of(world.box, world.terrain)
+
+        sense = senses.get(agent, all_of_it)
+        hand = Hand(
+            agent,
+            world,
+            # For full knowledge use the true ground, which needs no map of all agents at each step.
+            known=_known(world.box, sense, grounds) if agent in senses else ground,
+            others=lambda: sense().agents,
+            signs=lambda: sense().signs,
+            ground=ground,
+            speech_ticks=rules.speech_ticks,
+        )
+        program = JavaScriptProgram(
+            BotReads(world, agent, sense),
+            SKILLS,
+            code,
+            f"{seed} {agent}",
+            self._desk,
+            speech_lasts=rules.speech_ticks > 0,
+        )
+        past = rules.past.get(agent)
+        missed = () if past is None else sense().heard
+        run = _Run(
+            hand, program, sense, missed=missed, memory=Memory(() if past is None else past.calls)
+        )
+        program.start()
+        _take_calls(run)
+        return run
 
     def _hear(self, frame: Frame) -> None:
         self._happened.extend((frame.tick, event) for event in frame.events)
@@ -197,46 +222,8 @@ def _begin_of(rules: RunRules, agent: str, now: int) -> int:
     return now if past is None else past.tick
 
 
-def _begun(
-    world: ScriptedWorld,
-    agent: str,
-    program: JavaScriptProgram,
-    senses: Mapping[str, Sense],
-    rules: RunRules,
-    grounds: Grounds,
-    latest: Sequence[Event],
-) -> _Run:
-    def all_of_it() -> Sensed:
-        others, heard = _others(world.agents, agent), _heard_by(agent, latest)
-        return Sensed(world.terrain, others, heard=heard, signs=world.signs)
-
-    def ground() -> Ground:
-        return grounds.of(world.box, world.terrain).ground
-
-    sense = senses.get(agent, all_of_it)
-    hand = Hand(
-        agent,
-        world,
-        # For full knowledge use the true ground, which needs no map of all agents at each step.
-        known=_known(world.box, sense, grounds) if agent in senses else ground,
-        others=lambda: sense().agents,
-        signs=lambda: sense().signs,
-        ground=ground,
-        speech_ticks=rules.speech_ticks,
-    )
-    past = rules.past.get(agent)
-    missed = () if past is None else sense().heard
-    run = _Run(
-        hand, program, sense, missed=missed, memory=Memory(() if past is None else past.calls)
-    )
-    _show(run, grounds)
-    program.start()
-    _take_calls(run)
-    return run
-
-
 def _known(box: Box, sense: Sense, grounds: Grounds) -> Callable[[], Ground]:
-    return lambda: grounds.of(box, sense().blocks).ground
+    return lambda: grounds.of(box, sense().blocks)
 
 
 def _heard_by(agent: str, events: Sequence[Event]) -> tuple[tuple[str, str, str | None], ...]:
@@ -251,7 +238,7 @@ def _listens(run: _Run) -> bool:
     return run.program.listens or any(name == "waitForChat" for name, _ in run.doing.values())
 
 
-def _hear(run: _Run, grounds: Grounds) -> None:
+def _hear(run: _Run) -> None:
     """Report the speech of the tick that has ended to an agent and its program."""
     run.hand.heard.clear()
     if not _listens(run) or run.end_tick is not None:
@@ -263,7 +250,6 @@ def _hear(run: _Run, grounds: Grounds) -> None:
         return
     run.hand.heard.extend(heard)
     if run.program.listens and not run.program.ended:
-        _show(run, grounds)
         run.program.hear(heard)
         _take_calls(run)
 
@@ -289,98 +275,68 @@ def _goes_on(run: _Run) -> bool:
     return any(name not in _ENDS_WITH_PROGRAM for name, _ in run.doing.values())
 
 
-def _settle(run: _Run, grounds: Grounds, number: int, *, ok: bool, value: object) -> None:
-    del run.doing[number]
-    _show(run, grounds)
-    _answer(run, number, ok=ok, value=value)
-    _take_calls(run)
-
-
-def _answer(run: _Run, number: int, *, ok: bool, value: object) -> None:
+def _answer(run: _Run, number: int, *, ok: bool, value: Any) -> None:
     run.memory.answered(number, ok=ok, value=value)
-    run.program.settle(number, ok=ok, value=value)
+    _tell(run, number, ok=ok, value=value)
+
+
+def _tell(run: _Run, number: int, *, ok: bool, value: Any) -> None:
+    if ok:
+        run.program.settle(number, value)
+    else:
+        run.program.fail(number, value)
 
 
 def _take_calls(run: _Run) -> None:
     """Begin the calls of a program; a call that cannot begin fails at once."""
-    calls = run.program.calls()
-    while calls:
-        for number, name, args in calls:
-            known = run.memory.called(number, name, args, run.hand.world.now)
-            if known is not None:
-                run.program.settle(number, ok=known[0], value=known[1])
-                continue
-            _note_aim(run, name, args)
-            try:
-                doing = _DOINGS[name](run.hand, *run.memory.left(number, args))
-                next(doing)
-                run.doing[number] = (name, doing)
-            except StopIteration as ended:
-                _answer(run, number, ok=True, value=ended.value)
-            except (BeliefNestError, TypeError) as error:
-                _answer(run, number, ok=False, value=_told(error))
-        calls = run.program.calls()
+    requests = run.program.requests()
+    while requests:
+        for request in requests:
+            _begin(run, request)
+        requests = run.program.requests()
     if _listens(run) and run.read is None:
         # A new listener gets no earlier speech.
         run.read = run.sense()
 
 
+def _begin(run: _Run, request: Request) -> None:
+    number, name, now = request.number, request.name, run.hand.world.now
+    known = run.memory.called(number, name, request.args, now)
+    if known is not None:
+        _tell(run, number, ok=known[0], value=known[1])
+        return
+    if request.aim is not None and len(run.aims) < _MOST_AIMS:
+        run.aims.append(_aim(now, request.aim))
+    if request.error is not None:
+        run.program.fail(number, request.error)
+        return
+    try:
+        doing = _DOINGS[name](run.hand, *run.memory.left(number, request.checked))
+        next(doing)
+        run.doing[number] = (name, doing)
+    except StopIteration as ended:
+        _answer(run, number, ok=True, value=ended.value)
+    except BeliefNestError as error:
+        _answer(run, number, ok=False, value=_told(error))
+
+
 def _told(error: Exception) -> dict[str, object]:
     reason = error.reason if isinstance(error, SkillError) else None
-    message = str(error)
-    if isinstance(error, TypeError):
-        message = "it is called with too few or too many arguments"
-    return {"message": message, "reason": reason}
+    return {"message": str(error), "reason": reason}
 
 
-def _show(run: _Run, grounds: Grounds) -> None:
-    if not run.program.reads:
-        return
-    sensed = run.sense()
-    me = run.hand.world.agents[run.hand.name]
-    there = {**sensed.agents, run.hand.name: me}
-    told = {
-        "agents": {name: _pose(agent) for name, agent in there.items()},
-        "players": {name: name in there for name in sorted(run.hand.world.agents)},
-        "inventory": dict(me.inventory),
-        "health": me.health,
-        "food": me.food,
-        "ms": _EPOCH_MS + run.hand.world.now * _TICK_MS,
-        "signs": {",".join(map(str, place)): text for place, text in sensed.signs.items()},
-    }
-    run.program.see(told, grounds.of(run.hand.world.box, sensed.blocks).text)
+def _aim(tick: int, made: Mapping[str, Any]) -> Aim:
+    place = None if made["place"] is None else _point(made["place"])
+    return Aim(tick, made["call"], place, made["agent"], made["uses"])
+
+
+def _point(value: Sequence[float]) -> Point:
+    x, y, z = value
+    return (float(x), float(y), float(z))
 
 
 def _others(agents: Mapping[str, AgentState], me: str) -> Mapping[str, AgentState]:
     return {name: agent for name, agent in agents.items() if name != me}
-
-
-def _pose(agent: AgentState) -> dict[str, object]:
-    return {"position": agent.position, "yaw": agent.yaw, "pitch": agent.pitch}
-
-
-def _note_aim(run: _Run, name: str, args: list[Any]) -> None:
-    """Note the target of a call, as the manifest of the skill declares it."""
-    known = callables().get(name)
-    if known is None or len(run.aims) >= _MOST_AIMS:
-        return
-    for parameter, value in zip(known.arguments, args, strict=False):
-        if not parameter.aim:
-            continue
-        is_agent = parameter.type == "string"
-        place = None if is_agent else _point(value)
-        agent = value if is_agent and isinstance(value, str) else None
-        if place is not None or agent is not None:
-            uses = parameter.aim == "uses"
-            run.aims.append(Aim(run.hand.world.now, name, place, agent, uses))
-
-
-def _point(value: Any) -> Point | None:
-    if not isinstance(value, list) or len(value) != 3:
-        return None
-    if not all(isinstance(part, int | float) and math.isfinite(part) for part in value):
-        return None
-    return (float(value[0]), float(value[1]), float(value[2]))
 
 
 def _time_out(runs: Sequence[_Run], tick: int, timeout_ticks: int) -> None:
@@ -401,7 +357,9 @@ def _result(
         ticks=(run.end_tick or first) - first,
         happened=happened,
         log=run.program.log,
-        unfinished=tuple(Unfinished(name) for name, _ in run.doing.values()),
+        unfinished=tuple(
+            run.program.unfinished(number, name) for number, (name, _) in run.doing.items()
+        ),
         aims=tuple(run.aims),
         calls=run.memory.calls(run.end_tick or first) if remembers else (),
     )

@@ -14,6 +14,7 @@ from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_open
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_fault
+from beliefnest.world.texts import MOST_UTTERANCES
 from beliefnest.world.values import EYE_HEIGHT, Position, block_at
 from beliefnest.worlds.scripted.building import mine_block, place_item, press_button, switch_lever
 from beliefnest.worlds.scripted.footpaths import Near
@@ -143,12 +144,14 @@ def _claims(told: Any) -> tuple[Claim, ...]:
 
 def _say(hand: Hand, text: Any, claims: Any = ()) -> Doing:
     yield from _speak(hand)
-    hand.world.say(hand.name, text_in(text), _claims(claims))
+    if hand.may_utter():
+        hand.world.say(hand.name, text_in(text), _claims(claims))
 
 
 def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
     yield from _speak(hand)
-    hand.world.whisper(hand.name, text_in(other), text_in(text), _claims(claims))
+    if hand.may_utter():
+        hand.world.whisper(hand.name, text_in(other), text_in(text), _claims(claims))
 
 
 def _speak(hand: Hand) -> Doing:
@@ -167,6 +170,11 @@ def _speak(hand: Hand) -> Doing:
 
 def _think(hand: Hand, text: Any) -> Doing:
     yield 0
+    if not hand.may_utter():
+        raise SkillError(
+            f"{hand.name} has uttered {MOST_UTTERANCES} things in one tick, which is the most. "
+            "Wait a tick between them."
+        )
     hand.world.think(hand.name, text_in(text))
 
 

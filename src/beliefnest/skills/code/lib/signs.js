@@ -1,5 +1,5 @@
 'use strict'
-const { blockPosition, show } = require('./arguments')
+const { show } = require('./arguments')
 const { answered } = require('./answers')
 const { isUnseen, nameOf } = require('./known')
 const { signFlawOf } = require('./text')
@@ -19,16 +19,20 @@ function textOf (sign) {
   return sign.entity ? sign.getSignText()[0].replace(/\n+$/, '') : ''
 }
 
-/** Go to a sign and replace its text; do nothing if the sign has this text already. */
-async function write (context, signPosition, lines, claims) {
-  const { bot, fail, emit } = context
-  const position = blockPosition(context, 'position', signPosition)
+/** Return the text that a program wants on a sign, without empty lines at the end; fail if it cannot be written. */
+function signText ({ fail }, lines, claims) {
   const text = Array.isArray(lines) && lines.every(line => typeof line === 'string') ? lines.join('\n') : lines
   if (typeof text !== 'string') fail(`text must be a text; it is ${show(text)}`)
   const flaw = signFlawOf(text)
   if (flaw !== null) fail(`text ${flaw}.`)
   const wanted = text.replace(/\n+$/, '')
-  if (claims.length > 0 && wanted === '') fail('an empty text cannot claim anything. Write a text, or leave out the claims.')
+  if (Array.isArray(claims) && claims.length > 0 && wanted === '') fail('an empty text cannot claim anything. Write a text, or leave out the claims.')
+  return wanted
+}
+
+/** Go to a sign and replace its text; do nothing if the sign has this text already. */
+async function write (context, position, wanted, claims) {
+  const { bot, fail, emit } = context
   if (!isUnseen(bot, position)) signAt(context, position)
   await walkToUse(context, position, 'the sign')
   if (textOf(signAt(context, position)) === wanted) return
@@ -41,11 +45,10 @@ async function write (context, signPosition, lines, claims) {
 }
 
 /** Look at a sign and return its text. */
-async function read (context, signPosition) {
-  const position = blockPosition(context, 'position', signPosition)
+async function read (context, position) {
   signAt(context, position)
   await context.bot.lookAt(position.offset(0.5, 0.5, 0.5))
   return textOf(signAt(context, position))
 }
 
-module.exports = { read, textOf, write }
+module.exports = { read, signText, textOf, write }

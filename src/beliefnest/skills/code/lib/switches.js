@@ -1,5 +1,5 @@
 'use strict'
-const { blockPosition, show } = require('./arguments')
+const { show } = require('./arguments')
 const { walkToUse } = require('./walking')
 const { isUnseen, nameOf } = require('./known')
 const { answered } = require('./answers')
@@ -13,9 +13,9 @@ const DOOR = { called: 'door', is: name => /(_door|_trapdoor|_fence_gate)$/.test
 const BUTTON = { called: 'button', is: name => name.endsWith('_button') }
 
 /** Go to a lever and switch it on or off; do nothing if it is in that state already. */
-async function switchLever (context, leverPosition, powered) {
+async function switchLever (context, position, powered) {
   const { bot, fail } = context
-  const { position, block } = await goTo(context, leverPosition, LEVER)
+  const block = await goTo(context, position, LEVER)
   if (block().getProperties().powered === powered) return
   await bot.activateBlock(block())
   await answered(context)
@@ -23,9 +23,9 @@ async function switchLever (context, leverPosition, powered) {
 }
 
 /** Go to a button and press it; if it is pressed already, first wait until it comes out. */
-async function pressButton (context, buttonPosition) {
+async function pressButton (context, position) {
   const { bot, fail } = context
-  const { position, block } = await goTo(context, buttonPosition, BUTTON)
+  const block = await goTo(context, position, BUTTON)
   const pressed = () => block().getProperties().powered
   if (!await until(context, () => !pressed(), PRESSED_TICKS)) fail(`the button at ${show(position)} stays pressed. Try again later.`)
   let moved = false
@@ -41,16 +41,15 @@ async function pressButton (context, buttonPosition) {
 }
 
 /** Go to a door, trapdoor or gate and open or shut it; do nothing if it is in that state already. */
-async function useDoor (context, doorPosition, open) {
+async function useDoor (context, position, open) {
   const { bot, fail } = context
-  const position = blockPosition(context, 'position', doorPosition)
   const known = bot.blockAt(position)
   const name = known?.name ?? 'door'
   if (name.startsWith('iron_') && DOOR.is(name)) {
     if (known.getProperties().open === open) return
     fail(`the ${name} at ${show(position)} is not moved by hand. Use the lever, button or plate that powers it.`)
   }
-  const { block } = await goTo(context, position, DOOR)
+  const block = await goTo(context, position, DOOR)
   if (block().getProperties().open === open) return
   await bot.activateBlock(block())
   await answered(context)
@@ -58,9 +57,8 @@ async function useDoor (context, doorPosition, open) {
 }
 
 /** Walk to a switch. The returned `block()` looks the block up, and fails if it is no such switch any more. */
-async function goTo (context, place, { called, is }) {
+async function goTo (context, position, { called, is }) {
   const { bot, fail } = context
-  const position = blockPosition(context, 'position', place)
   const block = () => {
     const found = bot.blockAt(position)
     if (found === null || !is(found.name)) {
@@ -70,7 +68,7 @@ async function goTo (context, place, { called, is }) {
   }
   if (!isUnseen(bot, position)) block()
   await walkToUse(context, position, `the ${called}`)
-  return { position, block }
+  return block
 }
 
 module.exports = { pressButton, switchLever, useDoor }

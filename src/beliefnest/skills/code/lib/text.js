@@ -4,8 +4,9 @@
 const LONGEST = 256
 const SIGN_LINES = 4
 const SIGN_LINE = 45
-// C0 and C1 control characters (line breaks and ESC among them) and the separators U+2028 and U+2029.
-const CONTROLS = /[\u0000-\u001f\u007f-\u009f\u2028\u2029]/ // eslint-disable-line no-control-regex -- these are what is looked for
+// C0 and C1 control characters (line breaks and ESC among them), the separators U+2028 and U+2029, and the marks that
+// change the direction of the text around them; as `fault_of` in world/texts.py.
+const CONTROLS = /[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]/ // eslint-disable-line no-control-regex -- these are what is looked for
 
 /**
  * Return what is wrong with an utterance, as the end of a sentence.

@@ -5,21 +5,26 @@
  */
 const fs = require('node:fs')
 const path = require('node:path')
+const zlib = require('node:zlib')
 const esbuild = require('esbuild')
 const { encode } = require('@msgpack/msgpack')
 const { MINECRAFT_VERSION, buildRegistry } = require('./registry')
 const { buildHandling } = require('./handling')
 const { buildCircuits } = require('./circuits')
-const { interpreterBytes } = require('./src/sandbox/interpreter')
+const { INITIAL_PAGES, interpreterBytes } = require('./src/sandbox/interpreter')
+const { DEFAULTS, namesOf } = require('./src/sandbox')
+const { METER } = require('./src/sandbox/engine')
+const { events } = require('./src/sandbox/policy/events')
+const { kindNames } = require('./src/sandbox/policy/kinds')
+const { LIMITS, REQUEST_COST } = require('./src/sandbox/session')
+const { interpreterNames } = require('./bundling/interpreter')
+const { bundledDesk } = require('./bundling/desk')
+const { deskState, guestState } = require('./bundling/states')
+const { SKILLS } = require('../../../skills/code')
 const { INTERPRETER, replacements } = require('./bundling/replacements')
 const { FURTHER, writeVersions } = require('./bundling/versions')
 
 const SOURCE = path.join(__dirname, 'src')
-/**
- * Files that Python reads too. The scripted world gives programs the same Vec3 class, dates and random numbers, and
- * the same hints about unknown names.
- */
-const SHARED = ['sandbox/guest/vec3.js', 'sandbox/guest/date.js', 'time/sfc32.js', 'sandbox/hints.js']
 const DEFAULT_OUTDIR = path.join(__dirname, '..', '..', '..', '_bundle')
 
 async function build (outdir) {
@@ -36,19 +41,30 @@ async function build (outdir) {
     path.join(outdir, `circuits-${MINECRAFT_VERSION}.msgpack`), encode(buildCircuits(MINECRAFT_VERSION)))
   writeVersions(outdir, FURTHER)
   fs.writeFileSync(path.join(outdir, INTERPRETER), interpreterBytes())
-  for (const file of SHARED) await share(path.join(SOURCE, file), outdir)
+  const desk = await bundledDesk(path.join(SOURCE, 'sandbox', 'desk.js'))
+  Object.assign(inputs, desk.inputs)
+  fs.writeFileSync(path.join(outdir, 'sandbox.msgpack.gz'), zlib.gzipSync(encode(await sandbox(desk.code))))
   const folders = packageFolders(inputs)
   fs.writeFileSync(path.join(outdir, 'packages.json'), `${JSON.stringify(packageList(folders), null, 1)}\n`)
   fs.writeFileSync(path.join(outdir, 'licenses.txt'), licenseTexts(folders))
 }
 
-/**
- * Write a file that imports nothing to the bundle, minified: the engine reads it completely each time it starts a
- * program.
- */
-async function share (file, outdir) {
-  const { code } = await esbuild.transform(fs.readFileSync(file, 'utf8'), { minifySyntax: true, minifyWhitespace: true, target: 'es2022' })
-  fs.writeFileSync(path.join(outdir, path.basename(file)), code)
+/** Return what the scripted world, which is written in Python, needs of the sandbox. @returns {Promise<object>} */
+async function sandbox (desk) {
+  const { itemsArray, blocksArray } = require('minecraft-data')(MINECRAFT_VERSION)
+  const registry = { items: itemsArray.map(({ name }) => name), blocks: Object.fromEntries(blocksArray.map(({ name, states }) => [name, states])) }
+  const scope = namesOf({ skills: Object.fromEntries(SKILLS.map(({ name }) => [name, null])), data: {} })
+  return {
+    ...await interpreterNames(),
+    scope: scope.parameters,
+    kinds: kindNames,
+    events: Object.keys(events),
+    limits: { ...DEFAULTS, ...LIMITS },
+    meter: { ...METER, initialPages: INITIAL_PAGES },
+    cost: REQUEST_COST,
+    guest: await guestState(scope),
+    desk: await deskState(desk, registry)
+  }
 }
 
 /** Build programs into one folder. @returns {Promise<object>} inputs of the programs, by file */

@@ -350,4 +350,17 @@ function uncaught ({ name, message, stack }) {
   return [name === 'SyntaxError' ? 'syntax' : 'error', `${name}: ${message}`, stack]
 }
 
-module.exports = { Engine, GuestEnded }
+/** Constants of metering, for other hosts of the same interpreter. */
+const METER = {
+  shadowStackBytes: SHADOW_STACK_BYTES,
+  stackBytes: STACK_BYTES,
+  unmetered: UNMETERED,
+  grace: GRACE,
+  crossingStackBytes: CROSSING_STACK_BYTES,
+  lastBreath: LAST_BREATH,
+  jobsAtOnce: JOBS_AT_ONCE,
+  mostStrays: MOST_STRAYS,
+  wakeCost: WAKE_COST
+}
+
+module.exports = { Engine, GuestEnded, METER }

@@ -95,4 +95,4 @@ function splitScope (scope) {
   return { skills, data: scope.mcData ?? null }
 }
 
-module.exports = { createSandbox }
+module.exports = { DEFAULTS, createSandbox, namesOf }

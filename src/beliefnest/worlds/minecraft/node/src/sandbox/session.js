@@ -400,4 +400,4 @@ class CallError extends Error {
   }
 }
 
-module.exports = { Session }
+module.exports = { LIMITS, REQUEST_COST, Session }

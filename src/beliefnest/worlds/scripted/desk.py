@@ -1,0 +1,136 @@
+"""Desk of programs: the part of the bots' sandbox that prepares, checks and describes.
+
+It is the JavaScript of `worlds/minecraft/node/src/sandbox/desk.js` in its own interpreter, so
+that no program can change it. Thus both worlds check by the same code.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from beliefnest.worlds.scripted.interpreter import GuestError, Interpreter
+from beliefnest.worlds.scripted.sandbox_parts import parts
+from beliefnest.worlds.scripted.wasm_machine import TrapError
+
+__all__ = ["Desk", "Facts", "Prepared", "TooIntricateError"]
+
+_FUEL = 1_000_000_000
+"""Fuel of one request; reading the longest usual program takes a twentieth."""
+_MEMORY_BYTES = 64 << 20
+_MOST_KEPT = 200
+_RESERVE = 10_000_000
+
+
+class TooIntricateError(Exception):
+    """A request took more than the desk can do; only texts made for that do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """Program that is ready to run.
+
+    Attributes:
+        code: Its text, as written.
+        text: Expression of a function of marks and scope.
+        marks: Length of the array that takes the numbers of executed statements.
+    """
+
+    code: str
+    text: str
+    marks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What checks of arguments need to know.
+
+    Attributes:
+        me: The program's agent.
+        agents: All agents.
+        kinds: Kinds of the game objects that the program holds, by number.
+    """
+
+    me: str
+    agents: Sequence[str]
+    kinds: Sequence[str]
+
+    @property
+    def plain(self) -> dict[str, object]:
+        """The facts as the desk reads them."""
+        return {"me": self.me, "agents": list(self.agents), "kinds": list(self.kinds)}
+
+
+class Desk:
+    """Desk for any number of programs; it starts with the first request."""
+
+    def __init__(self) -> None:
+        self._interpreter: Interpreter | None = None
+        self._prepared: dict[str, Prepared | Mapping[str, Any]] = {}
+
+    def prepare(self, code: str) -> Prepared | Mapping[str, Any]:
+        """Return a program that is ready to run, or its error."""
+        known = self._prepared.get(code)
+        if known is None:
+            told = self._ask("prepare", code, parts().scope)
+            known = told["error"] if "error" in told else Prepared(code, **told)
+            self._prepared[code] = known
+            while len(self._prepared) > _MOST_KEPT:
+                del self._prepared[next(iter(self._prepared))]
+        return known
+
+    def outcome(
+        self, program: Prepared, outcome: Mapping[str, Any], last: int, under: Sequence[str]
+    ) -> Mapping[str, Any] | None:
+        """Describe how a program ended, as the sandbox does; None if it ended well."""
+        limits = {"fuel": parts().limits.fuel, "memory": parts().limits.memory}
+        told: Mapping[str, Any] | None = self._ask(
+            "outcome", program.code, parts().scope, outcome, limits, last, under
+        )
+        return told
+
+    def line(self, program: Prepared, statement: int) -> int | None:
+        """Return the line of a statement of a program."""
+        told: int | None = self._ask("lineOf", program.code, parts().scope, statement)
+        return told
+
+    def admit_skill(self, name: str, wires: Sequence[Any], facts: Facts) -> dict[str, Any]:
+        """Check a call of a skill; see `admitSkill` in desk.js."""
+        told: dict[str, Any] = self._ask("admitSkill", name, wires, facts.plain)
+        return told
+
+    def admit_call(
+        self, kind: str, name: str, wires: Sequence[Any], facts: Facts
+    ) -> dict[str, Any]:
+        """Check a call of a method of a game object; see `admitCall` in desk.js."""
+        told: dict[str, Any] = self._ask("admitCall", kind, name, wires, facts.plain)
+        return told
+
+    def _ask(self, *request: object) -> Any:
+        interpreter = self._interpreter or self._opened()
+        interpreter.fuel = _FUEL
+        message = interpreter.string(json.dumps(request))
+        try:
+            answer = interpreter.call(parts().desk.functions["dispatch"], [message])
+            text = interpreter.text(answer)
+        except (GuestError, TrapError) as error:
+            # What it did is unknown: begin anew.
+            self._interpreter = None
+            raise TooIntricateError(str(error)) from None
+        interpreter.free(answer)
+        interpreter.free(message)
+        return json.loads(text)
+
+    def _opened(self) -> Interpreter:
+        made: list[Interpreter] = []
+        interpreter = Interpreter(
+            _MEMORY_BYTES,
+            call=lambda _, __: 0,
+            interrupt=lambda: made[0].fuel < _RESERVE,
+            rejected=lambda _, __: None,
+        )
+        made.append(interpreter)
+        interpreter.restore(parts().desk)
+        interpreter.limit_memory(_MEMORY_BYTES)
+        self._interpreter = interpreter
+        return interpreter
