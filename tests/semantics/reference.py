@@ -251,6 +251,11 @@ class Reference:
             node.containers[place] = ContainerBelief(dict(items), complete, basis, current=False)
         for name, feet in special.agents.items():
             node.agents[name] = AgentBelief(position=feet, basis=basis)
+        for name, items in special.inventories.items():
+            if name != path[-1]:
+                node.agents[name] = replace(
+                    node.agents.get(name, AgentBelief()), inventory=dict(items)
+                )
         return node
 
     def _special(self, path: Path) -> bn.InitialBelief:
@@ -264,6 +269,7 @@ class Reference:
                         {**special.containers, **belief.containers},
                         {**special.blocks, **belief.blocks},
                         {**special.agents, **belief.agents},
+                        {**special.inventories, **belief.inventories},
                     )
         return special
 

@@ -231,6 +231,7 @@ class Stories:
         )
         states = st.sampled_from([-1, *map(REGISTRY.state_id, ("air", "stone", "chest"))])
         held = st.just({"emerald": 1})
+        who = st.sampled_from(NAMES)
         # Two priors may speak of one node, and have to agree about where it is.
         place = CONTAINERS
         if self._unique:
@@ -245,6 +246,7 @@ class Stories:
             containers=st.dictionaries(st.sampled_from(place), contents, max_size=1),
             blocks=st.dictionaries(self._cell(range(2)), states, max_size=3),
             agents=st.dictionaries(st.sampled_from(NAMES), self._feet, max_size=1),
+            inventories=st.dictionaries(who, st.just({"diamond": 1}), max_size=1),
         )
 
     @cached_property

@@ -120,9 +120,12 @@ class InitialBelief:
         containers: Position to (items, complete).
         blocks: Position to block; -1 makes one unknown.
         agents: Agent name to believed feet position.
+        inventories: Agent name to items that it is known to have, perhaps among others. What an
+            agent itself has it always knows, so that its own entry has no effect.
     """
 
     path: BeliefPath
     containers: Mapping[Position, tuple[Items, bool]] = field(default_factory=dict)
     blocks: Mapping[Position, Block] = field(default_factory=dict)
     agents: Mapping[str, Point] = field(default_factory=dict)
+    inventories: Mapping[str, Items] = field(default_factory=dict)

@@ -196,6 +196,9 @@ def _add_prior(
     holdings = Holdings()
     for place, (items, complete) in mine.containers.items():
         holdings.containers[cell_of(context.box, place)] = Content(dict(items), complete, basis)
+    for name, items in mine.inventories.items():
+        if name != path[-1]:
+            holdings.inventories[context.numbers[name]] = dict(items)
     table.set_known_bases(node, basis)
     for cell in context.tracked:
         if context.container_name(table.block(node, cell)):

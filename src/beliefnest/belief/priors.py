@@ -21,6 +21,7 @@ def merged_belief(initial: Sequence[InitialBelief], node: BeliefPath) -> Initial
             {**merged.containers, **belief.containers},
             {**merged.blocks, **belief.blocks},
             {**merged.agents, **belief.agents},
+            {**merged.inventories, **belief.inventories},
         )
     return merged
 

@@ -103,6 +103,7 @@ class ExampleBranch:
     names: Mapping[Position, str] = field(default_factory=dict)
     places: Mapping[str, Position] = field(default_factory=dict)
     observations: Sequence[Observation] = ()
+    unique: frozenset[str] = frozenset()
 
     def child(self, agent: str) -> "ExampleBranch":
         """Return the belief of an agent; for the owner, this belief itself.

@@ -20,12 +20,14 @@ class Told:
         names: Names of containers, signs, doors and switches, without articles.
         labels: Labels of containers (name and appearance), if prompts may show them.
         places: Positions of named places.
+        unique: Items of which everybody knows that there is one.
     """
 
     observations: tuple[Observation, ...]
     names: Mapping[Position, str]
     labels: Mapping[Position, str]
     places: Mapping[str, Position]
+    unique: frozenset[str] = frozenset()
 
 
 class MindView:
@@ -82,6 +84,11 @@ class MindView:
     def places(self) -> Mapping[str, Position]:
         """The positions of the named places that the owner knows, by name."""
         return self._read.places
+
+    @property
+    def unique(self) -> frozenset[str]:
+        """The items of which everybody knows that there is one."""
+        return self._read.unique
 
     def child(self, agent: str) -> "MindView":
         """Return the view of an agent's belief; for the owner, this view itself."""

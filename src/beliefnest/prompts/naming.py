@@ -72,7 +72,7 @@ def believed_names(
         observations: Observations of its owner.
         labels: Labels that the owner knows.
     """
-    kinds = _seen_kinds(observations) | _believed_kinds(state)
+    kinds = _lower_halves(_seen_kinds(observations) | _believed_kinds(state))
     bases = {at: kind_name(block) for at, block in kinds.items()}
     return apart({**bases, **{at: on_one_line(label) for at, label in labels.items()}})
 
@@ -91,15 +91,16 @@ def _seen_kinds(observations: Iterable[Observation]) -> dict[Position, str]:
 
 
 def _believed_kinds(state: State) -> dict[Position, str]:
-    found = {
-        at: block_name(text)
-        for at, text in blocks_where(state, lambda text: is_named(block_name(text)))
-    }
-    # The upper half of a door belongs to the lower one.
+    named = blocks_where(state, lambda text: is_named(block_name(text)))
+    return {at: block_name(text) for at, text in named}
+
+
+def _lower_halves(kinds: Mapping[Position, str]) -> dict[Position, str]:
+    """Return things without the upper halves of doors, which belong to the lower ones."""
     return {
         at: block
-        for at, block in found.items()
-        if not (is_door(block) and is_door(found.get((at[0], at[1] - 1, at[2]), "")))
+        for at, block in kinds.items()
+        if not (is_door(block) and is_door(kinds.get((at[0], at[1] - 1, at[2]), "")))
     }
 
 

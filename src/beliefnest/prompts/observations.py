@@ -18,12 +18,15 @@ class Outset:
         owner: The observer; None: a narrator, who perceives everything.
         feet: Feet of the perceived agents, by name; the observer's own included.
         has: Items that each of them is known to have.
+        known: Names of the others who know of these items, by name of the holder, as the observer
+            believes; the observer itself and the holder are left out.
     """
 
     tick: int
     owner: str | None
     feet: Mapping[str, Point]
     has: Mapping[str, Items]
+    known: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,11 +101,15 @@ class Happened:
         event: The event.
         block: Block at its position, as the observer believes after it; None if it is unknown, or
             if a narrator tells.
+        heard: Names of the others who heard an utterance, as the observer believes; its speaker and
+            the observer itself are left out. None if everybody hears everything, or if it is no
+            utterance.
     """
 
     tick: int
     event: PerceivedEvent
     block: str | None = None
+    heard: tuple[str, ...] | None = None
 
 
 Observation = Outset | Assumed | Sight | Found | Read | Lying | Happened

@@ -34,6 +34,10 @@ class BranchView(Protocol):
         """Positions of named places, by name."""
 
     @property
+    def unique(self) -> frozenset[str]:
+        """Items of which everybody knows that there is one."""
+
+    @property
     def observations(self) -> Sequence[Observation]:
         """Observations of the owner until now, in the order of time; in the real world, all."""
 

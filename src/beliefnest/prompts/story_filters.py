@@ -3,7 +3,6 @@
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 
-from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.prompts import event_rows, text
 from beliefnest.prompts.filterset import filter
 from beliefnest.prompts.observations import (
@@ -154,6 +153,8 @@ class _Teller:
         self._names = branch.names
         self._places = {at: name for name, at in branch.places.items()}
         self._labels = branch.labels
+        self._unique = branch.unique
+        self._agents = tuple(sorted(branch.state.agents))
         self._blocks = branch.state.blocks
         self._you = None if narrated else branch.state.owner
         self._owner = branch.state.owner
@@ -225,22 +226,24 @@ class _Teller:
             or not same
         ):
             return None
-        first = happened(opening, self._subject(opening.actor), self._words(opening))
+        first = happened(opening, self._subject(opening.actor), self._words(each))
         self._it = (opening.actor, opening.detail.get("position"))
-        return _sentence(f"{first} and {happened(use, '', self._words(use))}")
+        return _sentence(f"{first} and {happened(use, '', self._words(following))}")
 
     def _one(self, each: Observation) -> Iterator[str]:
         match each:
             case Happened(event=event):
-                yield _sentence(happened(event, self._subject(event.actor), self._words(event)))
+                yield _sentence(happened(event, self._subject(event.actor), self._words(each)))
                 self._it = (event.actor, event.detail.get("position"))
+                if each.heard is not None:
+                    yield self._told_to(each.heard, {event.actor})
             case Sight():
                 yield from self._changes([each])
             case Found(place=place, items=items):
                 thing = "it" if self._it == (self._owner, place) else self._thing(place)
-                yield _inside(thing, items)
+                yield self._inside(thing, items)
             case Assumed(place=place, items=items):
-                thing, held = self._thing(place), things_words(items)
+                thing, held = self._thing(place), self._things(items)
                 many = sum(items.values()) > 1
                 held = (
                     f"{held} {'were' if many else 'was'} in {thing}"
@@ -256,7 +259,7 @@ class _Teller:
                     yield _sentence(f"Nothing was written on {thing}")
             case Lying(name=name, count=count, position=point):
                 where = f" {self._near(point)}" if self._near(point) else ""
-                yield _sentence(f"On the floor{where} lay {things_words({name: count})}")
+                yield _sentence(f"On the floor{where} lay {self._things({name: count})}")
             case Outset():
                 yield from self._outset(each)
 
@@ -268,12 +271,18 @@ class _Teller:
             things = [self._thing(at, mention=True) for at in self._names]
             if things:
                 yield _sentence(f"There {'was' if len(things) == 1 else 'were'} {listed(things)}")
+        if self._unique:
+            yield _sentence(f"There was only {listed([f'one {n}' for n in self._singles()])}")
         for name, point in outset.feet.items():
             where = self._near(point)
             if where:
                 yield _sentence(f"{self._subject(name)} stood {where}")
         for name, items in outset.has.items():
-            yield _sentence(f"{self._subject(name)} had {things_words(items)}")
+            yield _sentence(f"{self._subject(name)} had {self._things(items)}")
+            knowing = outset.known.get(name, ())
+            # Only a narrator knows for sure that nobody knows.
+            if knowing or (self._owner is None and len(self._agents) > 1):
+                yield self._told_of(knowing, {name})
 
     def _first_sights(self, sights: Sequence[Sight]) -> Iterator[str]:
         """Yield sentences about what can be seen at first."""
@@ -342,7 +351,7 @@ class _Teller:
         empty = [self._thing(each.place) for each in found if not each.items]
         for each in found:
             if each.items:
-                yield _inside(self._thing(each.place), each.items)
+                yield self._inside(self._thing(each.place), each.items)
         if empty:
             yield _sentence(f"{listed(empty)} {'was' if len(empty) == 1 else 'were'} empty")
 
@@ -354,10 +363,11 @@ class _Teller:
                 told = label.removeprefix(name).removeprefix(", ")
                 yield _sentence(f"{self._thing(at)} {told}")
 
-    def _words(self, event: PerceivedEvent) -> dict[str, str]:
+    def _words(self, each: Happened) -> dict[str, str]:
+        event = each.event
         detail, told = event.detail, {}
         if detail.get("items"):
-            told["items"] = things_words(detail["items"])
+            told["items"] = self._things(detail["items"])
         for key in ("to", "other"):
             if detail.get(key):
                 told[key] = self._object(detail[key])
@@ -366,7 +376,9 @@ class _Teller:
         if detail.get("position") is not None:
             again = event.kind in _AT_CONTAINER and self._it == (event.actor, detail["position"])
             told["thing"] = (
-                "it" if again else self._thing(tuple(detail["position"]), detail.get("block"))
+                "it"
+                if again
+                else self._thing(tuple(detail["position"]), detail.get("block") or each.block)
             )
         return told
 
@@ -402,6 +414,38 @@ class _Teller:
             return "".join(words)
         return f"{''.join(words) or preposition} {point_words(point)}"
 
+    def _singles(self) -> list[str]:
+        return [name.replace("_", " ") for name in sorted(self._unique)]
+
+    def _told_to(self, heard: Sequence[str], without: set[str | None]) -> str:
+        """Return a sentence about who else heard an utterance."""
+        return self._common(heard, without, "heard it")
+
+    def _told_of(self, knowing: Sequence[str], without: set[str | None]) -> str:
+        """Return a sentence about who else knew of possessions."""
+        return self._common(knowing, without, "knew that")
+
+    def _common(self, those: Sequence[str], without: set[str | None], did: str) -> str:
+        others = {*self._agents} - without - {self._owner}
+        if not those:
+            words = f"nobody else {did}"
+        elif len(others) > 1 and others <= {*those}:
+            words = f"everybody else {did}"
+        else:
+            only = "only " if others > {*those} else ""
+            words = f"{only}{listed([_titled(name) for name in those])} {did}"
+        if self._owner is not None:
+            words = f"as far as {self._object(self._owner)} knew, {words}"
+        return _sentence(words)
+
+    def _things(self, items: Items) -> str:
+        return things_words(items, self._unique)
+
+    def _inside(self, thing: str, items: Items) -> str:
+        verb = "were" if sum(items.values()) > 1 else "was"
+        held = self._things(items)
+        return _sentence(f"In {thing} {verb} {held}" if held else f"{thing} was empty")
+
     def _subject(self, agent: str | None) -> str:
         if agent is None:
             return ""
@@ -413,12 +457,6 @@ class _Teller:
 
 def _titled(name: str) -> str:
     return name[:1].upper() + name[1:]
-
-
-def _inside(thing: str, items: Items) -> str:
-    verb = "were" if sum(items.values()) > 1 else "was"
-    held = things_words(items)
-    return _sentence(f"In {thing} {verb} {held}" if held else f"{thing} was empty")
 
 
 def _sight_of(each: Observation) -> int | None:

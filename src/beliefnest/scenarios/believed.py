@@ -21,7 +21,7 @@ from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import listed, point_words
 
-__all__ = ["Believed", "BelievedEntry", "Look"]
+__all__ = ["Believed", "BelievedEntry", "Look", "bare_words"]
 
 Look = Callable[[str], State]
 """Function from a belief path to the state after the script."""
@@ -176,7 +176,7 @@ class Believed:
 
     def _option(self, found: _Found, options: Sequence[str]) -> str:
         for name in (*found.names, *found.written):
-            alike = [option for option in options if _bare(option) == _bare(name)]
+            alike = [option for option in options if bare_words(option) == bare_words(name)]
             if len(alike) == 1:
                 return alike[0]
         raise self._fault(
@@ -264,7 +264,7 @@ def _stated(state: State, at: Position) -> Iterator[_Found]:
         yield _Found((name.replace("_", " "), name, block))
 
 
-def _bare(text: str) -> list[str]:
+def bare_words(text: str) -> list[str]:
     """Return the words that distinguish an option."""
     words = re.findall(r"[\w'.-]+", text.replace("_", " ").replace("\u2019", "'").casefold())
     return [word.rstrip(".") for word in words if word not in _SMALL] or words

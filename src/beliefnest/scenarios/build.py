@@ -41,6 +41,7 @@ from beliefnest.scenarios.space import (
 )
 from beliefnest.scenarios.yaml_reading import template_text
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.limits import AGENT_SLOTS, WORN_SLOTS
 from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
@@ -280,11 +281,16 @@ class _Builder:
             place = (*path, "containers", index)
             self.checks.container((*place, "at"), container.at)
             self.checks.contents((*place, "items"), container.at, container.items)
+        for agent, items in entry.inventories.items():
+            place = (*path, "inventories", agent)
+            self.checks.agent(place, agent)
+            self.checks.items(place, items, AGENT_SLOTS + WORN_SLOTS, agent)
         return InitialBelief(
             path=names,
             containers={c.at: (dict(c.items), c.complete) for c in entry.containers},
             blocks=blocks,
             agents=self._believed_places((*path, "agents"), entry.agents),
+            inventories={name: dict(items) for name, items in entry.inventories.items()},
         )
 
     def _believed_blocks(

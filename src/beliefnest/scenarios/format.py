@@ -259,6 +259,9 @@ class InitialBeliefEntry(_Entry, frozen=True):
         dict[str, Point] | list[str],
         note("Believed positions of the feet; or names of agents, which are where they stand."),
     ] = {}
+    inventories: Annotated[
+        dict[str, dict[str, int]], note("Items that agents are known to have, by agent.")
+    ] = {}
 
 
 class StepEntry(_Entry, frozen=True):

@@ -7,6 +7,7 @@ from beliefnest.nest.face.nest import Nest, Progress
 from beliefnest.scenarios.expected import Deed
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome
 from beliefnest.scenarios.probing import Asking, resolved, run_probe
+from beliefnest.scenarios.prose_check import warn_of_prose
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import parse_path, path_text
 
@@ -59,6 +60,7 @@ def run_scenario(
     probes = []
     # Compute right answers before any model is asked: errors in them then cost nothing.
     asked = [resolved(nest, probe) for probe in scenario.probes]
+    warn_of_prose(nest, asked)
     for number, probe in enumerate(asked):
         verb = "asking" if probe.asks_model else "inferring"
         on_progress(f"{verb}: {probe.asked}", number, len(asked))

@@ -189,6 +189,7 @@ _SHAPE: Mapping[str, Any] = {
             "blocks": _BLOCKS,
             "signs": _SIGNS,
             "agents": _OrMapping(_Each("agent"), _Map("agent", "point")),
+            "inventories": _Map("agent", _ITEMS),
         }
     ),
     "script": _Each(

@@ -1,7 +1,7 @@
 """Places, items, blocks and counts in words, for everything that people read."""
 
 import difflib
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 
 from beliefnest.world.signs import is_sign
 from beliefnest.world.texts import quoted
@@ -49,13 +49,20 @@ def items_words(items: Items, joint: str = ", ", *, ids: bool = False, ones: boo
     return joint.join(told if ids else (each.replace("_", " ") for each in told))
 
 
-def things_words(items: Items) -> str:
-    """Return items as prose, such as `a diamond and 2 oak planks`; empty if there are none."""
-    return listed([_thing(name, count) for name, count in sorted(items.items())])
+def things_words(items: Items, unique: Container[str] = ()) -> str:
+    """Return items as prose, such as `a diamond and 2 oak planks`; empty if there are none.
+
+    Args:
+        items: Counts by item name.
+        unique: Items of which there is only one; they get `the`.
+    """
+    return listed([_thing(name, count, name in unique) for name, count in sorted(items.items())])
 
 
-def _thing(name: str, count: int) -> str:
+def _thing(name: str, count: int, is_unique: bool = False) -> str:
     words = name.replace("_", " ")
+    if is_unique and count == 1:
+        return f"the {words}"
     if count > 1:
         return f"{count} {words if words.endswith('s') else f'{words}s'}"
     if words.endswith("s") and not words.endswith("ss"):

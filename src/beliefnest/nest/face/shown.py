@@ -80,6 +80,11 @@ class ShownSimulator(ABC):
         return self.view.places
 
     @property
+    def unique(self) -> frozenset[str]:
+        """The items of which everybody knows that there is one."""
+        return self._recording.setting.unique
+
+    @property
     @in_turn
     def observations(self) -> Sequence[Observation]:
         """The observations of the simulator's owner in the order of time; in reality, all."""

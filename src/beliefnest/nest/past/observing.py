@@ -3,6 +3,8 @@
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent, Source
@@ -21,8 +23,10 @@ from beliefnest.prompts.observations import (
     Sight,
 )
 from beliefnest.timeline.journal import ForkPoint
+from beliefnest.world.doors import is_door
 from beliefnest.world.event_words import is_lid
-from beliefnest.world.paths import BeliefPath
+from beliefnest.world.paths import BeliefPath, normalised
+from beliefnest.world.registry import block_name
 from beliefnest.world.values import DroppedItem, EventKind, Items, Point, Position
 
 __all__ = ["observations_of"]
@@ -148,7 +152,13 @@ class _Observer:
         self._owner = path[-1] if path else None
         viewers = recording.agents if self._owner is None else (self._owner,)
         self._nodes = {name: (name,) if self._owner is None else path for name in viewers}
-        self._paths = list(dict.fromkeys((path, *self._nodes.values())))
+        # What the observer believes that others perceive.
+        others = (name for name in recording.agents if name != self._owner)
+        self._minds = {name: normalised((*path, name)) for name in others}
+        is_common = recording.setting.perception.hearing == "global"
+        self._hearers = {} if is_common else self._minds
+        nodes = (path, *self._nodes.values(), *self._hearers.values())
+        self._paths = list(dict.fromkeys(nodes))
         # A narrator tells of the things that the scenario has, an owner of those that it sees.
         self._signs: frozenset[Position] = frozenset()
         self._places: frozenset[Position] = frozenset()
@@ -172,7 +182,8 @@ class _Observer:
             forest = history.walk(key, self._paths)
             if scene is None:
                 scene, tick = self._scene(forest), forest.tick
-                yield from self._outset(forest, scene)
+                with_minds = history.walk(key, [self._path, *self._minds.values()])
+                yield from self._outset(forest, scene, with_minds)
             entries = list(journal.entries(key, 0, stretch.entries))
             for number, entry in enumerate(entries):
                 last = number + 1 == len(entries) or entries[number + 1].tick > entry.tick
@@ -186,28 +197,71 @@ class _Observer:
                 if before is not None:
                     tick = forest.tick
                     events = NodeView(forest, self._path).events_since(count)
-                    yield from self._told(tick, before, events, forest)
+                    heard = self._heard(forest, events, count)
+                    yield from self._told(tick, before, events, forest, heard)
                     count = after
             scene, tick = self._scene(forest), moment.tick
         if scene is not None:
             yield from self._changes(tick, scene)
 
-    def _outset(self, forest: Forest, scene: _Scene) -> Iterator[Observation]:
+    def _outset(self, forest: Forest, scene: _Scene, with_minds: Forest) -> Iterator[Observation]:
         view, tick = NodeView(forest, self._path), forest.tick
         perceived = {n: a for n, a in view.agents.items() if a.current and a.position is not None}
         feet = {name: agent.position for name, agent in perceived.items() if agent.position}
         has = {name: dict(agent.inventory) for name, agent in perceived.items() if agent.inventory}
-        yield Outset(tick, self._owner, feet, has)
+        known = {name: self._knowing(with_minds, name, items) for name, items in has.items()}
+        yield Outset(tick, self._owner, feet, has, known)
         for at, held in view.containers.items():
             if held.basis.source is Source.PRIOR and (held.items or held.complete):
                 yield Assumed(tick, at, dict(held.items))
         yield from self._changes(tick, scene)
 
+    def _knowing(self, forest: Forest, holder: str, items: Items) -> tuple[str, ...]:
+        """Return the others who know of an agent's items, as the observer believes."""
+
+        def knows(mind: BeliefPath) -> bool:
+            agent = NodeView(forest, mind).agents[holder]
+            worn = (agent.equipment or {}).values()
+            return all(agent.inventory.get(item) or item in worn for item in items)
+
+        return tuple(name for name, mind in self._minds.items() if name != holder and knows(mind))
+
+    def _heard(
+        self, forest: Forest, events: Sequence[PerceivedEvent], count: int
+    ) -> Mapping[int, tuple[str, ...]]:
+        """Return the others who heard an utterance, by `id` of the event.
+
+        Args:
+            forest: Forest after the events.
+            events: Events that the observer perceived.
+            count: Number of the timeline's events before them.
+        """
+        if not self._hearers or not any(event.kind is EventKind.CHAT for event in events):
+            return {}
+        numbers = np.flatnonzero(NodeView(forest, self._path).perceived_since(count))
+        by = {
+            name: NodeView(forest, at).perceived_since(count) for name, at in self._hearers.items()
+        }
+        return {
+            id(event): tuple(
+                name for name, mask in by.items() if mask[number] and name != event.actor
+            )
+            for event, number in zip(events, numbers, strict=True)
+            if event.kind is EventKind.CHAT and event.detail.get("to") is None
+        }
+
     def _told(
-        self, tick: int, before: _Scene, events: Sequence[PerceivedEvent], forest: Forest
+        self,
+        tick: int,
+        before: _Scene,
+        events: Sequence[PerceivedEvent],
+        forest: Forest,
+        heard: Mapping[int, tuple[str, ...]],
     ) -> Iterator[Observation]:
         """Yield the events of one tick with the changes of sight before and after them."""
         told = [event for event in events if not _is_noise(event, events)]
+        if self._owner is not None:
+            told = [event for event in told if not _is_upper_half(event, told)]
         if not told:
             return
         if told[0].kind is not EventKind.MOVE_TO:
@@ -215,7 +269,7 @@ class _Observer:
         after = self._scene(forest)
         for number, event in enumerate(told):
             self._moved(event)
-            yield Happened(tick, event, self._block_at(forest, event))
+            yield Happened(tick, event, self._block_at(forest, event), heard.get(id(event)))
             if event.kind is EventKind.OPEN_CONTAINER and event.actor == self._owner:
                 yield from self._opened(tick, event, told[number + 1 :], after)
         if told[-1].kind is EventKind.MOVE_TO:
@@ -369,6 +423,23 @@ class _Observer:
 def _cell(point: Point) -> Position:
     x, y, z = (int(value // 1) for value in point)
     return (x, y, z)
+
+
+def _is_upper_half(event: PerceivedEvent, events: Sequence[PerceivedEvent]) -> bool:
+    """Return True for a change of the upper half of a door whose lower half changes as well."""
+    if event.kind is not EventKind.BLOCK_UPDATE or not is_door(_block_of(event)):
+        return False
+    x, y, z = event.detail["position"]
+    return any(
+        each.kind is EventKind.BLOCK_UPDATE
+        and each.detail["position"] == (x, y - 1, z)
+        and is_door(_block_of(each))
+        for each in events
+    )
+
+
+def _block_of(event: PerceivedEvent) -> str:
+    return block_name(str(event.detail.get("block", "")))
 
 
 def _is_noise(event: PerceivedEvent, events: Sequence[PerceivedEvent]) -> bool:

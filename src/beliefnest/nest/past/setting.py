@@ -11,6 +11,8 @@ from beliefnest.timeline.run_records import Senses
 from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import (
+    AGENT_SLOTS,
+    WORN_SLOTS,
     agent_name_fault,
     container_slots,
     items_fault,
@@ -116,7 +118,7 @@ class Setting:
                     f"initial_beliefs has the path {text!r} twice; put the two into one"
                 )
             seen.add(belief.path)
-            for name in belief.agents:
+            for name in (*belief.agents, *belief.inventories):
                 parse_path(path_text((name,)), agents)
 
     def _claims_fault(self) -> str | None:
@@ -174,6 +176,9 @@ def _belief_fault(belief: InitialBelief, box: Box, registry: Registry) -> str | 
     for place, (items, _) in belief.containers.items():
         holder = f"the chest at {place} in {whose}"
         if fault := items_fault(items, registry, container_slots("chest"), holder):
+            return fault
+    for name, items in belief.inventories.items():
+        if fault := items_fault(items, registry, AGENT_SLOTS + WORN_SLOTS, f"{name} in {whose}"):
             return fault
     for name, position in belief.agents.items():
         if fault := point_fault(position):

@@ -43,7 +43,7 @@ def _read(recording: Recording, path: BeliefPath, tick: int | None) -> Told:
     observations = observations_of(recording, path, tick)
     if not path:
         names, labels = object_names(setting), setting.prompt_labels
-        return Told(observations, names, labels, setting.places)
+        return Told(observations, names, labels, setting.places, setting.unique)
     state = recording.state(path, tick)
     labelled = Labelled(recording, recording.moment(path, tick))
     known = labelled.known(state, observations, setting.labels)
@@ -52,4 +52,5 @@ def _read(recording: Recording, path: BeliefPath, tick: int | None) -> Told:
         believed_names(state, observations, known),
         labelled.known(state, observations, setting.prompt_labels),
         known_places(state, setting.places),
+        setting.unique,
     )

@@ -41,9 +41,10 @@ def unique_fault(item: str, world: Snapshot, initial: Sequence[InitialBelief]) -
     if fault := _more_than_one(item, present):
         return f"{item!r} is unique, but at the start there are {fault}; remove all but one"
     for path in dict.fromkeys(_spoken_of(initial)):
+        merged = merged_belief(initial, path)
         believed = [
-            (f"in the container at {at}", items)
-            for at, (items, _) in merged_belief(initial, path).containers.items()
+            *((f"in the container at {at}", items) for at, (items, _) in merged.containers.items()),
+            *((f"with {name}", items) for name, items in merged.inventories.items()),
         ]
         if fault := _more_than_one(item, believed):
             return (
