@@ -172,7 +172,14 @@ def structure() -> bytes:
 def test_a_structure_file_becomes_a_scenario_that_runs(tmp_path, capsys):
     file, out = tmp_path / "house.nbt", tmp_path / "house 2.1.yaml"
     file.write_bytes(structure())
-    assert run_command_line(["capture", str(file), "--at", "8", "-4", "8", "-o", str(out)]) == 0
+    command = ["capture", str(file), "--at", "8", "-4", "8", "-o", str(out)]
+    assert run_command_line(command) == 2
+    told = capsys.readouterr().err
+    assert "minecraft:unobtainium" in told
+    assert "ray_gun" in told
+    assert "--unknown air" in told
+    assert not out.exists()
+    assert run_command_line([*command, "--unknown", "air"]) == 0
     told = capsys.readouterr()
     assert "blocks that Minecraft 1.20.4 has not, now air: minecraft:unobtainium" in told.err
     assert "items that Minecraft 1.20.4 has not: ray_gun" in told.err

@@ -2,6 +2,7 @@
 
 import re
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 from beliefnest.cli.options import CaptureOptions
@@ -9,9 +10,10 @@ from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import new_file, read_regular
 from beliefnest.scenarios.writing import scenario_text
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
 from beliefnest.worlds.servers.address import ServerAddress, is_server
-from beliefnest.worlds.servers.capturing import Captured, capture_file, capture_server
+from beliefnest.worlds.servers.capturing import Captured, Unknown, capture_file, capture_server
 
 __all__ = ["write_capture"]
 
@@ -19,6 +21,7 @@ _LARGEST_FILE = 64 * 2**20
 _SUFFIX = ".yaml"
 _NO_NAME = re.compile(r"[^A-Za-z0-9_-]+")
 _LONGEST_NAME = 64
+_UNKNOWN: Mapping[str, Unknown] = {"refuse": "refuse", "air": "air"}
 
 
 def write_capture(options: CaptureOptions) -> None:
@@ -60,6 +63,9 @@ def _captured(options: CaptureOptions) -> Captured:
         return capture_server(ServerAddress.parse(options.where), Box(low, high))
     if options.box is not None:
         raise InputError("a file is captured whole: give --at X Y Z, and no --box")
+    unknown = _UNKNOWN.get(options.unknown)
+    if unknown is None:
+        raise InputError(f"--unknown is {quoted(options.unknown)}; give refuse or air")
     path = Path(options.where)
     try:
         data = read_regular(path, _LARGEST_FILE)
@@ -69,7 +75,7 @@ def _captured(options: CaptureOptions) -> Captured:
             "a .schem or .nbt file"
         ) from None
     try:
-        return capture_file(data, options.at or (0, 0, 0))
+        return capture_file(data, options.at or (0, 0, 0), unknown)
     except BeliefNestError as error:
         raise InputError(f"{path}: {error}") from error
 

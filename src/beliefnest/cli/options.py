@@ -249,6 +249,13 @@ class CaptureOptions:
         tuple[int, int, int] | None,
         typer.Option(help="For a file: position of its lowest corner, X Y Z; default 0 0 0."),
     ] = None
+    unknown: Annotated[
+        str,
+        typer.Option(
+            help="For a file with blocks or items that this version of Minecraft lacks: refuse, or "
+            "air, which replaces the blocks and leaves the items out."
+        ),
+    ] = "refuse"
     name: Annotated[
         str | None, typer.Option(help="Name of the scenario; default: the name of its file.")
     ] = None

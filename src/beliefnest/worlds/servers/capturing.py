@@ -1,8 +1,8 @@
 """Capture of existing places: on a Minecraft server, or in a file of the game or of WorldEdit."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -12,6 +12,7 @@ from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign, sign_fault
+from beliefnest.world.texts import quoted, shortened
 from beliefnest.world.values import AgentState, Box, Items, Position
 from beliefnest.worlds.minecraft import node_messages
 from beliefnest.worlds.minecraft.channel import Channel
@@ -20,9 +21,14 @@ from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.servers.address import ServerAddress
 from beliefnest.worlds.servers.server_world import joined
 
-__all__ = ["Captured", "capture_file", "capture_server"]
+__all__ = ["Captured", "Unknown", "capture_file", "capture_server"]
 
 _MOST_NAMED = 5
+_LONGEST_NAMED = 40
+
+Unknown = Literal["refuse", "air"]
+"""What to do with blocks and items that this version lacks."""
+
 _Placed = tuple[int, int, int]
 
 
@@ -86,26 +92,36 @@ def capture_server(address: ServerAddress, box: Box) -> Captured:
     return Captured(snapshot, tuple(left_out))
 
 
-def capture_file(data: bytes, corner: Position) -> Captured:
+def capture_file(data: bytes, corner: Position, unknown: Unknown = "refuse") -> Captured:
     """Read a Sponge schematic (`.schem`) or a structure file of the game (`.nbt`).
 
     Args:
         data: Content of the file.
         corner: Position of the place's lowest corner.
+        unknown: What to do if the file names blocks or items that this version of the game lacks:
+            `refuse`, or `air`: the blocks become air, and the items are left out.
 
     Raises:
         WorldError: The file has another format, or the place is too large.
-        InputError: The place does not fit into a world there.
+        InputError: The place does not fit into a world there, or this version lacks some of it.
     """
+    if unknown not in ("refuse", "air"):
+        raise InputError(f"unknown is {quoted(unknown)}; give 'refuse' or 'air'")
     channel, _ = started(0, ProcessLimits())
     told = _asked(channel, "read_place", bytes=data, cut=node_messages.CUT)
-    place = msgspec.convert(told, _Place)
+    try:
+        place = msgspec.convert(told, _Place)
+    except msgspec.ValidationError as fault:
+        raise InputError(f"the file is damaged: {shortened(str(fault))}") from None
     high = tuple(low + side - 1 for low, side in zip(corner, place.shape, strict=True))
     box = Box(corner, (high[0], high[1], high[2]))
     if fault := box_fault(box):
         raise InputError(f"the file has a bad box: {fault}")
     registry = Registry.load()
-    states, unknown = _states(place.palette, registry)
+    states, lacking = _states(place.palette, registry)
+    items = {item for row in place.containers for item in row[3] if not registry.has_item(item)}
+    if unknown == "refuse" and (lacking or items):
+        raise InputError(_refused(lacking, items, registry))
     numbers = node_messages.terrain_of_cubes(place.blocks, box)
     blocks = numbers.mapped(lambda chunk: states[chunk])
 
@@ -115,8 +131,10 @@ def capture_file(data: bytes, corner: Position) -> Captured:
     containers = {there(row[:3]): row[3] for row in place.containers}
     signs = {there(row[:3]): row[3] for row in place.signs}
     snapshot, left_out = _said(Snapshot(0, box, blocks, containers, {}, signs=signs), registry)
-    if unknown:
-        left_out.append(f"blocks that Minecraft {registry.version} has not, now air: {unknown}")
+    if lacking:
+        left_out.append(
+            f"blocks that Minecraft {registry.version} has not, now air: {_named(lacking)}"
+        )
     if place.special:
         left_out.append(f"names and enchantments of items in {_named(map(there, place.special))}")
     return Captured(snapshot, tuple(left_out))
@@ -131,7 +149,20 @@ def _asked(channel: Channel, op: str, **more: Any) -> Any:
     return answer
 
 
-def _states(palette: Sequence[str], registry: Registry) -> tuple[BlockGrid, str]:
+def _refused(blocks: Collection[str], items: Collection[str], registry: Registry) -> str:
+    """Return the message about a file with blocks or items that this version lacks."""
+    parts = [
+        f"{what} that Minecraft {registry.version} has not: {_named(names)}"
+        for what, names in (("blocks", blocks), ("items", items))
+        if names
+    ]
+    return (
+        f"the file has {'; and '.join(parts)}. Replace them there, or give --unknown air "
+        "(unknown='air' in Python): the blocks become air, and the items are left out"
+    )
+
+
+def _states(palette: Sequence[str], registry: Registry) -> tuple[BlockGrid, set[str]]:
     """Return the state ids of a palette, and the names in it that this version does not know."""
     states = np.full(len(palette), registry.air, dtype=np.int32)
     unknown: set[str] = set()
@@ -140,7 +171,7 @@ def _states(palette: Sequence[str], registry: Registry) -> tuple[BlockGrid, str]
             states[index] = registry.state_id(text)
         except BeliefNestError:
             unknown.add(text)
-    return states, ", ".join(sorted(unknown))
+    return states, unknown
 
 
 def _said(found: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
@@ -197,6 +228,6 @@ def _known(agent: AgentState, registry: Registry, strange: set[str]) -> AgentSta
 
 
 def _named(things: Any) -> str:
-    named = sorted(str(thing) for thing in things)
+    named = sorted(shortened(str(thing), _LONGEST_NAMED) for thing in things)
     more = len(named) - _MOST_NAMED
     return ", ".join(named[:_MOST_NAMED]) + (f" and {more} more" if more > 0 else "")

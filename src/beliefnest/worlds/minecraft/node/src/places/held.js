@@ -2,6 +2,8 @@
 /** Readers of item and sign data in the game's own format, as files and `/data` give it, across versions. */
 
 const LINES = 4
+// The game's own limit.
+const DEEPEST = 512
 const FIRST_ARMOUR = 100
 const ARMOUR = ['feet', 'legs', 'chest', 'head']
 const OFF_HAND_SLOT = -106
@@ -18,15 +20,16 @@ const isPlain = ({ tag, components }) => [tag, components].every(more => more ==
  */
 function stacksIn (list = []) {
   return list.map(stack => ({
-    name: plainName(stack.id), count: stack.Count ?? stack.count ?? 1, slot: stack.Slot, isPlain: isPlain(stack)
+    name: plainName(stack.id ?? ''), count: stack.Count ?? stack.count ?? 1, slot: stack.Slot, isPlain: isPlain(stack)
   }))
 }
 
 /** Return ITEMS: the sum of the stacks by name. @returns {object} */
 function totals (stacks) {
-  const items = {}
-  for (const { name, count } of stacks) items[name] = (items[name] ?? 0) + count
-  return items
+  // Names come from outside: an assignment to `__proto__` would set no item.
+  const items = new Map()
+  for (const { name, count } of stacks) items.set(name, (items.get(name) ?? 0) + count)
+  return Object.fromEntries(items)
 }
 
 /**
@@ -52,12 +55,15 @@ function possessionsIn ({ Inventory: own = [], equipment: worn = {} }, held) {
   return { inventory: totals(stacks), equipment }
 }
 
-/** Return the text of a chat component: a text, a list of components, or one followed by more in `extra`. */
-function textOf (component) {
-  if (component === undefined || component === null) return ''
-  if (Array.isArray(component)) return component.map(textOf).join('')
+/**
+ * Return the text of a chat component: a text, a list of components, or one followed by more in `extra`. What is nested
+ * deeper than the game allows is left out.
+ */
+function textOf (component, depth = 0) {
+  if (component === undefined || component === null || depth > DEEPEST) return ''
+  if (Array.isArray(component)) return component.map(each => textOf(each, depth + 1)).join('')
   if (typeof component !== 'object') return String(component)
-  return `${component.text ?? component[''] ?? ''}${textOf(component.extra)}`
+  return `${textOf(component.text ?? component[''], depth + 1)}${textOf(component.extra, depth + 1)}`
 }
 
 /**
@@ -76,7 +82,8 @@ function lineText (line) {
 
 /** Return the text on the front of a sign, without empty lines at the end. @returns {string} */
 function signTextIn (data) {
-  const lines = data.front_text?.messages ?? Array.from({ length: LINES }, (_, index) => data[`Text${index + 1}`])
+  const messages = data.front_text?.messages
+  const lines = Array.isArray(messages) ? messages : Array.from({ length: LINES }, (_, index) => data[`Text${index + 1}`])
   return lines.map(lineText).join('\n').replace(/\n+$/, '')
 }
 

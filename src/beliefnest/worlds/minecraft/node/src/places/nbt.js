@@ -6,6 +6,8 @@
 
 // The game's own limit.
 const DEEPEST = 512
+// A value takes up to a few hundred bytes of memory, and as little as one in the file.
+const MOST_VALUES = 2 ** 22
 const END = 0
 const COMPOUND = 10
 
@@ -14,6 +16,7 @@ class Reader {
     this.bytes = bytes
     this.at = 0
     this.depth = 0
+    this.count = 0
   }
 
   /** Return the position of the next `size` bytes, and go on behind them. */
@@ -27,6 +30,7 @@ class Reader {
   /** Return the value of a type. */
   value (type) {
     const { bytes } = this
+    if (++this.count > MOST_VALUES) throw new RangeError(`it holds more than ${MOST_VALUES} values`)
     switch (type) {
       case 1: return bytes.readInt8(this.take(1))
       case 2: return bytes.readInt16BE(this.take(2))
@@ -65,6 +69,7 @@ class Reader {
     const count = Math.max(this.value(3), 0)
     // Refuse a list that is longer than the file before there is an array of its length.
     if (type === END ? count > 0 : count * least > this.bytes.length - this.at) throw new RangeError(`it ends within the list at byte ${this.at}`)
+    if (count > MOST_VALUES) throw new RangeError(`it holds more than ${MOST_VALUES} values`)
     return Array.from({ length: count }, () => this.value(type))
   }
 

@@ -99,6 +99,53 @@ test('what is no such file is refused with a sentence', () => {
   for (const [bytes, said] of cases) assert.throws(() => readPlace(bytes, CUT), { message: said, kind: 'bad_request' })
 })
 
+test('values of other types than those of the format are refused with a sentence', () => {
+  const plain = { ...sides, Palette: nbt.comp({ 'minecraft:air': nbt.int(0) }), BlockData: nbt.byteArray(Array(12).fill(0)) }
+  const of = changes => file(nbt.comp({ ...plain, ...changes }))
+  const chest = entity => of({ BlockEntities: nbt.list(nbt.comp([{ Pos: nbt.intArray([0, 0, 0]), ...entity }])) })
+  const stack = (id, count) => chest({ Items: nbt.list(nbt.comp([{ id, Count: count }])) })
+  const cases = [
+    [of({ Palette: nbt.string('stone') }), /its palette is no compound/],
+    [of({ Palette: nbt.list(nbt.int([0])) }), /its palette is no compound/],
+    [of({ Palette: nbt.comp({ 'minecraft:air': nbt.string('0') }) }), /a number that is none/],
+    [of({ Palette: nbt.comp({ 'minecraft:air': nbt.float(0.5) }) }), /a number that is none/],
+    [of({ Palette: nbt.comp({ a: nbt.int(0), b: nbt.int(0) }) }), /another block has/],
+    [of({ BlockData: nbt.string('000000000000') }), /no array of bytes/],
+    [of({ Width: nbt.string('2') }), /its sides are/],
+    [of({ BlockEntities: nbt.string('x') }), /its block entities are no list/],
+    [of({ BlockEntities: nbt.list(nbt.int([1])) }), /is no compound/],
+    [of({ Regions: nbt.comp({}) }), /convert it to \.schem/],
+    [stack(nbt.string('bread'), nbt.string('3')), /a count that is none/],
+    [stack(nbt.string('bread'), nbt.double(1.5)), /a count that is none/],
+    [stack(nbt.string('bread'), nbt.list(nbt.int([1]))), /a count that is none/],
+    [stack(nbt.string(''), nbt.byte(1)), /without a name/],
+    [file(nbt.comp({ size: nbt.list(nbt.int([1, 1, 1])), palette: nbt.string('stone') })), /are no list/],
+    [file(nbt.comp({ size: nbt.list(nbt.int([1, 1, 1])), palette: nbt.list(nbt.int([1])) })), /is no compound/],
+    [file(nbt.comp({ size: nbt.list(nbt.string(['a', 'b', 'c'])) })), /its sides are/]
+  ]
+  for (const [bytes, said] of cases) assert.throws(() => readPlace(bytes, CUT), { message: said, kind: 'bad_request' })
+})
+
+test('a palette may use any numbers, and names may be any', () => {
+  const many = file(nbt.comp({ ...sides, Palette: nbt.comp({ 'minecraft:air': nbt.int(0), 'minecraft:stone': nbt.int(40000000) }), BlockData: nbt.byteArray(Array(12).fill(0)) }))
+  assert.deepEqual(readPlace(many, CUT).palette, ['minecraft:air', 'minecraft:stone'])
+  const entity = { Pos: nbt.intArray([0, 0, 0]), Items: nbt.list(nbt.comp([{ id: nbt.string('__proto__'), Count: nbt.byte(2) }])) }
+  const odd = file(nbt.comp({ ...sides, Palette: nbt.comp({ 'minecraft:air': nbt.int(0) }), BlockData: nbt.byteArray(Array(12).fill(0)), BlockEntities: nbt.list(nbt.comp([entity])) }))
+  assert.deepEqual(Object.entries(readPlace(odd, CUT).containers[0][3]), [['__proto__', 2]])
+})
+
+test('a sign whose text is nested without end has no text from there on', () => {
+  const deep = `${'['.repeat(30000)}"x"${']'.repeat(30000)}`
+  const sign = { Pos: nbt.intArray([0, 0, 0]), Text1: nbt.string(deep) }
+  const place = readPlace(file(nbt.comp({ ...sides, Palette: nbt.comp({ 'minecraft:air': nbt.int(0) }), BlockData: nbt.byteArray(Array(12).fill(0)), BlockEntities: nbt.list(nbt.comp([sign])) })), CUT)
+  assert.deepEqual(place.signs, [[0, 0, 0, '']])
+})
+
+test('a file that holds more values than a place has is refused before they are in memory', () => {
+  const bytes = Buffer.concat([Buffer.from([10, 0, 0, 9, 0, 1, 97, 10, 2, 0, 0, 0]), Buffer.alloc(2 ** 25 + 1)])
+  assert.throws(() => readPlace(zlib.gzipSync(bytes, { level: 1 }), CUT), { message: /holds more than 4194304 values/, kind: 'bad_request' })
+})
+
 test('a file that unpacks to more than the limit is refused with the limit', () => {
   const zeros = zlib.gzipSync(Buffer.alloc(256 * 2 ** 20 + 1), { level: 1 })
   assert.throws(() => readPlace(zeros, CUT), { message: 'it unpacks to more than 256 MiB, the limit for a place; give a file of a smaller place', kind: 'bad_request' })
