@@ -73,7 +73,7 @@ def about_run(journal: SqliteJournal, nest: RecordedNest, paths: Sequence[str] =
     run = journal.records.run()
     scenario = Scenario(nest.setting)
     if run.text:
-        condition = int(run.condition) if run.condition else None
+        condition = run.condition_number
         scenario = Scenario.kept(run.text, run.templates, condition, f"scenario of {journal.path}")
     named = [probe.path for probe in scenario.probes]
     named += [each.path for each in scenario.expectations]

@@ -238,7 +238,7 @@ def _scenario(journal: SqliteJournal, nest: RecordedNest) -> Scenario:
     run = journal.records.run()
     if not run.text:
         return Scenario(nest.setting)
-    condition = int(run.condition) if run.condition else None
+    condition = run.condition_number
     return Scenario.kept(run.text, run.templates, condition, f"scenario of {journal.path}")
 
 

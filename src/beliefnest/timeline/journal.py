@@ -14,6 +14,7 @@ from typing import Protocol
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import AgentState, Block, Items, Position
 
 __all__ = [
@@ -124,16 +125,16 @@ def count_of_events(entry: Entry) -> int:
 
 def branch_missing(key: TimelineKey, names: Iterable[str]) -> BranchError:
     """Return the error for an unknown branch; `names` are the existing branches."""
-    known = ", ".join(repr(name) for name in sorted(names))
+    known = ", ".join(quoted(name) for name in sorted(names))
     return BranchError(
-        f"{path_text(key.path)} has no branch {key.branch!r}; it has {known or 'none'}"
+        f"{path_text(key.path)} has no branch {quoted(key.branch)}; it has {known or 'none'}"
     )
 
 
 def branch_taken(key: TimelineKey) -> BranchError:
     """Return the error for a branch name that is in use."""
     return BranchError(
-        f"{path_text(key.path)} already has a branch {key.branch!r}; choose another name"
+        f"{path_text(key.path)} already has a branch {quoted(key.branch)}; choose another name"
     )
 
 
@@ -141,7 +142,7 @@ def branch_carries(key: TimelineKey, others: Iterable[TimelineKey]) -> BranchErr
     """Return the error for the removal of a branch that `others` are based on."""
     names = ", ".join(f"{path_text(k.path)} {k.branch!r}" for k in others)
     return BranchError(
-        f"branch {key.branch!r} of {path_text(key.path)} carries others ({names}); "
+        f"branch {quoted(key.branch)} of {path_text(key.path)} carries others ({names}); "
         "delete those first, or delete with recursive=True"
     )
 
@@ -150,8 +151,8 @@ def check_base(key: TimelineKey, base: ForkPoint, length: int) -> None:
     """Check that a timeline of `length` entries reaches the base; BranchError if it does not."""
     if not 0 <= base.entries <= length:
         raise BranchError(
-            f"branch {key.branch!r} of {path_text(key.path)} cannot begin after entry "
-            f"{base.entries} of {base.timeline.branch!r}, which has {length}"
+            f"branch {quoted(key.branch)} of {path_text(key.path)} cannot begin after entry "
+            f"{base.entries} of {quoted(base.timeline.branch)}, which has {length}"
         )
 
 
@@ -167,13 +168,13 @@ def check_append(info: TimelineInfo, entries: Sequence[Entry], head: int) -> Non
         if not latest <= entry.tick <= head:
             raise TickError(
                 f"an entry of tick {entry.tick} does not fit between ticks {latest} and {head} "
-                f"of branch {info.key.branch!r} of {path_text(info.key.path)}; "
+                f"of branch {quoted(info.key.branch)} of {path_text(info.key.path)}; "
                 "append in order of ticks"
             )
         latest = entry.tick
     if head < latest:
         raise TickError(
-            f"branch {info.key.branch!r} of {path_text(info.key.path)} is at tick {latest}; "
+            f"branch {quoted(info.key.branch)} of {path_text(info.key.path)} is at tick {latest}; "
             f"its head cannot go back to {head}"
         )
 
@@ -182,7 +183,7 @@ def check_place(info: TimelineInfo, entries: int) -> None:
     """Check that a timeline has at least `entries` entries; InputError if it has fewer."""
     if not 0 <= entries <= info.entries:
         raise InputError(
-            f"branch {info.key.branch!r} of {path_text(info.key.path)} has {info.entries} "
+            f"branch {quoted(info.key.branch)} of {path_text(info.key.path)} has {info.entries} "
             f"entries; nothing can be stored after entry {entries}"
         )
 

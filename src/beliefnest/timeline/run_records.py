@@ -1,5 +1,6 @@
 """Records of a run besides its timelines: its start, programs and model requests."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, Protocol, TypeVar
@@ -23,6 +24,8 @@ __all__ = [
     "path_from",
     "path_to",
 ]
+
+_NUMBER = re.compile(r"-?[0-9]{1,18}", re.ASCII)
 
 Senses = Literal["world", "percepts"]
 """Input of programs: the whole world, or only what their agents perceive or remember."""
@@ -50,6 +53,19 @@ class RunRecord:
     versions: Mapping[str, str]
     setting: bytes = b""
     templates: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def condition_number(self) -> int | None:
+        """Number of the condition; None: the scenario has none.
+
+        Raises:
+            StoreError: It is no number.
+        """
+        if not self.condition:
+            return None
+        if not _NUMBER.fullmatch(self.condition):
+            raise StoreError(f"the run file names the condition {quoted(self.condition)}")
+        return int(self.condition)
 
 
 @dataclass(frozen=True, slots=True)
