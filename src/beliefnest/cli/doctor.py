@@ -131,7 +131,7 @@ def _kernels() -> str:
         *(footpath_kernels.find, footpath_kernels.holds_target),
     )
     folder = kernel_folder(kernel.fold)
-    if numba.config.DISABLE_JIT:
+    if getattr(numba.config, "DISABLE_JIT", False):
         return "NUMBA_DISABLE_JIT is set: kernels are not compiled, and run very slowly; unset it"
     if folder is None:
         return "compiled by each process anew; let NUMBA_CACHE_DIR name a folder that you can write"

@@ -40,8 +40,8 @@ def _folder() -> str:
         ) from None
     if soft:
         return (
-            f"the disk of {Path.cwd()} has no locks (flock): a run that is killed leaves its folder "
-            "locked until its process is known to be gone; keep runs on a local disk if you can"
+            f"the disk of {Path.cwd()} has no locks (flock): a killed run leaves its folder locked "
+            "until its process is known to be gone; keep runs on a local disk if you can"
         )
     return f"runs can be recorded in {Path.cwd()}"
 

@@ -118,7 +118,7 @@ def kernel_folder(function: Callable[..., object]) -> Path | None:
 
 def _kept(function: F, options: dict[str, Any]) -> F:
     kernel = _jit(function, options)
-    if numba.config.DISABLE_JIT:
+    if getattr(numba.config, "DISABLE_JIT", False):
         return kernel
     with suppress(RuntimeError):  # There is no writable folder.
         cast(Any, kernel)._cache = _Cache(kernel)
@@ -129,7 +129,7 @@ def _kept(function: F, options: dict[str, Any]) -> F:
 def _jit(function: F, options: dict[str, Any]) -> F:
     kernel: Any = numba.njit(**options)(function)
     # With NUMBA_DISABLE_JIT numba returns the function itself.
-    if not numba.config.DISABLE_JIT:
+    if not getattr(numba.config, "DISABLE_JIT", False):
         kernel.compile = _without_collections(kernel.compile)
     return cast(F, kernel)
 
