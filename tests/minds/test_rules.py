@@ -149,11 +149,12 @@ def test_a_step_leads_up_or_down_by_one_at_most():
 @pytest.mark.parametrize(
     ("block", "expected"),
     [
-        ("oak_door[half=lower]", True),
-        ("iron_door[half=lower]", False),
+        ("oak_door[half=lower,facing=east]", True),
+        ("iron_door[half=lower,facing=east]", False),
         ("stone", False),
-        ("iron_door[half=lower,open=true]", True),
-        ("oak_fence_gate", True),
+        ("iron_door[half=lower,open=true,facing=east]", True),
+        ("oak_fence_gate[facing=east]", True),
+        ("oak_door[half=lower,facing=north]", False),
     ],
 )
 def test_doors_that_open_by_hand_are_walked_through(block, expected):

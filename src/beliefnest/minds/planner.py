@@ -51,6 +51,11 @@ class PlanRules:
     stay_cost: float
     act_cost: float
 
+    @property
+    def door_cost(self) -> float:
+        """Cost of opening a door on a step through it, in values of the cell behind."""
+        return self.act_cost / self.discount
+
 
 @dataclass(frozen=True, eq=False)
 class _Values:
@@ -167,6 +172,8 @@ class Planner:
                 kept = int(stage.same[a, to])
                 after = self._solve((possible & kept, believed & kept))
                 total += weights[number] * after.at(np.array([to]), kinds)[0]
+                if action > 0 and stage.doors[a, cell, action - 1]:
+                    total -= weights[number] * rules.door_cost
             q[action] = rules.discount * total - cost
         for box in range(len(stage.boxes)):
             action = 1 + steps + box
@@ -249,13 +256,15 @@ class Planner:
             to: npt.NDArray[np.int64] = stage.moves[members][:, cells, step].astype(np.int64)
             left = np.take_along_axis(stage.same[members], to, axis=1) & possible
             stays_in = left == possible
-            plain = np.logical_and.reduce(stays_in & (to == to[0]), axis=0)
+            doors = stage.doors[members][:, cells, step]
+            plain = np.logical_and.reduce(stays_in & (to == to[0]) & ~doors, axis=0)
             inner[plain, step] = rows[to[0, plain]]
             at = np.flatnonzero(~plain)
             if not len(at):
                 continue
             total = np.zeros((len(at), *shape))
             for number in range(len(members)):
+                total[doors[number, at]] -= weights[number] * rules.door_cost
                 for smaller in np.unique(left[number, at]).tolist():
                     if smaller == possible:
                         continue

@@ -32,6 +32,8 @@ class Stage:
         cells: The cells.
         moves: int32 (alternatives, cells, steps), cell that each step leads to; the cell itself
             where there is none.
+        doors: bool (alternatives, cells, steps), whether a step opens a door, which is an act of
+            its own.
         same: int64 (alternatives, cells), the alternatives with the same percept, looking all
             round from the middle of the cell.
         acts: bool (alternatives, goals, cells), whether a goal can be acted on.
@@ -43,6 +45,7 @@ class Stage:
 
     cells: tuple[Position, ...]
     moves: npt.NDArray[np.int32]
+    doors: npt.NDArray[np.bool_]
     same: Masks
     acts: npt.NDArray[np.bool_]
     marked: npt.NDArray[np.bool_]
@@ -64,7 +67,15 @@ class Stage:
     def key(self) -> bytes:
         """Digest of all that it contains."""
         digest = hashlib.blake2b(repr((self.cells, self.boxes)).encode())
-        for table in (self.moves, self.same, self.acts, self.marked, self.reach, self.content):
+        for table in (
+            self.moves,
+            self.doors,
+            self.same,
+            self.acts,
+            self.marked,
+            self.reach,
+            self.content,
+        ):
             digest.update(repr(table.shape).encode())
             digest.update(np.ascontiguousarray(table).tobytes())
         return digest.digest()

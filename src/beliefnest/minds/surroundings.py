@@ -12,7 +12,7 @@ from beliefnest.errors import TooLargeError
 from beliefnest.minds.alternatives import Worlds
 from beliefnest.minds.mind_model import Goal
 from beliefnest.minds.stage import DIAGONALS, SIDES, Stage
-from beliefnest.minds.ways import Floor, Ways, let_through, ways_from
+from beliefnest.minds.ways import Floor, Ways, bodies_in, ways_from
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Position, feet_in
@@ -92,6 +92,7 @@ class Scene:
         digest = hashlib.blake2b(self._key)
         digest.update(repr(ways.cells).encode())
         digest.update(ways.moves.tobytes())
+        digest.update(ways.doors.tobytes())
         made = _stages().get(digest.digest())
         if made is None:
             made = self._made(ways)
@@ -113,11 +114,11 @@ class Scene:
 
     @cached_property
     def _floors(self) -> list[Floor]:
-        """The floor of each alternative; one for those that let bodies through alike."""
+        """The floor of each alternative; one for those that are alike to bodies."""
         made: dict[bytes, Floor] = {}
         return [
             made.setdefault(
-                let_through(self._registry, self.worlds.states(number)).tobytes(),
+                bodies_in(self._registry, self.worlds.states(number)).tobytes(),
                 Floor(self._registry, world.blocks),
             )
             for number, world in enumerate(self.worlds.worlds)
@@ -152,6 +153,7 @@ class Scene:
         return Stage(
             ways.cells,
             ways.moves,
+            ways.doors,
             same,
             self._acts(ways.cells),
             np.array([goal.item is not None for goal in self._goals.values()], dtype=np.bool_),

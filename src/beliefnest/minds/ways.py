@@ -1,54 +1,43 @@
 """Cells in which an agent can stand, and the steps between them, in all alternatives of a doubt.
 
-A cell is walkable if it and the cell above are free and a known block below holds. Above
-the box is air. Unknown cells are free but give no floor. Doors and gates that open by hand are
-free, shut or open. Steps lead to a neighbour that is at most one higher or lower.
+`geometry` has the rules. Above the box is air. Unknown cells are free but give no floor. Doors and
+gates that open by hand are open. Steps lead to a neighbour that is at most one higher or lower.
 
 A box of one chunk is prepared as a whole. In a larger one a flood visits only the cells that an
 agent can reach.
 """
 
 from collections.abc import Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.geometry.bodies import ROOM, Codes, body_codes
 from beliefnest.minds.stage import DIAGONALS, SIDES
-from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
-__all__ = ["Floor", "Ways", "let_through", "ways_from"]
+__all__ = ["Floor", "Ways", "bodies_in", "ways_from"]
 
 Flags = npt.NDArray[np.bool_]
 Cells = npt.NDArray[np.int64]
 """Indices of cells, shape (n, 3), or their numbers in a dense array, shape (n,)."""
 
-_HEIGHTS = (0, 1, -1)
-"""Changes of height of a step; the first one that leads to a walkable cell counts."""
+_MARGIN = (1, 2, 1)
+"""Cells around a dense box, so that every neighbour of a cell has an index."""
+_BELOW, _ABOVE = 2, 3
+"""Greatest distances, in cells, at which a step to a neighbour looks at cells."""
 
 _AT_ONCE = 4096
 """Number of cells whose steps are computed together."""
 
 
-@lru_cache(maxsize=1)
-def _passing(registry: Registry) -> Flags:
-    """Return by state, counted from -1, True for blocks through which a body passes."""
-    sizes = np.diff(registry.shape_start)[registry.state_shape]
-    passes = np.concatenate([[True], sizes == 0])
-    for name in filter(is_doorway, registry.block_names):
-        ids = registry.state_ids(name)
-        opens = [moves_by_hand(name) or bool(is_open(registry, state)) for state in ids]
-        passes[ids.start + 1 : ids.stop + 1] |= opens
-    return passes
-
-
-def let_through(registry: Registry, states: npt.NDArray[np.int32]) -> Flags:
-    """Return a mask of the block states through which a body passes, walking or opening doors."""
-    passes: Flags = _passing(registry)[states + 1]
-    return passes
+def bodies_in(registry: Registry, states: npt.NDArray[np.int32]) -> Codes:
+    """Return what block states, -1 unknown, are to a body, as in `geometry.bodies`."""
+    codes: Codes = body_codes(registry, opens=True, guesses=False)[states + 1]
+    return codes
 
 
 class Floor:
@@ -64,32 +53,76 @@ class Floor:
 
     def stands(self, cells: Cells) -> Flags:
         """Return a mask of those of some cells (n, 3), inside or outside the box."""
-        shape = self.blocks.shape
-        found = np.zeros(len(cells), dtype=np.bool_)
-        if self.blocks.is_dense:
-            at = np.flatnonzero(_inside(cells, shape))
-            found[at] = self.mask[tuple(cells[at].T)]
-            return found
-        # Nothing holds a body in the lowest layer of the box.
-        at = np.flatnonzero(_inside(cells, shape) & (cells[:, 1] > 0))
-        columns = cells[at, None] + np.array([(0, -1, 0), (0, 0, 0), (0, 1, 0)])
-        # Above the box is air, as the free cell below it.
-        columns[:, 2, 1] = np.minimum(columns[:, 2, 1], shape[1] - 1)
-        states = self.blocks.at_indices(columns.reshape(-1, 3))
-        below, own, above = let_through(self._registry, states).reshape(-1, 3).T
-        found[at] = ~below & own & above
-        return found
+        from beliefnest.geometry.steps import stands
+
+        codes, sizes, places = self._around(cells)
+        inside = _inside(cells, self.blocks.shape)
+        found = [bool(stands(codes, sizes, *place)) for place in places.tolist()]
+        mask: Flags = np.array(found, dtype=np.bool_).reshape(-1) & inside
+        return mask
+
+    def steps(self, cells: Cells, *, diagonal: bool) -> tuple[Cells, Flags]:
+        """Return the cells (n, steps, 3) to which steps lead, and which of them open a door.
+
+        A step that leads nowhere leads to its own cell.
+        """
+        from beliefnest.geometry.steps import NOWHERE, write_neighbours
+
+        sides = np.array([*SIDES, *(DIAGONALS if diagonal else ())], dtype=np.int64)
+        ups = np.zeros((len(cells), len(sides)), dtype=np.int8)
+        doors = np.zeros(ups.shape, dtype=np.bool_)
+        write_neighbours(*self._around(cells), sides, ups, doors)
+        ahead = np.stack(np.broadcast_arrays(sides[:, 0], ups, sides[:, 1]), axis=2).astype(
+            np.int64
+        )
+        ahead[ups == NOWHERE] = 0
+        to = cells[:, None] + ahead
+        # Feet are inside the box.
+        outside = to[:, :, 1] >= self.blocks.shape[1]
+        return np.where(outside[:, :, None], cells[:, None], to), doors & ~outside
 
     @cached_property
     def mask(self) -> Flags:
         """All cells of the box; only of a box of one chunk."""
-        free = let_through(self._registry, self.blocks.dense())
-        above = np.ones_like(free)
-        above[:, :-1] = free[:, 1:]
-        held = np.zeros_like(free)
-        held[:, 1:] = ~free[:, :-1]
-        stands: Flags = free & above & held
-        return stands
+        from beliefnest.geometry.steps import write_standing
+
+        codes, sizes = self._whole
+        standing = np.zeros(sizes, dtype=np.bool_)
+        write_standing(codes, sizes, standing)
+        x, y, z = _MARGIN
+        part: Flags = standing[x:-x, y:-y, z:-z]
+        return part
+
+    @cached_property
+    def _whole(self) -> tuple[Codes, tuple[int, int, int]]:
+        """Codes of the box with its margin, and its sizes; only of a box of one chunk."""
+        codes = np.pad(
+            bodies_in(self._registry, self.blocks.dense()), [(part, part) for part in _MARGIN]
+        )
+        x, y, z = _MARGIN
+        codes[x:-x, -y, z:-z] = ROOM
+        return codes.reshape(-1), codes.shape
+
+    def _around(self, cells: Cells) -> tuple[Codes, tuple[int, int, int], Cells]:
+        """Return the codes of a grid that holds some cells with their neighbours, and their places.
+
+        In a box of many chunks the grid is a row of the cells' surroundings.
+        """
+        if self.blocks.is_dense:
+            return (*self._whole, cells + np.array(_MARGIN))
+        shape = np.array(self.blocks.shape)
+        near = np.stack(
+            np.meshgrid(range(-1, 2), range(-_BELOW, _ABOVE + 1), range(-1, 2), indexing="ij"), -1
+        )
+        places = (cells[:, None, None, None] + near).reshape(-1, 3)
+        held = np.clip(places, 0, shape - 1)
+        codes = bodies_in(self._registry, self.blocks.at_indices(held))
+        aside = (held[:, ::2] != places[:, ::2]).any(axis=1)
+        codes[aside | (places[:, 1] < 0) | (places[:, 1] > shape[1])] = 0
+        codes[~aside & (places[:, 1] == shape[1])] = ROOM
+        at = np.full((len(cells), 3), (1, _BELOW, 1))
+        at[:, 0] += 3 * np.arange(len(cells))
+        return codes, (3 * len(cells), _BELOW + _ABOVE + 1, 3), at
 
 
 class Ways:
@@ -98,10 +131,13 @@ class Ways:
     Attributes:
         cells: The cells, in order of position.
         moves: int32 (alternatives, cells, steps), as in `Stage`.
+        doors: bool (alternatives, cells, steps), as in `Stage`.
     """
 
-    def __init__(self, cells: tuple[Position, ...], moves: npt.NDArray[np.int32]) -> None:
-        self.cells, self.moves = cells, moves
+    def __init__(
+        self, cells: tuple[Position, ...], moves: npt.NDArray[np.int32], doors: Flags
+    ) -> None:
+        self.cells, self.moves, self.doors = cells, moves, doors
 
 
 def ways_from(
@@ -134,16 +170,15 @@ def ways_from(
         cells = _flooded(distinct, first, most, diagonal=diagonal)
         if cells is None:
             return None
-    by_floor = {
-        id(floor): np.searchsorted(cells, _moves(floor, cells, diagonal=diagonal))
-        for floor in distinct
-    }
+    made = {id(floor): _moves(floor, cells, diagonal=diagonal) for floor in distinct}
+    by_floor = {key: np.searchsorted(cells, to) for key, (to, _) in made.items()}
     found = _reached(list(by_floor.values()), np.searchsorted(cells, first))
     renumbered = np.full(len(cells), -1, dtype=np.int32)
     renumbered[found] = np.arange(len(found), dtype=np.int32)
     moves = np.stack([renumbered[by_floor[id(floor)][found]] for floor in floors])
+    doors = np.stack([made[id(floor)][1][found] for floor in floors])
     kept: list[list[int]] = (_indices(cells[found], box.shape) + np.array(box.low)).tolist()
-    return Ways(tuple((x, y, z) for x, y, z in kept), moves)
+    return Ways(tuple((x, y, z) for x, y, z in kept), moves, doors)
 
 
 def _flooded(floors: Sequence[Floor], starts: Cells, most: int, *, diagonal: bool) -> Cells | None:
@@ -153,7 +188,7 @@ def _flooded(floors: Sequence[Floor], starts: Cells, most: int, *, diagonal: boo
     """
     seen, front = set(starts.tolist()), starts
     while len(front):
-        moves = [_moves(floor, front, diagonal=diagonal) for floor in floors]
+        moves = [_moves(floor, front, diagonal=diagonal)[0] for floor in floors]
         ahead = [cell for cell in np.unique(np.stack(moves)).tolist() if cell not in seen]
         seen.update(ahead)
         if len(seen) > most:
@@ -162,26 +197,19 @@ def _flooded(floors: Sequence[Floor], starts: Cells, most: int, *, diagonal: boo
     return np.sort(np.fromiter(seen, dtype=np.int64, count=len(seen)))
 
 
-def _moves(floor: Floor, cells: Cells, *, diagonal: bool) -> Cells:
-    """Return the numbers (n, steps) of the cells to which steps lead from cells of some numbers."""
-    parts = [cells[start : start + _AT_ONCE] for start in range(0, len(cells), _AT_ONCE)]
-    return np.concatenate([_steps(floor, part, diagonal=diagonal) for part in parts])
+def _moves(floor: Floor, cells: Cells, *, diagonal: bool) -> tuple[Cells, Flags]:
+    """Return the numbers (n, steps) of the cells to which steps lead from cells of some numbers.
 
-
-def _steps(floor: Floor, cells: Cells, *, diagonal: bool) -> Cells:
+    Also return which of the steps open a door.
+    """
     shape = floor.blocks.shape
-    sides = np.array([*SIDES, *(DIAGONALS if diagonal else ())])
-    offsets = np.array([[(x, up, z) for up in _HEIGHTS] for x, z in sides.tolist()])
-    aside = (_indices(cells, shape)[:, None, None] + offsets).reshape(-1, 3)
-    stands = floor.stands(aside).reshape(-1, len(sides), len(_HEIGHTS))
-    chosen = stands.argmax(axis=2)
-    ahead = np.arange(len(aside)).reshape(stands.shape)[..., 0] + chosen
-    is_free = stands.max(axis=2)
-    for number, (dx, dz) in enumerate(DIAGONALS if diagonal else (), len(SIDES)):
-        is_free[:, number] &= is_free[:, SIDES.index((dx, 0))] & is_free[:, SIDES.index((0, dz))]
-    to = np.broadcast_to(cells[:, None], is_free.shape).copy()
-    to[is_free] = np.ravel_multi_index(aside[ahead[is_free]].T, shape)
-    return to
+    parts = [
+        floor.steps(_indices(cells[start : start + _AT_ONCE], shape), diagonal=diagonal)
+        for start in range(0, len(cells), _AT_ONCE)
+    ]
+    to = np.concatenate([part[0] for part in parts])
+    numbers = np.ravel_multi_index((to[..., 0], to[..., 1], to[..., 2]), shape)
+    return numbers.astype(np.int64), np.concatenate([part[1] for part in parts])
 
 
 def _reached(moves: Sequence[npt.NDArray[np.int64]], starts: Cells) -> Cells:

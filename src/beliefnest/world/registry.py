@@ -12,7 +12,7 @@ import math
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import msgspec
@@ -68,6 +68,7 @@ class _Block:
     first_state: int
     default_values: tuple[str, ...]
     properties: tuple[tuple[str, tuple[str, ...]], ...]
+    solid: bool
 
     def state_id(self, chosen: Mapping[str, str]) -> int:
         """Return the state id with the chosen values; other properties keep their defaults."""
@@ -212,6 +213,14 @@ class Registry:
         """
         return self.boxes(state_id) == ((0.0, 0.0, 0.0, 1.0, 1.0, 1.0),)
 
+    def is_solid(self, name: str) -> bool:
+        """Return True if bots take a block for an obstacle, whatever its state.
+
+        Raises:
+            UnknownNameError: There is no such block.
+        """
+        return self._block(_bare(name)).solid
+
     def state_ids(self, name: str) -> range:
         """Return all state ids of a block.
 
@@ -348,8 +357,8 @@ def _build(file: _RegistryFile) -> Registry:
 
 def _block_from(entry: _BlockFile) -> _Block:
     properties = tuple((name, tuple(values)) for name, values in entry.properties)
-    plain = _Block(entry.name, entry.first_state, (), properties)
-    return _Block(entry.name, entry.first_state, plain.values(entry.default_state), properties)
+    plain = _Block(entry.name, entry.first_state, (), properties, entry.solid)
+    return replace(plain, default_values=plain.values(entry.default_state))
 
 
 def _state_shapes(file: _RegistryFile) -> npt.NDArray[np.int32]:

@@ -53,49 +53,119 @@ class Rules:
             return "x"
         return {ALONG_X: "x", ALONG_Z: "z"}.get(text or "")
 
-    def passes(self, cell: Position) -> bool:
-        """Return True if a body passes through a cell; above the box there is air."""
+    def room(self, cell: Position) -> bool:
+        """Return True if there is nothing in a cell; above the box there is air."""
         (x, y, z), (_, height, _) = cell, self._shape
         if y == LOW[1] + height:
             return self.text((x, y - 1, z)) is not None
-        return self.text(cell) in (AIR, UNKNOWN) or self.gate(cell) is not None
+        return self.text(cell) in (AIR, UNKNOWN)
+
+    def passes(self, cell: Position) -> bool:
+        """Return True if a body passes through a cell, also through a gate."""
+        return self.room(cell) or self.gate(cell) is not None
+
+    def bears(self, cell: Position) -> bool:
+        """Return True if a block holds up what is above it; the tops of shut gates are flat."""
+        return self.text(cell) in (STONE, UNKNOWN, SHUT)
+
+    def top(self, cell: Position) -> float:
+        """Return the height of a block; unknown ones count as full."""
+        text = self.text(cell)
+        return {None: 0.0, AIR: 0.0, ALONG_X: 0.0, ALONG_Z: 0.0, SHUT: 1.5}.get(text, 1.0)
 
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
         x, y, z = cell
-        below = self.text((x, y - 1, z))
-        holds = below is not None and (below == UNKNOWN or not self.passes((x, y - 1, z)))
-        return holds and self.passes(cell) and self.passes((x, y + 1, z))
+        return self.bears((x, y - 1, z)) and self.passes((x, y, z)) and self.passes((x, y + 1, z))
 
     def steps(self, cell: Position) -> Iterator[Position]:
         """Yield the cells that one step leads to."""
         x, y, z = cell
         for dx in (-1, 0, 1):
             for dz in (-1, 0, 1):
-                for up in range(-3, 2):
-                    step = (x + dx, y + up, z + dz)
-                    if (dx or dz) and self.stands(step) and self._leads(cell, dx, dz, up):
-                        yield step
+                if dx or dz:
+                    yield from self._beside(cell, dx, dz)
+                if bool(dx) != bool(dz) and not self.gate(cell):
+                    yield from self._jumps(cell, dx, dz)
+        if self.room((x, y - 1, z)):
+            yield from self._fallen((x, y, z))
 
-    def _leads(self, cell: Position, dx: int, dz: int, up: int) -> bool:
+    def _crosses(self, at: Position, dx: int, dz: int, *, high: bool) -> bool:
+        axis = self.gate(at)
+        straight = axis is None or not (dx, dz)["xz".index(axis) ^ 1]
+        return straight or (high and self.text(at) != SHUT)
+
+    def _beside(self, cell: Position, dx: int, dz: int) -> Iterator[Position]:
         x, y, z = cell
-        for at in (cell, (x + dx, y + up, z + dz)):
-            if (axis := self.gate(at)) and (dx, dz)["xz".index(axis) ^ 1]:
-                return False
+        ahead = (x + dx, y, z + dz)
+        over = [(i, y + up, k) for i, k in ((x, z), (x + dx, z + dz)) for up in (1, 2)]
+        high = all(map(self.room, over))
+        if not self._crosses(cell, dx, dz, high=high):
+            return
+        level = self.stands(ahead) and self._crosses(ahead, dx, dz, high=high)
         if dx and dz:
-            sides = [(x + dx, y, z), (x, y, z + dz)]
-            clear = all(self.passes(s) and self.passes((s[0], y + 1, s[2])) for s in sides)
-            return up == 0 and clear and not any(map(self.gate, sides))
-        aside = (x + dx, y, z + dz)
-        if up == 0:
-            return True
-        above = (aside[0], y + 1, aside[2])
-        climbs = self.passes((x, y + 2, z)) and self.stands(above)
-        if self.stands(aside) or up == 1:
-            return up == 1 and climbs and not self.stands(aside)
-        fallen = [(aside[0], y - depth, aside[2]) for depth in range(1, -up + 1)]
-        free = all(map(self.passes, (aside, above, *fallen)))
-        return not climbs and free and not any(map(self.stands, fallen[:-1]))
+            sides = [(i, y + up, k) for i, k in ((x + dx, z), (x, z + dz)) for up in (0, 1)]
+            if level and all(map(self.room, sides)):
+                yield ahead
+            return
+        above, below = (ahead[0], y + 1, ahead[2]), (ahead[0], y - 1, ahead[2])
+        if level:
+            yield ahead
+            return
+        if self.room(ahead) and self.room(above) and self.bears(below):
+            return
+        tall = self.top(ahead) + 1 - self.top((x, y - 1, z)) <= 1.2
+        clear = self.room((x, y + 2, z)) and self.room((above[0], y + 2, above[2]))
+        hops = self.text(ahead) in (STONE, SHUT) and self.room(above) and tall and clear
+        if hops and (self.gate(cell) is None or self.room((x, y + 1, z))):
+            yield above
+        elif self.room(ahead) and self.room(above) and self.room(below):
+            yield from self._fallen(ahead)
+
+    def _fallen(self, cell: Position) -> Iterator[Position]:
+        x, y, z = cell
+        for depth in range(2, 5):
+            if self.bears((x, y - depth, z)):
+                yield (x, y - depth + 1, z)
+                return
+            if not self.room((x, y - depth, z)):
+                return
+
+    def _jumps(self, cell: Position, dx: int, dz: int) -> Iterator[Position]:
+        x, y, z = cell
+
+        def at(far: int, up: int) -> Position:
+            return (x + far * dx, y + up, z + far * dz)
+
+        is_edge = not self.bears(at(1, -1)) or self.top(at(1, -1)) < self.top(at(0, -1))
+        if not (is_edge and self.room(at(1, 0)) and self.room(at(1, 1))):
+            return
+        high = self.room(at(0, 2)) and self.room(at(1, 2))
+        deep = not self.bears(at(1, -2))
+        for far in (2, 3, 4):
+            room = self.room(at(far, 0)) and self.room(at(far, 1))
+            if high and room and self.bears(at(far, -1)):
+                yield at(far, 0)
+                return
+            solid = self.text(at(far, 0)) in (STONE, SHUT)
+            if high and solid and self.room(at(far, 1)) and self.room(at(far, 2)) and far < 4:
+                if self.top(at(far, 0)) + 1 - self.top(at(0, -1)) <= 1.2:
+                    yield at(far, 1)
+                return
+            if (high or far == 2) and room and self.room(at(far, -1)) and deep:
+                if self.bears(at(far, -2)):
+                    yield at(far, -1)
+                    deep = False
+            elif not room:
+                return
+            high = high and self.room(at(far, 2))
+
+    def cost(self, cell: Position, step: Position) -> float:
+        """Return the cost of a step: its length, or more for a step up or one that opens a gate."""
+        (x, y, z), (i, j, k) = cell, step
+        is_up = j == y + 1 and (i - x) ** 2 + (k - z) ** 2 == 1
+        opens = self._opens and self.text(step) == SHUT
+        return (2.0 if is_up else math.dist(cell, step)) + opens
 
     def lengths(self, start: Position) -> dict[Position, float]:
         """Return the lengths of shortest paths to all cells that can be reached."""
@@ -103,7 +173,7 @@ class Rules:
         while waiting:
             length, cell = heapq.heappop(waiting)
             for step in self.steps(cell):
-                further = length + math.dist(cell, step)
+                further = length + self.cost(cell, step)
                 if further < found.get(step, math.inf) - 1e-9:
                     found[step] = further
                     heapq.heappush(waiting, (further, step))
@@ -159,7 +229,7 @@ def _check(ground: Ground, rules: Rules, start: Position, goal: Goal) -> None:
     course = [start, *way]
     assert ground.meets(goal, course[-1])
     assert all(step in rules.steps(cell) for cell, step in zip(course, way, strict=False))
-    length = sum(map(math.dist, course, way))
+    length = sum(map(rules.cost, course, way))
     assert length == pytest.approx(min(lengths.values()))
     assert ground.may_lead(start, goal)
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.world.doors import is_doorway, is_open, moves_by_hand, passage
+from beliefnest.geometry.bodies import ALONG_X, ALONG_Z, FLOOR, FULL, OPENS, ROOM, Codes, body_codes
+from beliefnest.world.doors import is_doorway
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Index, Terrain
 from beliefnest.world.values import Box, Position
@@ -24,16 +25,14 @@ __all__ = ["Footing", "Window"]
 
 _MARGIN = (1, 2, 1)
 """Cells around the box, so that every neighbour of a cell has an index."""
-_BELOW, _ABOVE, _ASIDE = 3, 2, 1
-"""Greatest distances, in cells, at which a step looks at cells; the kernels have the rules."""
+_BELOW, _ABOVE, _ASIDE = 8, 2, 4
+"""Greatest distances, in cells, at which a step looks at cells; `geometry.steps` has the rules."""
 _HALF = 24
 """Cells from the middle of a new window to each side."""
 _MOST_WINDOWS = 16
 """Largest number of windows that a footing keeps."""
 _STACKED = 512
 """Number of chunks whose states are counted together."""
-
-_Bools = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,22 +43,18 @@ class Window:
 
     Attributes:
         low: Position of its lowest cell.
-        standing: Cells in which an agent can stand.
-        passing: Cells through which a body passes.
-        doorways: By cell, the direction through doors and gates that can be crossed, or 0.
+        codes: What each block is to a body, as in `geometry.bodies`.
         ends: By axis, True for each side (low, high) at which the box with its margin ends.
     """
 
     low: Position
-    standing: _Bools
-    passing: _Bools
-    doorways: npt.NDArray[np.uint8]
+    codes: Codes
     ends: tuple[tuple[bool, bool], ...]
 
     @cached_property
     def shape(self) -> Index:
         """Number of cells along x, y, z."""
-        x, y, z = self.passing.shape
+        x, y, z = self.codes.shape
         return (int(x), int(y), int(z))
 
     @cached_property
@@ -75,21 +70,15 @@ class Window:
 
     @cached_property
     def count(self) -> int:
-        """Number of cells in which agents can stand."""
-        return int(np.count_nonzero(self.standing))
-
-    @cached_property
-    def stands(self) -> bytes:
-        """By index, 1 for cells in which an agent can stand."""
-        return self.standing.tobytes()
+        """Number of cells that a body may move through."""
+        return int(np.count_nonzero(self.codes & (ROOM | ALONG_X | ALONG_Z)))
 
     @cached_property
     def cells(self) -> "Cells":
         """The cells in the form of the kernels."""
         from beliefnest.worlds.scripted.footpath_kernels import Cells
 
-        standing, passing = (each.ravel().view(np.uint8) for each in (self.standing, self.passing))
-        return Cells(standing, passing, self.doorways.ravel(), self.shape, *self.inner)
+        return Cells(self.codes.ravel(), self.shape, *self.inner)
 
     def index(self, cell: Position) -> int | None:
         """Return the index of a cell; None: it is outside the window."""
@@ -131,18 +120,13 @@ class Footing:
     def __init__(self, registry: Registry, box: Box, blocks: Terrain, *, opens: bool) -> None:
         self._registry, self._box, self._blocks, self._opens = registry, box, blocks, opens
         self.is_whole = blocks.is_dense
+        self._codes = body_codes(registry, opens=opens, guesses=True)
         states = _states_of(blocks)
-        doorways = [s for s in states.tolist() if s >= 0 and is_doorway(registry.name(s))]
-        ways = {s: passage(registry, s) for s in doorways if self._is_way(s)}
-        self.has_doors, self.has_doorways = bool(doorways), bool(ways)
-        self.has_shut_doors = any(
-            moves_by_hand(registry.name(s)) for s in doorways if s not in ways
-        )
-        self._free = np.zeros(int(states[-1]) + 2, dtype=np.bool_)
-        self._free[states + 1] = [
-            s < 0 or s in ways or not registry.boxes(s) for s in states.tolist()
-        ]
-        self._ways = ways
+        named = (registry.name(s) for s in states.tolist() if s >= 0)
+        self.has_doors = any(map(is_doorway, named))
+        self.has_doorways = bool((self._codes[states + 1] & (ALONG_X | ALONG_Z)).any())
+        by_hand = body_codes(registry, opens=True, guesses=True)[states + 1] & OPENS
+        self.has_shut_doors = not opens and bool(by_hand.any())
         self._windows: list[Window] = []
 
     def window(self, cell: Position) -> Window | None:
@@ -181,26 +165,36 @@ class Footing:
 
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
-        if self.is_whole:
-            index = self._whole.index(cell)
-            return index is not None and self._whole.stands[index] != 0
-        x, y, z = cell
-        return (
-            self._holds((x, y - 1, z)) and self._passes((x, y, z)) and self._passes((x, y + 1, z))
-        )
+        from beliefnest.geometry.steps import stands
 
-    def _passes(self, place: Position) -> bool:
+        return bool(stands(*self._near(cell)))
+
+    def feet_height(self, cell: Position) -> float:
+        """Return the height of an agent's feet above a cell, in blocks; negative on low blocks."""
+        from beliefnest.geometry.steps import feet_height
+
+        return feet_height(*self._near(cell)) / FULL
+
+    def is_obstacle(self, place: Position) -> bool:
+        """Return True if a body can stand on a block, but not in it."""
+        code = self._code(place)
+        return bool(code & FLOOR) and not code & (ROOM | ALONG_X | ALONG_Z)
+
+    def _near(self, cell: Position) -> tuple[Codes, Index, int, int, int]:
+        """Return the codes of a grid that holds a cell and those above and below, and its index."""
+        if self.is_whole:
+            x, y, z = (a - b for a, b in zip(cell, self._whole.low, strict=True))
+            return (self._whole.cells.codes, self._whole.shape, x, y, z)
+        x, y, z = cell
+        column = [self._code((x, y + up, z)) for up in (-1, 0, 1)]
+        return (np.array(column, dtype=np.uint32), (1, 3, 1), 0, 1, 0)
+
+    def _code(self, place: Position) -> int:
         if place in self._box:
-            return bool(self._free[self._blocks[self._box.index(place)] + 1])
+            return int(self._codes[self._blocks[self._box.index(place)] + 1])
         x, y, z = place
         # Above the box is air.
-        return y == self._box.high[1] + 1 and (x, y - 1, z) in self._box
-
-    def _holds(self, place: Position) -> bool:
-        if place not in self._box:
-            return False
-        state = self._blocks[self._box.index(place)]
-        return state < 0 or not self._free[state + 1]
+        return ROOM if y == self._box.high[1] + 1 and (x, y - 1, z) in self._box else 0
 
     def _keep(self, window: Window) -> Window:
         self._windows = [window, *self._windows[: _MOST_WINDOWS - 1]]
@@ -220,34 +214,17 @@ class Footing:
 
     def _made(self, low: Index, high: Index) -> Window:
         """Return the window of the cells from index `low` to before `high`, margins included."""
-        # Whether one can stand in a cell depends on the cells above and below.
-        floor, roof = max(low[1] - 1, 0), min(high[1] + 1, self._sizes[1])
-        begin = (low[0], floor, low[2])
-        shape = (high[0] - low[0], roof - floor, high[2] - low[2])
-        passing, holding = np.zeros(shape, dtype=np.bool_), np.zeros(shape, dtype=np.bool_)
-        doorways = np.zeros(shape, dtype=np.uint8)
-        cut, first, last = self._cut(begin, shape)
+        shape = (high[0] - low[0], high[1] - low[1], high[2] - low[2])
+        codes = np.zeros(shape, dtype=np.uint32)
+        cut, first, last = self._cut(low, shape)
         if all(a < b for a, b in zip(first, last, strict=True)):
-            blocks = self._blocks.cut(first, last)
-            free = self._free[blocks + 1]
-            passing[cut], holding[cut] = free, (blocks < 0) | ~free
-            if self._ways:
-                doorways[cut] = self._directions[blocks + 1]
-        above = self._blocks.shape[1] + _MARGIN[1] - floor
+            codes[cut] = self._codes[self._blocks.cut(first, last) + 1]
+        above = self._blocks.shape[1] + _MARGIN[1] - low[1]
         if 0 <= above < shape[1]:
-            passing[cut[0], above, cut[2]] = True
-        standing = np.zeros(shape, dtype=np.bool_)
-        standing[:, 1:-1] = holding[:, :-2] & passing[:, 1:-1] & passing[:, 2:]
-        part = (slice(None), slice(low[1] - floor, high[1] - floor), slice(None))
+            codes[cut[0], above, cut[2]] = ROOM
         ends = tuple((a == 0, b == size) for a, b, size in zip(low, high, self._sizes, strict=True))
         corner = [a + b - m for a, b, m in zip(low, self._box.low, _MARGIN, strict=True)]
-        return Window(
-            (corner[0], corner[1], corner[2]),
-            np.ascontiguousarray(standing[part]),
-            np.ascontiguousarray(passing[part]),
-            np.ascontiguousarray(doorways[part]),
-            ends,
-        )
+        return Window((corner[0], corner[1], corner[2]), codes, ends)
 
     def _cut(
         self, begin: Index, shape: tuple[int, int, int]
@@ -267,21 +244,6 @@ class Footing:
             last.append(high)
             cut.append(slice(low - start, high - start))
         return (cut[0], cut[1], cut[2]), _index(first), _index(last)
-
-    @cached_property
-    def _directions(self) -> npt.NDArray[np.uint8]:
-        """By state and 1, the direction through doors and gates that can be crossed, or 0."""
-        from beliefnest.worlds.scripted.footpath_kernels import ALONG_X, ALONG_Z
-
-        directions = np.zeros(len(self._free), dtype=np.uint8)
-        for state, way in self._ways.items():
-            directions[state + 1] = ALONG_X if way == (1, 0) else ALONG_Z
-        return directions
-
-    def _is_way(self, state: int) -> bool:
-        """Return True if a door or gate can be crossed."""
-        by_hand = self._opens and moves_by_hand(self._registry.name(state))
-        return by_hand or is_open(self._registry, state) is True
 
 
 def _states_of(blocks: Terrain) -> npt.NDArray[np.intp]:

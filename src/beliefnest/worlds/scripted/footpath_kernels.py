@@ -10,14 +10,23 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.geometry.steps import (
+    MOST_JUMPS,
+    climb,
+    descent,
+    feet_above,
+    jumps,
+    landing,
+    step_cost,
+)
 from beliefnest.perception.compiling import compiled, inlined, merged
 from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = [
-    "ALONG_X",
-    "ALONG_Z",
     "AVOIDED",
+    "MOST_STEPS",
     "NOWHERE",
+    "SCRATCH",
     "WIDER",
     "Aim",
     "Cells",
@@ -30,11 +39,12 @@ __all__ = [
 Flags = npt.NDArray[np.uint8]
 Ints = npt.NDArray[np.int32]
 
-_DEEPEST_DROP = 3
 _DONE, AVOIDED = 1, 2
 """Marks of cells."""
-ALONG_X, ALONG_Z = 1, 2
-"""Directions through doorways."""
+MOST_STEPS = 10 + 4 * MOST_JUMPS
+"""Largest number of cells that one step leads to."""
+SCRATCH = MOST_STEPS + 2 * MOST_JUMPS
+"""Size of the scratch memory of a search."""
 WIDER = -2
 """Result of a search that needs a wider grid."""
 
@@ -43,17 +53,12 @@ class Cells(NamedTuple):
     """Cells of a ground, or of a part of it.
 
     Attributes:
-        standing: 1 where an agent can stand.
-        passing: 1 where a body passes through.
-        doorways: `ALONG_X` or `ALONG_Z` for doors and gates that can be crossed, by the direction
-            through them; else 0.
+        codes: What each block is to a body, as in `geometry.bodies`.
         sizes: Number of cells along x, y and z.
         first, last: First and last cell along x, y and z from which each step stays in the part.
     """
 
-    standing: Flags
-    passing: Flags
-    doorways: Flags
+    codes: npt.NDArray[np.uint32]
     sizes: tuple[int, int, int]
     first: tuple[int, int, int]
     last: tuple[int, int, int]
@@ -113,53 +118,13 @@ class Queue(NamedTuple):
     counts: npt.NDArray[np.int64]
 
 
-@inlined
-def _at(flags: Flags, sizes: tuple[int, int, int], x: int, y: int, z: int) -> bool:
-    inside = 0 <= x < sizes[0] and 0 <= y < sizes[1] and 0 <= z < sizes[2]
-    return inside and flags[(x * sizes[1] + y) * sizes[2] + z] != 0
-
-
-@inlined
-def _door(cells: Cells, x: int, y: int, z: int) -> int:
-    sizes = cells.sizes
-    inside = 0 <= x < sizes[0] and 0 <= y < sizes[1] and 0 <= z < sizes[2]
-    return int(cells.doorways[(x * sizes[1] + y) * sizes[2] + z]) if inside else 0
-
-
-@inlined
-def _may_cross(door: int, dx: int, dz: int) -> bool:
-    """Return True if a step leads straight through a doorway, or there is no doorway."""
-    return door == 0 or (dz == 0 and door == ALONG_X) or (dx == 0 and door == ALONG_Z)
-
-
-@merged
-def _landing(cells: Cells, x: int, y: int, z: int, dx: int, dz: int) -> int:
-    """Return the height to which a step sideways leads; -1: it leads nowhere."""
-    standing, passing, sizes = cells.standing, cells.passing, cells.sizes
-    i, k = x + dx, z + dz
-    if _at(standing, sizes, i, y, k):
-        return y
-    if dx != 0 and dz != 0:
-        return -1
-    if _at(passing, sizes, x, y + 2, z) and _at(standing, sizes, i, y + 1, k):
-        return y + 1
-    if _at(passing, sizes, i, y, k) and _at(passing, sizes, i, y + 1, k):
-        for depth in range(1, _DEEPEST_DROP + 1):
-            if not _at(passing, sizes, i, y - depth, k):
-                return -1
-            if _at(standing, sizes, i, y - depth, k):
-                return y - depth
-    return -1
-
-
 @merged
 def _write_steps(cells: Cells, cell: int, found: Ints) -> int:
-    """Write the cells that one step leads to; return their number.
+    """Write the cells that one step or jump leads to; return their number.
 
-    A step leads sideways, up one block, or down up to three. Diagonal steps need free sides, and
-    lead neither up nor down. Doorways are only crossed straight.
+    `geometry.steps` has the rules. The last part of `found` is scratch memory.
     """
-    passing, sizes = cells.passing, cells.sizes
+    codes, sizes = cells.codes, cells.sizes
     x, y, z = cell // (sizes[1] * sizes[2]), cell // sizes[2] % sizes[1], cell % sizes[2]
     count = 0
     for number in range(8):
@@ -169,23 +134,24 @@ def _write_steps(cells: Cells, cell: int, found: Ints) -> int:
         else:
             dx = 1 if number in (4, 7) else -1
             dz = 1 if number < 6 else -1
-            is_open = True
-            for up in range(2):
-                is_open &= _at(passing, sizes, x + dx, y + up, z)
-                is_open &= _at(passing, sizes, x, y + up, z + dz)
-            if not is_open:
-                continue
-        landing = _landing(cells, x, y, z, dx, dz)
-        if landing < 0:
-            continue
-        if not (
-            _may_cross(_door(cells, x, y, z), dx, dz)
-            and _may_cross(_door(cells, x + dx, landing, z + dz), dx, dz)
-        ):
-            continue
-        if dx != 0 and dz != 0 and (_door(cells, x + dx, y, z) or _door(cells, x, y, z + dz)):
-            continue
-        found[count] = ((x + dx) * sizes[1] + landing) * sizes[2] + z + dz
+        level = landing(codes, sizes, x, y, z, dx, dz)
+        if level >= 0:
+            found[count] = ((x + dx) * sizes[1] + level) * sizes[2] + z + dz
+            count += 1
+    scratch = found[MOST_STEPS:]
+    for number in range(4):
+        dx = 1 if number == 0 else (-1 if number == 2 else 0)
+        dz = 1 if number == 1 else (-1 if number == 3 else 0)
+        for jump in range(jumps(codes, sizes, x, y, z, dx, dz, scratch)):
+            far, up = int(scratch[2 * jump]), int(scratch[2 * jump + 1])
+            found[count] = ((x + far * dx) * sizes[1] + y + up) * sizes[2] + z + far * dz
+            count += 1
+    if climb(codes, sizes, x, y, z):
+        found[count] = cell + sizes[2]
+        count += 1
+    level = descent(codes, sizes, x, y, z)
+    if level >= 0:
+        found[count] = (x * sizes[1] + level) * sizes[2] + z
         count += 1
     return count
 
@@ -196,12 +162,19 @@ def _far(x: float, y: float, z: float) -> float:
 
 
 @inlined
-def _is_met(aim: Aim, x: int, y: int, z: int) -> bool:
-    """Return True if a cell meets an aim; free lines are not considered."""
+def _is_met(cells: Cells, aim: Aim, x: int, y: int, z: int) -> bool:
+    """Return True if a cell meets an aim; free lines are not considered.
+
+    Feet on a low block are in the place of that block, below the cell; either place counts.
+    """
     if aim.beside and x == aim.x and z == aim.z and (y == aim.y or y == aim.y - 1):
         return False
-    up = y + EYE_HEIGHT - (aim.y + 0.5) if aim.by_hand else float(y - aim.y)
-    return _far(x - aim.x, up, z - aim.z) <= aim.within
+    if aim.by_hand:
+        return _far(x - aim.x, y + EYE_HEIGHT - (aim.y + 0.5), z - aim.z) <= aim.within
+    if _far(x - aim.x, y - aim.y, z - aim.z) <= aim.within:
+        return True
+    is_low = feet_above(cells.codes, cells.sizes, x, y, z) < 0
+    return is_low and _far(x - aim.x, y - 1 - aim.y, z - aim.z) <= aim.within
 
 
 @compiled
@@ -213,7 +186,7 @@ def find(cells: Cells, aim: Aim, trail: Trail, queue: Queue, found: Ints, most: 
         aim: The aim.
         trail: Cells found so far, at first the start alone.
         queue: Cells to continue from, at first the start alone.
-        found: Scratch memory for 8 cells.
+        found: Scratch memory, `SCRATCH` numbers.
         most: Number of cells after which the search ends.
 
     Returns:
@@ -233,7 +206,7 @@ def find(cells: Cells, aim: Aim, trail: Trail, queue: Queue, found: Ints, most: 
                 cell = -1
                 continue
             x, y, z = cell // (sizes[1] * sizes[2]), cell // sizes[2] % sizes[1], cell % sizes[2]
-            if _is_met(aim, x, y, z):
+            if _is_met(cells, aim, x, y, z):
                 counts[3] = cell
                 return cell
         x, y, z = cell // (sizes[1] * sizes[2]), cell // sizes[2] % sizes[1], cell % sizes[2]
@@ -245,7 +218,7 @@ def find(cells: Cells, aim: Aim, trail: Trail, queue: Queue, found: Ints, most: 
         for number in range(_write_steps(cells, cell, found)):
             step = int(found[number])
             i, j, k = step // (sizes[1] * sizes[2]), step // sizes[2] % sizes[1], step % sizes[2]
-            cost = costs[cell] + _far(i - x, j - y, k - z)
+            cost = costs[cell] + step_cost(cells.codes, sizes, x, y, z, i, j, k)
             if marks[step] & AVOIDED or (came[step] and cost >= costs[step]):
                 continue
             costs[step], came[step] = cost, cell + 1
@@ -301,6 +274,6 @@ def holds_target(cells: Cells, aim: Aim, area: npt.NDArray[np.bool_]) -> bool:
     for x in range(max(0, aim.x - far), min(sizes[0], aim.x + far + 1)):
         for y in range(max(0, aim.y - far), min(sizes[1], aim.y + far + 1)):
             for z in range(max(0, aim.z - far), min(sizes[2], aim.z + far + 1)):
-                if area[(x * sizes[1] + y) * sizes[2] + z] and _is_met(aim, x, y, z):
+                if area[(x * sizes[1] + y) * sizes[2] + z] and _is_met(cells, aim, x, y, z):
                     return True
     return False

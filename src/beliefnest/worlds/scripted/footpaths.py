@@ -14,7 +14,7 @@ from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, feet_in
+from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, block_at, feet_in
 from beliefnest.worlds.scripted.footing import Footing, Window
 from beliefnest.worlds.scripted.free_lines import can_touch, can_use
 
@@ -24,10 +24,10 @@ if TYPE_CHECKING:  # Compiled code takes its time to load.
 __all__ = ["Goal", "Ground", "InReach", "Near"]
 
 _MOST_CELLS = 100_000
+_TOUCH = 1e-3
+"""Height of feet above a block's face, in blocks, from which on they are on something there."""
 _MOST_WAYS = 20_000
 """Largest number of paths that a ground caches."""
-_MOST_STEPS = 8
-"""Largest number of cells that one step leads to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,11 +84,10 @@ Goal = Near | InReach
 
 
 class Ground:
-    """Cells in which agents can stand: two free cells above one another, with a solid one below.
+    """Cells in which agents can stand, and paths between them; `geometry` has the rules.
 
-    Unknown cells count as free to walk through and solid to stand on. Open doors and gates are
-    free, but can only be crossed straight. `footpath_kernels` has the rules of steps. In a large
-    box cells are prepared only where paths lead, with the same paths.
+    Unknown cells count as free to walk through and solid to stand on. In a large box cells are
+    prepared only where paths lead, with the same paths.
 
     Args:
         registry: Shapes of blocks.
@@ -120,6 +119,17 @@ class Ground:
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
         return self._footing.stands(cell)
+
+    def feet(self, cell: Position) -> Point:
+        """Return the place of the feet of an agent that stands in the middle of a cell."""
+        x, y, z = feet_in(cell)
+        return (x, y + self._footing.feet_height(cell), z)
+
+    def cell_of(self, feet: Point) -> Position:
+        """Return the cell of an agent; on a low block it is the one above the block."""
+        x, y, z = block_at(feet)
+        is_on_it = feet[1] - y > _TOUCH and self._footing.is_obstacle((x, y, z))
+        return (x, y + is_on_it, z)
 
     def may_hold(self, place: Position) -> bool:
         """Return True if a position has a container or is unknown."""
@@ -281,18 +291,18 @@ class _Search:
     def __init__(
         self, footing: Footing, window: Window, start: Position, avoiding: Iterable[Position] = ()
     ) -> None:
-        from beliefnest.worlds.scripted.footpath_kernels import Queue
+        from beliefnest.worlds.scripted.footpath_kernels import MOST_STEPS, SCRATCH, Queue
 
-        room = _MOST_STEPS * _MOST_CELLS + 1
+        room = MOST_STEPS * _MOST_CELLS + 1
         if footing.is_whole:
-            room = _MOST_STEPS * min(window.count + 1, _MOST_CELLS) + 1
+            room = MOST_STEPS * min(window.count + 1, _MOST_CELLS) + 1
         self._footing, self.window = footing, window
         self._avoiding = tuple(avoiding)
         self._trail = self._emptied(window)
         # Memory of `empty` is not touched before it is needed.
         orders, waiting = np.empty((2, room), dtype=np.int32)
         self._queue = Queue(np.empty(room), orders, waiting, np.array([1, 0, 0, -1]))
-        self._found = np.empty(_MOST_STEPS, dtype=np.int32)
+        self._found = np.empty(SCRATCH, dtype=np.int32)
         first = window.index(start)
         assert first is not None  # windows of cells contain them
         self._trail.came[first], self._trail.costs[first] = -1, 0.0
@@ -337,7 +347,7 @@ class _Search:
         """Return a trail without found cells, with the cells to avoid."""
         from beliefnest.worlds.scripted.footpath_kernels import AVOIDED, Trail
 
-        size = len(window.cells.passing)
+        size = len(window.cells.codes)
         # Memory of `zeros` is not touched before it is needed.
         marks = np.zeros(size, dtype=np.uint8)
         for index in map(window.index, self._avoiding):

@@ -17,7 +17,7 @@ from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.texts import MOST_UTTERANCES
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position, block_at, feet_in
 from beliefnest.worlds.protocol import NO_WAY
-from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach
+from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach, Near
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __all__ = [
@@ -137,8 +137,15 @@ class Hand:
 
     @property
     def cell(self) -> Position:
-        """Cell in which the agent stands."""
-        return block_at(self.feet)
+        """Cell in which the agent stands; on a low block, the one above the block."""
+        feet = self.feet
+        return block_at(feet) if feet[1] == math.floor(feet[1]) else self.ground().cell_of(feet)
+
+    def has_reached(self, goal: Goal) -> bool:
+        """Return True if the agent meets a goal; see `footpath_kernels` for feet on low blocks."""
+        if self.known().meets(goal, self.cell):
+            return True
+        return isinstance(goal, Near) and goal.is_met(block_at(self.feet))
 
 
 def walk_to_use(hand: Hand, place: Position) -> Doing:
@@ -207,7 +214,7 @@ def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_D
     """Walk until the goal is met, one cell a tick; return True if the agent walked."""
     moved = False
     bumped: set[Position] = set()
-    while not hand.known().meets(goal, hand.cell):
+    while not hand.has_reached(goal):
         way = _way(hand, goal, doors, bumped)
         if way is None:
             far = math.dist(hand.feet, target)
@@ -227,13 +234,12 @@ def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_D
                 bumped.add(steps[0])
                 break
             skipped = _skipped(hand, steps)
-            feet = hand.feet
-            behind = block_at(feet)
+            feet, behind = hand.feet, hand.cell
             for _ in range(skipped):
                 behind = steps.popleft()
                 feet = feet_in(behind)
             moved = True
-            _step_to(hand, feet, steps.popleft())
+            _step_to(hand, feet, ground.feet(steps.popleft()))
             if skipped:
                 yield skipped
             if doors.closes and ground.has_doors:
@@ -256,10 +262,11 @@ def _skipped(hand: Hand, steps: Sequence[Position]) -> int:
     return max(0, free - 1)
 
 
-def _step_to(hand: Hand, feet: Point, cell: Position) -> None:
-    """Take a step from a place of the feet into a cell, with the view ahead."""
-    x, _, z = feet_in(cell)
-    hand.world.walk_into(hand.name, cell, yaw=math.atan2(-(x - feet[0]), -(z - feet[2])))
+def _step_to(hand: Hand, feet: Point, ahead: Point) -> None:
+    """Take a step from one place of the feet to another, with the view ahead."""
+    hand.world.walk_to(
+        hand.name, ahead, yaw=math.atan2(-(ahead[0] - feet[0]), -(ahead[2] - feet[2]))
+    )
 
 
 def point_in(name: str, value: Any) -> Point:

@@ -37,7 +37,6 @@ from beliefnest.world.values import (
     Items,
     Point,
     Position,
-    feet_in,
 )
 from beliefnest.worlds.scripted.facts import (
     Pending,
@@ -227,11 +226,11 @@ class ScriptedWorld(PoweredState):
             self._facts.agents[name] = agent.moved(self._feet(position), turn, tilt)
             pending.agents.add(name)
 
-    def walk_into(self, name: str, cell: Position, yaw: float) -> None:
-        """Move an agent to the middle of a cell; it looks straight ahead along `yaw`."""
+    def walk_to(self, name: str, feet: Point, yaw: float) -> None:
+        """Move an agent to a place of its feet; it looks straight ahead along `yaw`."""
         with self._act() as pending:
             agent = self._agent(name)
-            self._facts.agents[name] = agent.moved(feet_in(self._in_box(cell)), yaw, 0.0)
+            self._facts.agents[name] = agent.moved(self._feet(feet), yaw, 0.0)
             pending.agents.add(name)
 
     def set_block(self, position: Position, block: str, actor: str | None = None) -> None:

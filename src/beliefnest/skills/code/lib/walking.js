@@ -10,6 +10,8 @@ const REACH = 4
 const STILL = 0.01
 const SETTLE_TICKS = 10
 const MIDDLE = 0.15
+/** Height below which a block is a layer on the floor, such as a carpet. */
+const LAYER = 0.1
 const STEP_TICKS = 40
 /** Number of times that the pathfinder may get stuck at one place before its path is given up. */
 const MOST_STUCK = 2
@@ -129,12 +131,25 @@ async function walk (context, goal, arrived, target, what, doors = ANY_DOOR) {
     `${near.toFixed(1)} blocks away. Go somewhere else, or clear the way first.`, fault ?? noPath())
 }
 
-/** Walk to within `dist` blocks of a position. */
+/** Return true if a block is lower than a full one, and no thin layer: feet on it are in its own place. */
+function isLow (block) {
+  if (block?.boundingBox !== 'block') return false
+  const top = Math.max(...block.shapes.map(shape => shape[4]))
+  return top >= LAYER && top < 1
+}
+
+/** Walk to within `dist` blocks of a position. On a low block the bot is in its place, and in the one above it. */
 async function walkNear (context, target, dist, what = 'the position', doors = ANY_DOOR) {
   const { bot, goals } = context
   const block = target.floored()
-  const arrived = () => bot.entity.position.floored().distanceTo(block) <= dist
-  await walk(context, new goals.GoalNear(block.x, block.y, block.z, dist), arrived, target, what, doors)
+  const isNear = place => place.distanceTo(block) <= dist
+  const goal = new goals.GoalNear(block.x, block.y, block.z, dist)
+  goal.isEnd = node => isNear(node) || (isNear(node.offset(0, -1, 0)) && isLow(bot.blockAt(node.offset(0, -1, 0))))
+  const arrived = () => {
+    const feet = bot.entity.position.floored()
+    return isNear(feet) || (isNear(feet.offset(0, 1, 0)) && isLow(bot.blockAt(feet)))
+  }
+  await walk(context, goal, arrived, target, what, doors)
 }
 
 const SAMPLES = [[0, 0, 0], [0.45, 0, 0], [-0.45, 0, 0], [0, 0.45, 0], [0, -0.45, 0], [0, 0, 0.45], [0, 0, -0.45]]

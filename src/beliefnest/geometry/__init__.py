@@ -1,0 +1,1 @@
+"""Geometry of bodies: where one can stand, step, jump, climb, swim and drop."""

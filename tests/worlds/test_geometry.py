@@ -1,0 +1,254 @@
+"""Bodies stand and pass alike in Minecraft, in the scripted world and on the maps of planners."""
+
+from collections.abc import Iterator, Sequence
+from functools import cache
+
+import numpy as np
+import pytest
+from tests.profiles import few_by_day
+
+from beliefnest.minds.ways import Floor, ways_from
+from beliefnest.world.doors import is_doorway
+from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
+from beliefnest.world.values import AgentState, Box, Point, Position
+from beliefnest.worlds.by_name import open_world
+from beliefnest.worlds.protocol import World
+from beliefnest.worlds.scripted.footpaths import Ground, Near
+
+LENGTH, HEIGHT, FLOOR, MIDDLE = 13, 8, 3, 6
+"""Size of a lane, height of its floor, and the place of the block in question."""
+AT_ONCE = 12
+"""Number of lanes of one body."""
+LIMIT = 2000
+
+BY_DAY = (
+    *("stone", "oak_fence", "oak_fence_gate[facing=east,open=false]", "cobblestone_wall"),
+    *("oak_fence_gate[facing=east,open=true]", "oak_fence_gate[facing=north,open=false]"),
+    *("glass_pane", "iron_bars", "oak_slab", "oak_slab[type=top]", "oak_stairs[facing=west]"),
+    *("white_carpet", "snow", "snow[layers=2]", "snow[layers=5]", "ladder[facing=west]"),
+    *("ladder[facing=east]", "oak_trapdoor", "oak_trapdoor[open=true]", "iron_trapdoor", "cobweb"),
+    *("lily_pad", "sweet_berry_bush[age=3]", "soul_sand", "ice", "water", "lava", "magma_block"),
+    *("cactus", "farmland", "white_bed", "fire", "soul_fire", "nether_portal[axis=x]", "campfire"),
+    *("oak_door[facing=east,open=false]", "oak_door[facing=north,open=false]", "honey_block"),
+    *("oak_door[facing=east,open=true]", "iron_door[facing=east,open=false]", "powder_snow"),
+    *("iron_door[facing=east,open=true]", "vine", "chest", "bamboo", "lantern", "scaffolding"),
+)
+
+Case = tuple[str, int]
+
+
+def distinct_states() -> list[int]:
+    """Return one state of each kind of shape that a body meets."""
+    registry = Registry.load()
+    kinds: dict[object, int] = {}
+    for name in registry.block_names:
+        states = registry.state_ids(name)
+        boxes = registry.boxes(states[0])
+        kind = name if name in ("ladder", "water", "lava", "fire", "cobweb") else ""
+        layer = bool(boxes) and boxes[0][4] < 0.1, bool(boxes) and boxes[0][4] > 1
+        for state in states:
+            door: tuple[object, ...] = ()
+            if is_doorway(name):
+                told = registry.properties(state)
+                door = (name.split("_")[-1], name.startswith("iron"), told.get("half"))
+                door += (told["open"], told["facing"])
+            key = (registry.is_solid(name), kind, layer, door, registry.boxes(state))
+            kinds.setdefault(key, state)
+    return sorted(kinds.values())
+
+
+def upper(state: int) -> int:
+    """Return the block above one: the other half of a door, else the same."""
+    registry = Registry.load()
+    is_door = registry.name(state).endswith("_door")
+    return registry.changed(state, half="upper") if is_door else state
+
+
+def lane(kind: str, state: int, blocks: np.ndarray) -> Position:
+    """Build a lane (length, height); return its goal, with z 0."""
+    stone = Registry.load().state_id("stone")
+    blocks[:, : FLOOR + 1] = stone
+    goal = (LENGTH - 2, FLOOR + 1, 0)
+    match kind:
+        case "barrier":
+            blocks[MIDDLE, FLOOR + 1] = state
+        case "high barrier":
+            blocks[MIDDLE, FLOOR + 1], blocks[MIDDLE, FLOOR + 2] = state, upper(state)
+        case "floor":
+            blocks[MIDDLE, FLOOR] = state
+        case "bridge":
+            blocks[MIDDLE - 2 : MIDDLE + 3, 1 : FLOOR + 1] = 0
+            blocks[MIDDLE - 2 : MIDDLE + 3, FLOOR] = state
+        case "step":
+            blocks[MIDDLE, FLOOR + 1] = state
+            blocks[MIDDLE + 1 :, FLOOR + 1] = stone
+            goal = (LENGTH - 2, FLOOR + 2, 0)
+        case _:
+            far, up, ceiling = (int(part) for part in kind.split()[1:])
+            blocks[4:, 1:] = 0
+            blocks[4 + far :, : FLOOR + up + 1] = stone
+            if ceiling:
+                blocks[:, FLOOR + 3] = stone
+            goal = (LENGTH - 2, FLOOR + up + 1, 0)
+    return goal
+
+
+@cache
+def built(cases: tuple[Case, ...]) -> tuple[Snapshot, dict[str, Position]]:
+    """Return lanes side by side, with walls between them, and the goal of each agent."""
+    stone = Registry.load().state_id("stone")
+    box = Box((0, 0, 0), (LENGTH - 1, HEIGHT - 1, 2 * len(cases)))
+    blocks = np.zeros(box.shape, dtype=np.int32)
+    blocks[:, :, ::2] = stone
+    goals, agents = {}, {}
+    for number, (kind, state) in enumerate(cases):
+        z = 2 * number + 1
+        x, y, _ = lane(kind, state, blocks[:, :, z])
+        goals[f"a{number}"] = (x, y, z)
+        agents[f"a{number}"] = AgentState((1.5, FLOOR + 1.0, z + 0.5))
+    blocks[0], blocks[-1] = stone, stone
+    return Snapshot(0, box, Terrain.of(blocks), {}, agents), goals
+
+
+def walked(world: World, cases: tuple[Case, ...]) -> list[tuple[bool, Point]]:
+    """Let agents walk through lanes; return whether each arrived, and where it ended."""
+    start, goals = built(cases)
+    body = world.open_body("/", "seed", start, lambda frame: None)
+    try:
+        programs = {
+            name: f"await goToPosition(bot, new Vec3{goal}, 0)" for name, goal in goals.items()
+        }
+        results = body.run(programs, LIMIT)
+        there = body.snapshot().agents
+    finally:
+        body.close()
+    return [(results[name].ok, there[name].position) for name in goals]
+
+
+def plans(cases: tuple[Case, ...]) -> list[bool]:
+    """Return whether planners find a way through each lane."""
+    start, goals = built(cases)
+    floor = Floor(Registry.load(), start.blocks)
+    begins = [(1, FLOOR + 1, goal[2]) for goal in goals.values()]
+    ways = ways_from(start.box, [floor], begins, diagonal=False, most=10_000)
+    assert ways is not None
+    return [goal in ways.cells for goal in goals.values()]
+
+
+def parts(cases: Sequence[Case]) -> Iterator[tuple[Case, ...]]:
+    for first in range(0, len(cases), AT_ONCE):
+        yield tuple(cases[first : first + AT_ONCE])
+
+
+def names(cases: Sequence[Case]) -> list[str]:
+    return [f"{kind}: {Registry.load().text(state)}" for kind, state in cases]
+
+
+@pytest.fixture(scope="module")
+def scripted() -> Iterator[World]:
+    with_world = open_world("scripted", 0)
+    yield with_world
+    with_world.close()
+
+
+KINDS = ("barrier", "high barrier", "floor", "bridge")
+GAPS = [f"gap {far} {up} {low}" for far in (1, 2, 3, 4) for up in (1, 0, -1, -2) for low in (0, 1)]
+
+
+def cases_by_day() -> list[Case]:
+    registry = Registry.load()
+    states = [registry.state_id(text) for text in BY_DAY]
+    # In turns, so that each kind of lane has each kind of block within four days of a change.
+    return [(KINDS[n % 2], state) for n, state in enumerate(states)]
+
+
+def check(embedded: World, scripted: World, cases: Sequence[Case]) -> None:
+    """Compare walks in both worlds, and planners' ways, through some lanes."""
+    for part in parts(cases):
+        real, told = walked(embedded, part), walked(scripted, part)
+        assert dict(zip(names(part), told, strict=True)) == {
+            name: (ok, pytest.approx(feet, abs=0.45 if ok else 99))
+            for name, (ok, feet) in zip(names(part), real, strict=True)
+        }
+        # Planners take no jumps and no ladders, and drop by one block only.
+        for name, (ok, _), planned in zip(names(part), told, plans(part), strict=True):
+            assert ok or not planned, name
+
+
+@pytest.fixture(scope="module")
+def embedded() -> Iterator[World]:
+    world = open_world("embedded", 0)
+    yield world
+    world.close()
+
+
+def test_bodies_pass_alike_in_both_worlds(embedded: World, scripted: World) -> None:
+    check(embedded, scripted, cases_by_day())
+
+
+@pytest.mark.parametrize("kind", few_by_day(KINDS, 0))
+def test_bodies_pass_alike_for_all_shapes(kind: str, scripted: World) -> None:
+    states = distinct_states()
+    for first in range(0, len(states), 96):
+        # Each bot takes memory of Node until its world is closed.
+        world = open_world("embedded", 0)
+        try:
+            check(world, scripted, [(kind, state) for state in states[first : first + 96]])
+        finally:
+            world.close()
+
+
+def test_gaps_are_jumped_alike(embedded: World, scripted: World) -> None:
+    stone = Registry.load().state_id("stone")
+    check(embedded, scripted, [(kind, stone) for kind in GAPS[::3]])
+
+
+@pytest.mark.parametrize(
+    ("block", "passes"),
+    [
+        ("bricks", False),
+        ("oak_fence", False),
+        ("oak_fence_gate[facing=east]", True),
+        ("oak_fence_gate[facing=north]", False),
+        ("iron_door[facing=east,half=lower]", False),
+        ("cobblestone_wall", False),
+        ("cobweb", False),
+        ("lava", False),
+        ("fire", False),
+        ("snow[layers=2]", True),
+        ("ladder[facing=west]", True),
+        ("oak_slab", True),
+    ],
+)
+def test_walkers_and_planners_agree_about_a_barrier(block: str, *, passes: bool) -> None:
+    registry = Registry.load()
+    kind = "high barrier" if block.startswith(("bricks", "iron_door")) else "barrier"
+    cases = ((kind, registry.state_id(block)),)
+    start, goals = built(cases)
+    ground = Ground(registry, start.box, start.blocks).with_doors_opened
+    (goal,) = goals.values()
+    assert (ground.way((1, FLOOR + 1, 1), Near(goal, 0)) is not None) is passes
+    assert plans(cases) == [passes]
+
+
+@pytest.mark.parametrize(
+    ("block", "feet"),
+    [
+        ("oak_slab", 4.5),
+        ("white_carpet", 4.0625),
+        ("soul_sand", 4.875),
+        ("air", 4.0),
+        ("snow", 4.0),
+    ],
+)
+def test_feet_are_on_top_of_low_blocks(block: str, feet: float) -> None:
+    registry = Registry.load()
+    start, _ = built((("barrier", registry.state_id(block)),))
+    ground = Ground(registry, start.box, start.blocks)
+    way = ground.way((1, FLOOR + 1, 1), Near((LENGTH - 2, FLOOR + 1, 1), 0))
+    assert way is not None
+    (cell,) = (cell for cell in way if cell[0] == MIDDLE)
+    assert ground.feet(cell) == (MIDDLE + 0.5, feet, 1.5)
+    assert ground.cell_of(ground.feet(cell)) == cell
