@@ -1,11 +1,11 @@
 """`beliefnest bundle`, `beliefnest methods`: the supplement and the methods of a study or run."""
 
 import os
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 from beliefnest.cli.console import progress_on
+from beliefnest.cli.terminal_text import say
 from beliefnest.studies.archive import write_zip
 from beliefnest.studies.bundling import bundled, facts_of, opened
 from beliefnest.studies.methods import Format, methods_text
@@ -16,7 +16,7 @@ __all__ = ["print_methods", "write_bundle"]
 
 def print_methods(folder: Path, form: Format) -> None:
     """Print the paragraph for a methods section; raise InputError if there are no results."""
-    sys.stdout.write(methods_text(facts_of(opened(folder)), form))
+    say(methods_text(facts_of(opened(folder)), form))
 
 
 def write_bundle(folder: Path, out: Path | None, *, runs: bool) -> None:
@@ -36,12 +36,12 @@ def write_bundle(folder: Path, out: Path | None, *, runs: bool) -> None:
         target = out or Path(f"{folder.resolve().name}.zip")
         on_progress(f"writing {counted(len(files), 'file')}", 0, 0)
         write_zip(files, target)
-    sys.stdout.write(f"{target}: {counted(len(files), 'file')}, {target.stat().st_size:,} bytes\n")
+    say(f"{target}: {counted(len(files), 'file')}, {target.stat().st_size:,} bytes\n")
     if not any(name == "figure.svg" or name.endswith("picture.png") for name in files):
-        sys.stdout.write('without a figure; install "beliefnest[plot]" to add it\n')
+        say('without a figure; install "beliefnest[plot]" to add it\n')
     named = _naming_home(files)
     if named:
-        sys.stdout.write(
+        say(
             f"{counted(len(named), 'file')} with the path of your home folder, such as {named[0]}; "
             "change this before an anonymous review\n"
         )

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from beliefnest.cli.options import CaptureOptions
-from beliefnest.cli.terminal_text import printable
+from beliefnest.cli.terminal_text import printable, say
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import new_file, read_regular
 from beliefnest.scenarios.writing import scenario_text
@@ -45,7 +45,7 @@ def write_capture(options: CaptureOptions) -> None:
         raise InputError(f"{out} cannot be written: {error.strerror}") from None
     for sentence in captured.left_out:
         sys.stderr.write(printable(f"left out: {sentence}") + "\n")
-    sys.stdout.write(f"{out} is written; run it with: beliefnest run {out}\n")
+    say(f"{out} is written; run it with: beliefnest run {out}\n")
 
 
 def _name(out: Path) -> str:

@@ -2,12 +2,13 @@
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.segment import Segment
 from rich.table import Column, Table
 
 from beliefnest.cli.terminal_text import printable
@@ -23,6 +24,18 @@ _WORD = 12
 """Letters of a word that every column must have room for."""
 
 
+class _SafeConsole(Console):
+    """Console that escapes control characters of all texts, also of those in tables and names."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterable[Segment]:
+        """Yield the segments of something to print; only the console's own may be controls."""
+        for segment in super().render(renderable, options):
+            is_own = segment.control is not None
+            yield segment if is_own else segment._replace(text=printable(segment.text))
+
+
 def stdout() -> Console:
     """Return the console for results, with colours only on a terminal.
 
@@ -30,14 +43,24 @@ def stdout() -> Console:
     """
     terminal = sys.stdout.isatty()
     # Files get no colour codes, even if environment variables ask for colours.
-    return Console(width=_width(terminal=terminal), force_terminal=terminal)
+    return _SafeConsole(width=_width(terminal=terminal), force_terminal=terminal)
 
 
 def folded(table: Table) -> Table:
-    """Make all columns of a table fold their text instead of cutting it, and return the table."""
+    """Make all columns of a table fold their text instead of cutting it, and return the table.
+
+    Control characters in its texts are escaped.
+    """
     for column in table.columns:
         column.overflow, column.no_wrap = "fold", False
+        # Widths are those of the escaped texts.
+        column.header = _shown(column.header)
+        column._cells[:] = map(_shown, column._cells)
     return table
+
+
+def _shown(cell: RenderableType) -> RenderableType:
+    return printable(cell) if isinstance(cell, str) else cell
 
 
 def print_table(console: Console, table: Table) -> None:
@@ -81,7 +104,7 @@ def progress_on(title: str) -> "Iterator[OnProgress]":
     # The output of a command in a notebook is no terminal, even if it claims to be one.
     notebook = "JPY_PARENT_PID" in os.environ
     plain = notebook or not sys.stderr.isatty()
-    console = Console(stderr=True, markup=False, force_terminal=not plain)
+    console = _SafeConsole(stderr=True, markup=False, force_terminal=not plain)
     title = printable(title)
     if plain:
         console.width = _width(terminal=False) or _PLAIN_WIDTH

@@ -10,6 +10,7 @@ from contextlib import closing
 from dataclasses import asdict, dataclass
 
 from beliefnest.cli.machine_checks import MACHINE_CHECKS
+from beliefnest.cli.terminal_text import say
 from beliefnest.errors import BeliefNestError, BodyError, InputError, ModelError
 from beliefnest.worlds.servers.address import ServerAddress, is_server
 
@@ -54,7 +55,7 @@ def examine(server: str | None = None, *, as_json: bool, warm: bool = False) -> 
         found.append(finding)
         if not as_json:
             word = "ok  " if finding.ok else "FAIL"
-            sys.stdout.write(f"{word}  {finding.name}: {finding.detail}\n")
+            say(f"{word}  {finding.name}: {finding.detail}\n")
             sys.stdout.flush()
     if as_json:
         sys.stdout.write(json.dumps([asdict(finding) for finding in found], indent=2) + "\n")

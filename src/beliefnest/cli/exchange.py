@@ -1,6 +1,5 @@
 """`beliefnest export` and `beliefnest import`: runs as tables, traces as runs."""
 
-import sys
 from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import cast, get_args
 from beliefnest.belief.plain import belief_json, place_key
 from beliefnest.cli.folder import store_in
 from beliefnest.cli.options import ExportOptions
+from beliefnest.cli.terminal_text import say
 from beliefnest.episodes.telling import goal_rows, round_rows, told_episode
 from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
@@ -50,7 +50,7 @@ def export_run(options: ExportOptions) -> None:
             notes=chain(_notes(journal.records), _rounds(nest)),
         )
     for table, count in counts.items():
-        sys.stdout.write(f"{table}: {count}\n")
+        say(f"{table}: {count}\n")
 
 
 def _notes(records: Records) -> Iterator[Row]:
@@ -83,4 +83,4 @@ def import_run(trace: Path, out: Path) -> None:
     """
     told = load_trace(trace, Registry.load())
     import_trace(told, trace.stem, out)
-    sys.stdout.write(f"{out}: {len(told.entries)} ticks with changes, {len(told.agents)} agents\n")
+    say(f"{out}: {len(told.entries)} ticks with changes, {len(told.agents)} agents\n")

@@ -7,6 +7,7 @@ from rich import box
 from rich.table import Table
 
 from beliefnest.cli.console import print_table, stdout
+from beliefnest.cli.terminal_text import say
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.llm.resolve import model_names
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
@@ -69,6 +70,6 @@ def print_template(name: str | None) -> None:
     """
     if name is None:
         for each, description in BUILT_IN_TEMPLATES.items():
-            sys.stdout.write(f"{each:14}{description}\n")
+            say(f"{each:14}{description}\n")
         return
-    sys.stdout.write(built_in_template(name).text.rstrip("\n") + "\n")
+    say(built_in_template(name).text.rstrip("\n") + "\n")

@@ -1,10 +1,10 @@
 """`beliefnest new`: write a scenario to start from."""
 
 import re
-import sys
 from importlib.resources import files
 from pathlib import Path
 
+from beliefnest.cli.terminal_text import say
 from beliefnest.errors import InputError
 from beliefnest.files import new_file
 from beliefnest.scenarios.sources import builtin_names
@@ -33,4 +33,4 @@ def write_starter(name: str) -> None:
         raise InputError(f"{path} exists already; choose another name") from None
     except OSError as error:
         raise InputError(f"{path} cannot be written: {error.strerror}") from None
-    sys.stdout.write(f"{path} is written; run it with: beliefnest run {path}\n")
+    say(f"{path} is written; run it with: beliefnest run {path}\n")

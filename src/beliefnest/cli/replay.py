@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.cli.folder import stores_in
+from beliefnest.cli.terminal_text import say
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.replay import ReplayedTimeline, replay
 from beliefnest.nest.past.setting_codec import decode_start
@@ -40,7 +41,7 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
                 row = _row(store, replayed)
                 told.append(row)
                 if not as_json:
-                    sys.stdout.write(_line(row) + "\n")
+                    say(_line(row) + "\n")
     if as_json:
         sys.stdout.write(json.dumps({"same": same, "timelines": told}, indent=2) + "\n")
     return 0 if same else 1

@@ -20,7 +20,7 @@ from beliefnest.cli.console import print_table, stdout
 from beliefnest.cli.folder import store_in, stores_in
 from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.report import placed_lines
-from beliefnest.cli.terminal_text import printable
+from beliefnest.cli.terminal_text import printable, say
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.face.shown import PastSimulator
@@ -212,7 +212,7 @@ def print_prompt(run: Path, path: str, template: Path | None, variables: list[st
         values[key] = value
     with _opened(store_in(run)) as (_, nest, journal):
         source = _template(template, journal.records.run().templates)
-        sys.stdout.write(nest.simulator(path).render(source, **values) + "\n")
+        say(nest.simulator(path).render(source, **values) + "\n")
 
 
 def _template(wanted: Path | None, kept: Mapping[str, str]) -> Template:

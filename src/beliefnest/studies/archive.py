@@ -215,11 +215,11 @@ def damaged_files(folder: Path, kind: str) -> list[Difference]:
         there = hashlib.sha256(read_regular(path)).hexdigest() if path.is_file() else None
         if there != known:
             found.append(Difference(name, HASH, known, there))
-    there = {
+    held = {
         path.relative_to(folder).as_posix()
         for name in _READ_BELOW
         for path in (folder / name).rglob("*")
         if path.is_file() and path.suffix != ".lock"
     }
-    added = sorted(there - manifest.sha256.keys())
+    added = sorted(held - manifest.sha256.keys())
     return [*found, *(Difference(name, ADDED, None, None) for name in added)]
