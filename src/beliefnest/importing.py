@@ -4,12 +4,13 @@ import difflib
 import importlib
 import importlib.util
 import sys
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 from types import ModuleType
 
 from beliefnest.errors import InputError
 
-__all__ = ["imported_object", "is_object_name", "text_of_object"]
+__all__ = ["imported_object", "is_importable", "is_object_name", "text_of_object"]
 
 _SUFFIX = ".py"
 
@@ -38,6 +39,11 @@ def imported_object(text: str, what: str) -> object:
         return getattr(module, name)
     except AttributeError:
         raise InputError(f"{place} has no {what} {name!r}{_hint(name, module)}") from None
+
+
+def is_importable(place: str) -> bool:
+    """Return True if a place before the colon is a Python file's name, or a module that exists."""
+    return place.endswith(_SUFFIX) or _spec(place) is not None
 
 
 def text_of_object(text: str) -> str:
@@ -73,11 +79,15 @@ def _hint(name: str, module: ModuleType) -> str:
     return f"; it defines {', '.join(own)}" if own else "; it defines no class and no function"
 
 
-def _spec_of(module: str) -> str | None:
+def _spec(module: str) -> ModuleSpec | None:
     try:
-        spec = importlib.util.find_spec(module)
+        return importlib.util.find_spec(module)
     except (ImportError, ValueError):
         return None
+
+
+def _spec_of(module: str) -> str | None:
+    spec = _spec(module)
     return None if spec is None else spec.origin
 
 
@@ -95,7 +105,7 @@ def _module(place: str, what: str) -> ModuleType:
         beside = " (to import modules beside it, put its folder into PYTHONPATH)"
         hint = beside if place.endswith(_SUFFIX) else ""
         raise InputError(f"{place} of a {what} cannot be imported: {error}{hint}") from error
-    except Exception as error:  # Code of users may raise anything.
+    except (Exception, SystemExit) as error:  # Code of users may raise anything.
         told = f"{type(error).__name__}: {error}"
         raise InputError(f"{place} of a {what} cannot be imported: {told}") from error
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.llm.conftest import serving
 from tests.studies.small import tables_of
 
 import beliefnest as bn
@@ -218,11 +219,13 @@ def test_help_is_measured_where_it_is_asked_for_and_runs_are_kept(here: Path) ->
 
 def test_a_model_that_cannot_be_asked_is_no_result(here: Path, monkeypatch: Any) -> None:
     monkeypatch.setenv("OPENAI_API_KEY", "none")
-    monkeypatch.setenv("OPENAI_BASE_URL", "http://127.0.0.1:9/v1")
     study = bn.Study(
         tasks="bring.yaml", models=["offline", "openai:gpt-4o-mini"], orders=[0], max_cost=0
     )
-    result = study.run("out", jobs=1)
+    with serving() as server:
+        monkeypatch.setenv("OPENAI_BASE_URL", server.url)
+        result = study.run("out", jobs=1)
+    assert server.requests == []
     outcomes = {row["player"]: row["outcome"] for row in result.rows}
     assert outcomes == {"model:offline": "wrong", "model:openai:gpt-4o-mini": "error"}
     assert "may cost 0.00" in result.rows[1]["why_not"]

@@ -66,6 +66,62 @@ def test_a_request_that_fails_fails_its_cell_alone_and_is_tried_again(server, tm
     assert len(server.requests) == asked + 1
 
 
+def test_a_model_that_cannot_be_asked_stops_the_study_at_once(server, tmp_path):
+    server.will(FakeOpenAI.says(LEFT), FakeOpenAI.fails(401))
+    arguments = {"variations": {"count": [1, 2, 3, 4]}}
+    with pytest.raises(bn.ModelError, match=r"refused the key in VLLM_API_KEY.*; 3 cells left"):
+        study(tmp_path, **arguments).run(tmp_path / "out", jobs=1)
+    assert len(server.requests) == 2
+    server.will(FakeOpenAI.says(LEFT))
+    result = study(tmp_path, **arguments).run(tmp_path / "out", jobs=1)
+    assert [row["outcome"] for row in result.rows] == ["ok"] * 4
+    assert len(server.requests) == 2 + 3
+
+
+def test_a_server_that_is_not_there_stops_the_study_before_anything(tmp_path, monkeypatch):
+    monkeypatch.setenv("VLLM_BASE_URL", "http://127.0.0.1:1/v1")
+    with pytest.raises(bn.ModelError, match=r"no server for vllm:m at http://127\.0\.0\.1:1"):
+        study(tmp_path).run(tmp_path / "out", jobs=1)
+
+
+def test_settings_of_requests_are_part_of_a_cell(tmp_path, server):
+    (tmp_path / "system.txt").write_text("Program.", encoding="utf-8")
+    settings = [
+        {},
+        {"answer_seconds": 60},
+        {"first_token_seconds": 60.0},
+        {"max_output_tokens": 77},
+        {"system": tmp_path / "system.txt"},
+        {"skills": "names"},
+    ]
+    names = [study(tmp_path, **each).plan().cells[0].key.name for each in settings]
+    assert len(set(names)) == len(names)
+    server.will(FakeOpenAI.says(LEFT))
+    result = study(tmp_path, system=tmp_path / "system.txt", max_output_tokens=77).run(
+        tmp_path / "out", jobs=1
+    )
+    (request,) = server.requests
+    assert request.body["messages"][0]["content"] == "Program."
+    assert 77 in (request.body.get("max_tokens"), request.body.get("max_completion_tokens"))
+    assert [row["outcome"] for row in result.rows] == ["ok"]
+
+
+@pytest.mark.parametrize(
+    ("lines", "told"),
+    [
+        ("answer_seconds: 0", r"study\.yaml:3: answer_seconds: answer_seconds is 0"),
+        ("max_output_tokens: 0", r"study\.yaml:3: max_output_tokens: .* at least 1"),
+        ("skills: some", r"study\.yaml:3: skills: skills is 'some'; give one of none, names"),
+        ("system: gone.txt", r"study\.yaml:3: system: the system message .*gone\.txt"),
+    ],
+)
+def test_wrong_settings_of_requests_are_named(tmp_path, lines, told):
+    small_in(tmp_path)
+    file = study_in(tmp_path, f"scenarios: [small.yaml]\nmodels: [offline]\n{lines}\n")
+    with pytest.raises(bn.ScenarioError, match=told):
+        bn.Study.load(file)
+
+
 @pytest.mark.long
 def test_an_interrupted_study_keeps_whole_cells(server, tmp_path):
     """It is interrupted in its third cell, which waits for an answer."""

@@ -313,7 +313,8 @@ def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) 
     kept, templates = path / _SCENARIO, templates_file(path / _SCENARIO)
     # Compare settings as JSON has them, in which a tuple is a list.
     asked = json.loads(json.dumps(settings))
-    differing = [key for key in asked if found["settings"].get(key) != asked[key]]
+    known = found["settings"]
+    differing = [key for key in {**known, **asked} if known.get(key) != asked.get(key)]
     if not kept.is_file() or kept.read_text(encoding="utf-8") != scenario.text:
         differing.append("scenario")
     if (read_json(templates, _OTHER) if templates.is_file() else {}) != scenario.templates:

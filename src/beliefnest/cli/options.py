@@ -8,15 +8,21 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import Annotated, Literal, TypeVar, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_type_hints
 
 import typer
+
+from beliefnest.skills.manifests import SkillDetail
+
+if TYPE_CHECKING:  # Models take long to import.
+    from beliefnest.llm.model_settings import ModelSettings
 
 __all__ = [
     "CaptureOptions",
     "ExportOptions",
     "Json",
     "MethodsFormat",
+    "ModelOptions",
     "ParticipantsOptions",
     "PlayOptions",
     "PowerOptions",
@@ -63,8 +69,42 @@ def joining_address(listen: str | None) -> str | None:
     return f"127.0.0.1:{listen}" if listen is not None and listen.isdecimal() else listen
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModelOptions:
+    """Options of requests to models; None: the default, or what a file says."""
+
+    answer_seconds: Annotated[
+        float | None,
+        typer.Option(help="Longest silence in an answer; each token starts the count again."),
+    ] = None
+    first_token_seconds: Annotated[
+        float | None, typer.Option(help="Longest wait for the first token of an answer.")
+    ] = None
+    max_output_tokens: Annotated[
+        int | None, typer.Option(help="Greatest length of an answer; default: the provider's own.")
+    ] = None
+    system: Annotated[
+        Path | None, typer.Option(help="File with a system message in place of the built-in one.")
+    ] = None
+    skills: Annotated[
+        SkillDetail | None,
+        typer.Option(help="Detail of the list of skills in the system message; default: full."),
+    ] = None
+
+    @property
+    def requests(self) -> dict[str, Any]:
+        """Return the given settings of requests by name, apart from `system`."""
+        values = {
+            "answer_seconds": self.answer_seconds,
+            "first_token_seconds": self.first_token_seconds,
+            "max_output_tokens": self.max_output_tokens,
+            "skills": self.skills,
+        }
+        return {name: value for name, value in values.items() if value is not None}
+
+
 @dataclass(frozen=True, slots=True)
-class RunOptions:
+class RunOptions(ModelOptions):
     """Options of `beliefnest run`."""
 
     scenario: Annotated[str, typer.Argument(help="A built-in name, or a scenario file.")]
@@ -169,7 +209,15 @@ class RunOptions:
             "attempts": self.attempts,
             "temperature": self.temperature,
             **({} if self.claims_from is None else {"claims_from": self.claims_from}),
+            **self.model_settings.chosen,
         }
+
+    @property
+    def model_settings(self) -> "ModelSettings":
+        """Return the settings of requests to models; raise InputError if one is not valid."""
+        from beliefnest.llm.model_settings import ModelSettings
+
+        return ModelSettings.of_file(self.system, **self.requests)
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,7 +342,7 @@ class SuiteOptions:
 
 
 @dataclass(frozen=True, slots=True)
-class StudyOptions:
+class StudyOptions(ModelOptions):
     """Options of `beliefnest study`."""
 
     study: Annotated[Path, typer.Argument(help="YAML file of the study.")]
@@ -439,7 +487,7 @@ class PowerOptions:
 
 
 @dataclass(frozen=True, slots=True)
-class PlayOptions:
+class PlayOptions(ModelOptions):
     """Options of `beliefnest play`."""
 
     task: Annotated[

@@ -17,10 +17,12 @@ from beliefnest.cli.terminal_text import printable
 from beliefnest.episodes.considered import considered_lines
 from beliefnest.episodes.episode import Budget, Episode
 from beliefnest.episodes.helping import Help
+from beliefnest.episodes.policies import with_query
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.telling import told_episode
-from beliefnest.errors import InputError, NotBegunError
+from beliefnest.errors import InputError, ModelError, NotBegunError
 from beliefnest.files import new_file
+from beliefnest.llm.model_settings import query_of
 from beliefnest.locking import holding
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
@@ -37,15 +39,21 @@ def play_task(options: PlayOptions) -> int:
         Exit status: 0 if the goal was reached, else 1.
 
     Raises:
-        BeliefNestError: The input is wrong, or a world failed.
+        BeliefNestError: The input is wrong, or a world or model failed. An episode in which a
+            model failed is printed first.
     """
     if options.task is None:
         raise InputError(f"name a task: {', '.join(Task.names())}, or a file")
     check_world(options.world, servers=False)
-    policies = _pairs(options.agent or (), "--agent", "NAME=POLICY")
+    query = query_of(options.system, options.requests)
+    named = _pairs(options.agent or (), "--agent", "NAME=POLICY")
     given = _pairs(options.set or (), "--set", "NAME=VALUE")
     parameters = {name: _value(text) for name, text in given.items()}
     task = Task.load(options.task, options.seed, condition=options.condition, **parameters)
+    policies = {
+        agent: with_query(policy, query)
+        for agent, policy in {**task.form.policies, **named}.items()
+    }
     if options.export is not None:
         return _export(task, options.export)
     with (
@@ -62,10 +70,13 @@ def play_task(options: PlayOptions) -> int:
             episode.help()
         on_progress("over", limit, limit)
         report = _report(episode, options)
+        lost = episode.model_errors
     if options.json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")
     else:
         _print(report)
+    if lost:
+        raise ModelError(f"a model did not answer in {counted(len(lost), 'round')}: {lost[0]}")
     return 0 if report["success"] else 1
 
 

@@ -37,6 +37,7 @@ from beliefnest.files import replace_file
 from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.claim_reader import claims_from_model
+from beliefnest.llm.failures import UnavailableModelError
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.face.nest import Nest
@@ -106,6 +107,8 @@ def _run_in(
         with Worlds(options.seed, launch=launch) as worlds, kernels_ahead():
             for cell in cells:
                 run.do(cell, worlds)
+                if run.unavailable:
+                    break
         if len(run.pictures) == len(cells) > 1:
             shown = run.pictures[: len(scenarios)]
             overview(shown, first.description or first.name).save(folder.picture)
@@ -121,14 +124,20 @@ def _run_in(
         folder.write_page(_page(report, options, first))
     _print(run, cells, report, as_json=options.json)
     if run.failures:
-        raise ModelError(_failures_text(run.failures, len(cells), folder))
+        missing = len(cells) - len(run.results)
+        raise ModelError(_failures_text(run.failures, missing, len(cells), folder))
     return 0 if all(result["ok"] for result in run.results) else 1
 
 
 def _connection(options: RunOptions, budget: RunSpending, folder: Path | None) -> Connection:
     """Return the connection to models; the cache is in the run folder unless another is named."""
     kept = None if folder is None else RunFolder(folder).answers
-    return Connection(budget=budget, cache=options.answers or kept, cache_mode=options.cache)
+    return Connection(
+        budget=budget,
+        answer_limits=options.model_settings.answer_limits,
+        cache=options.answers or kept,
+        cache_mode=options.cache,
+    )
 
 
 class _Run:
@@ -148,6 +157,7 @@ class _Run:
         self.pictures: list[ConditionPicture] = []
         self.results: list[dict[str, Any]] = []
         self.failures: list[dict[str, object]] = []
+        self.unavailable = False
 
     def do(self, cell: RunCell, worlds: Worlds) -> None:
         """Run a cell and keep its result, unless an earlier part of the run did so."""
@@ -163,6 +173,7 @@ class _Run:
             hook = self._hook(cell.seed)
             picture = _run(cell, place, model, hook, self._options, worlds)
         except ModelError as error:
+            self.unavailable = isinstance(error, UnavailableModelError)
             self.failures.append(
                 {
                     "condition": cell.scenario.condition,
@@ -241,7 +252,9 @@ def _run(
     worlds: Worlds,
 ) -> ConditionPicture:
     scenario = cell.scenario
-    asking = Asking(options.attempts, Sampling(options.temperature, cell.seed))
+    settings = options.model_settings
+    sampling = settings.sampling(Sampling(options.temperature, cell.seed))
+    asking = Asking(options.attempts, sampling, settings)
     started = time.perf_counter()
     with (
         progress_on(cell.title) as on_progress,
@@ -293,11 +306,13 @@ def _versions(cells: Sequence[RunCell], folder: RunFolder) -> Mapping[str, str]:
     return own_versions()
 
 
-def _failures_text(failures: Sequence[Mapping[str, object]], total: int, folder: RunFolder) -> str:
+def _failures_text(
+    failures: Sequence[Mapping[str, object]], missing: int, total: int, folder: RunFolder
+) -> str:
     if total == 1:
         return str(failures[0]["error"])
     return (
-        f"{len(failures)} of {total} have no result, run again with --out {folder.path} to go on; "
+        f"{missing} of {total} have no result, run again with --out {folder.path} to go on; "
         f"the first: {failures[0]['error']}"
     )
 

@@ -39,7 +39,10 @@ def run_study(options: StudyOptions) -> int:
         BeliefNestError: The input is wrong, or cells have no result.
     """
     shard = _shard(options.shard)
-    study = Study.load(options.study, options.claims_from)
+    given = options.requests
+    if options.system is not None:
+        given["system"] = str(options.system)
+    study = Study.load(options.study, options.claims_from, **given)
     now = datetime.now()
     folder = options.out or Path("studies", f"{options.study.stem}-{now:%Y%m%d-%H%M%S}")
     with progress_on(options.study.stem) as on_progress:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from beliefnest.belief.view import State
 from beliefnest.episodes.considered import SearchTrace
-from beliefnest.episodes.decided import Ended
+from beliefnest.episodes.counted_model import CountedModel
+from beliefnest.episodes.decided import Ended, Spent
 from beliefnest.errors import PathError
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.nest.face.shown import ShownSimulator
@@ -139,6 +140,8 @@ class AgentView:
         before: The agent's programs of earlier rounds.
         memo: Cache that the policies of a round share; None: the view has its own. It may contain
             only results of pure functions, with everything that they depend on as keys.
+        check: Function that raises ModelError if the policy may spend no more than it has in this
+            round; None: no limit.
 
     Attributes:
         agent: Name of the agent.
@@ -148,6 +151,7 @@ class AgentView:
         before: The agent's programs of earlier rounds, of any policy; an empty text: no program.
         memo: Cache that the policies of a round share.
         considered: Courses that the policy noted for the record of the run; None: none.
+        spent: Spending on the models that the policy asked through `noting`.
     """
 
     def __init__(
@@ -161,6 +165,7 @@ class AgentView:
         noting: "Callable[[Model], Model]",
         before: Sequence[str],
         memo: dict[object, Any] | None = None,
+        check: Callable[[Spent], None] | None = None,
     ) -> None:
         self.agent = agent
         self.brief = brief
@@ -169,9 +174,11 @@ class AgentView:
         self._own = own
         self._imagine = imagine
         self._noting = noting
+        self._check = check or _allow
         self.before = before
         self.memo = {} if memo is None else memo
         self.considered: SearchTrace | None = None
+        self.spent = Spent()
 
     @property
     def tick(self) -> int:
@@ -299,8 +306,25 @@ class AgentView:
         self.considered = trace
 
     def noting(self, model: "Model") -> "Model":
-        """Return a model whose conversation the run records."""
-        return self._noting(model)
+        """Return a model whose conversation the run records and whose spending it counts.
+
+        The measures of the episode contain its requests, tokens and cost, and the limits of the
+        episode hold for it.
+
+        Args:
+            model: Any model, also one of your own.
+        """
+        return CountedModel(self._noting(model), self._allowed, self._spend)
+
+    def _spend(self, spent: Spent) -> None:
+        self.spent += spent
+
+    def _allowed(self) -> None:
+        self._check(self.spent)
+
+
+def _allow(spent: Spent) -> None:
+    """Set no limit."""
 
 
 @dataclass(frozen=True, slots=True)

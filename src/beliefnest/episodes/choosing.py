@@ -1,11 +1,16 @@
 """Assignment of policies to agents."""
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.policies import resolve_policy
+from beliefnest.episodes.record import Budget
 from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError
+
+if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
+    from beliefnest.llm.resolve import Connection
 
 __all__ = ["check_resumable", "chosen", "name_of"]
 
@@ -13,13 +18,14 @@ _OBJECT = "object:"
 
 
 def chosen(
-    task: Task, policies: Mapping[str, "str | Policy"]
+    task: Task, policies: Mapping[str, "str | Policy"], budget: Budget
 ) -> tuple[dict[str, str], dict[str, Policy]]:
     """Return the policies of all agents of a task: their names, and the policies themselves.
 
     Args:
         task: The task, with policies for agents that `policies` leaves out.
         policies: Policies by agent.
+        budget: Limits of the episode, which its models share.
 
     Raises:
         InputError: A policy is for an unknown agent.
@@ -30,6 +36,7 @@ def chosen(
     for agent in policies:
         if agent not in task.agents:
             raise InputError(f"{agent!r} is none of the agents: {', '.join(task.agents)}")
+    connection = None
     names: dict[str, str] = {}
     chosen: dict[str, Policy] = {}
     for agent in task.agents:
@@ -44,8 +51,24 @@ def chosen(
                 "act(view)"
             )
         names[agent] = name_of(given)
-        chosen[agent] = resolve_policy(given) if isinstance(given, str) else given
+        if isinstance(given, str):
+            if given.startswith("model:"):
+                connection = connection or _connection(budget)
+            chosen[agent] = resolve_policy(given, None, connection)
+        else:
+            chosen[agent] = given
     return names, chosen
+
+
+def _connection(budget: Budget) -> "Connection":
+    """Return the connection of an episode's models; where it sets no limit, the usual one holds."""
+    from beliefnest.llm.budget import RunLimits, RunSpending
+    from beliefnest.llm.resolve import Connection
+
+    usual = RunLimits()
+    tokens = usual.tokens if budget.tokens is None else budget.tokens
+    cost = usual.cost if budget.cost is None else budget.cost
+    return Connection(budget=RunSpending(RunLimits(tokens, cost)))
 
 
 def name_of(policy: "str | Policy") -> str:

@@ -41,7 +41,7 @@ from beliefnest.episodes.round_start import RoundStart
 from beliefnest.episodes.rounds import Asker, replayed, slots_of
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.watching import Watch
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.setting import MAIN
 from beliefnest.scenarios.goals import Progress
@@ -99,13 +99,13 @@ class Episode:
         if world != "scripted" and task.form.pace == 1:
             task = task.at_pace(_ON_FOOT)
         self.seed = seed
-        self._names, self._policies = chosen(task, policies or {})
+        self._budget = budget or Budget()
+        self._names, self._policies = chosen(task, policies or {}, self._budget)
         self._people = people_in(self._policies)
         self.task = played_by_people(task, self._people)
         world = world_of_people(world, listen, self._people)
         self._names |= names or {}
         self._world, self._store, self._worlds = world, store, worlds
-        self._budget = budget or Budget()
         self._patience_s = patience_s
         self._asker = Asker(self._policies, patience_s)
         self._branch = MAIN
@@ -330,6 +330,7 @@ class Episode:
             with Episode(self.task, told, world=self._world, seed=self.seed) as copy:
                 copy.play(self.rounds)
                 self._help = help_in(copy, self._policies)
+                self._asker.model_errors += copy._asker.model_errors
         return self._help
 
     @property
@@ -343,6 +344,11 @@ class Episode:
     def spent(self) -> Spent:
         """Spending of policies on models."""
         return spent_in(self._parts)
+
+    @property
+    def model_errors(self) -> Sequence[ModelError]:
+        """Errors of requests of policies to which no answer came, since the episode was opened."""
+        return tuple(self._asker.model_errors)
 
     @property
     def parts(self) -> Sequence[Part]:
@@ -401,6 +407,8 @@ class Episode:
         Raises:
             InputError: The number of rounds is below 0.
             BodyError: The Minecraft side failed.
+            ModelError: The model of a policy cannot be asked at all: no server, a wrong key, no
+                credit. Other failures of policies lose only their own round.
         """
         if rounds is not None and rounds < 0:
             raise InputError(f"{rounds} rounds cannot be played; give 0 or more")
@@ -431,7 +439,14 @@ class Episode:
             own.noting,
             programs_of(self._parts, agent),
             self._memo,
+            self._check_spending,
         )
+
+    def _check_spending(self, spent: Spent) -> None:
+        """Raise ModelError if a policy that has spent something in this round may spend no more."""
+        fault = self._budget.fault(self.spent + spent)
+        if fault is not None:
+            raise ModelError(f"{fault}; raise the limit of the episode to go on")
 
     def at(self, round: int) -> "RoundStart[Self]":
         """Return the beginning of a played round.
@@ -459,6 +474,7 @@ class Episode:
             budget=self._budget,
             patience_s=self._patience_s,
         )
+        fork._asker.model_errors = self._asker.model_errors
         fork._names = {**self._names, **{a: name_of(p) for a, p in policies.items()}}
         nest["/"].switch(f"fork {number}", at=tick)
         before = self._parts[: round * len(self._slots)]

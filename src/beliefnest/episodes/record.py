@@ -66,11 +66,19 @@ class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
 
     def is_spent(self, ticks: int, spent: Spent) -> bool:
         """Return True if ticks or spending have reached a limit."""
-        return (
-            (self.ticks is not None and ticks >= self.ticks)
-            or (self.tokens is not None and spent.tokens >= self.tokens)
-            or (self.cost is not None and spent.cost is not None and spent.cost >= self.cost)
-        )
+        return (self.ticks is not None and ticks >= self.ticks) or self.fault(spent) is not None
+
+    def fault(self, spent: Spent) -> str | None:
+        """Return the limit that spending has reached, in words; None: more may be spent.
+
+        A limit of 0 US dollars admits models that cost nothing.
+        """
+        if self.tokens is not None and spent.tokens >= self.tokens:
+            return f"the episode has used {spent.tokens:,} tokens and may use {self.tokens:,}"
+        cost = spent.cost or 0.0
+        if self.cost is not None and cost >= self.cost and cost > 0:
+            return f"the episode has cost {cost:.2f} US dollars and may cost {self.cost:.2f}"
+        return None
 
 
 class EpisodeStart(msgspec.Struct, frozen=True):

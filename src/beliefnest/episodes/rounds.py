@@ -10,13 +10,17 @@ import msgspec
 
 from beliefnest.episodes.agent_view import GO_ON, AgentView, Policy
 from beliefnest.episodes.decided import Decision, Part, Spent
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, ModelError
+from beliefnest.llm.asking import NoUsableProgramError
+from beliefnest.llm.failures import UnavailableModelError, UnusableAnswerError
 from beliefnest.world.texts import is_well_formed
 
 __all__ = ["Asker", "ReplayedPolicy", "replayed", "slots_of"]
 
 _LONGEST = 100_000
 """Greatest length of a program in characters."""
+_OF_ANSWERS = (NoUsableProgramError, UnusableAnswerError)
+"""Errors about an answer that came: it is the model's result."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +45,7 @@ def replayed(parts: Sequence[Part], agents: Iterable[str]) -> dict[str, Policy]:
 @dataclass
 class _Answer:
     decision: Decision | None = None
+    unavailable: UnavailableModelError | None = None
 
 
 class Asker:
@@ -49,6 +54,9 @@ class Asker:
     Args:
         policies: Policies by agent.
         patience_s: Seconds after which a policy loses its round; None: no limit.
+
+    Attributes:
+        model_errors: Errors of requests to which no answer came.
 
     Raises:
         InputError: `patience_s` is not above 0.
@@ -61,15 +69,20 @@ class Asker:
         self._patience_s = patience_s
         self._waiting: dict[str, threading.Thread] = {}
         self._late: dict[str, _Answer] = {}
+        self.model_errors: list[ModelError] = []
 
     def ask(self, view: AgentView) -> Decision:
-        """Return the program of a round; a policy that is too late gives none."""
+        """Return the program of a round; a policy that is too late gives none.
+
+        Raises:
+            UnavailableModelError: The policy's model cannot be asked at all.
+        """
         agent = view.agent
         policy = self._policies[agent]
         if isinstance(policy, ReplayedPolicy):
             return policy.decisions[view.round]
         if self._patience_s is None:
-            return _decided(policy, view)
+            return _decided(policy, view, self.model_errors)
         thread = self._waiting.get(agent)
         if thread is not None and thread.is_alive():
             return Decision(fault="it is still at an earlier round")
@@ -79,7 +92,10 @@ class Asker:
         answer = _Answer()
 
         def decide() -> None:
-            answer.decision = _decided(policy, view)
+            try:
+                answer.decision = _decided(policy, view, self.model_errors)
+            except UnavailableModelError as error:
+                answer.unavailable = error
 
         # A daemon thread: a policy that never returns must not keep the process from ending.
         thread = threading.Thread(target=decide, name=f"policy of {agent}", daemon=True)
@@ -87,6 +103,8 @@ class Asker:
         thread.start()
         thread.join(self._patience_s)
         decision = answer.decision
+        if answer.unavailable is not None:
+            raise answer.unavailable
         if decision is None:
             self._late[agent] = answer
             return Decision(fault=f"it took more than {self._patience_s:g} s", spent=before)
@@ -98,14 +116,29 @@ def slots_of(agents: tuple[str, ...], *, turns: bool) -> tuple[tuple[str, ...], 
     return tuple((agent,) for agent in agents) if turns else (agents,)
 
 
-def _decided(policy: Policy, view: AgentView) -> Decision:
-    before = _spent(policy)
+def _decided(policy: Policy, view: AgentView, model_errors: list[ModelError]) -> Decision:
+    """Return the decision of a policy.
+
+    Args:
+        policy: The policy.
+        view: Its view.
+        model_errors: List to which an error is added if no answer came of a model.
+    """
+    own = _spent(policy)
+
+    def spent_by_now() -> Spent:
+        return view.spent + (_spent(policy) - own)
+
     try:
         program: object = policy.act(view)
-    except Exception as error:  # noqa: BLE001 - a policy may be anybody's, and raise anything
+    except UnavailableModelError:
+        raise
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a policy may be anybody's, and raise anything
+        if isinstance(error, ModelError) and not isinstance(error, _OF_ANSWERS):
+            model_errors.append(error)
         fault = f"{_place_of(error)}{type(error).__name__}: {error}"
-        return Decision(fault=fault[:1000], spent=_spent(policy) - before)
-    spent = _spent(policy) - before
+        return Decision(fault=fault[:1000], spent=spent_by_now())
+    spent = spent_by_now()
     fault = ""
     if program is None:
         program = ""
@@ -124,7 +157,7 @@ def _decided(policy: Policy, view: AgentView) -> Decision:
     return Decision(program if program.strip() else "", spent=spent, considered=view.considered)
 
 
-def _place_of(error: Exception) -> str:
+def _place_of(error: BaseException) -> str:
     """Return the line of a policy's own file at which it failed, such as `mine.py:7: `.
 
     A run has only the name of the file, so that it does not depend on the folder.
@@ -135,5 +168,6 @@ def _place_of(error: Exception) -> str:
 
 
 def _spent(policy: Policy) -> Spent:
+    """Return what a policy says that it spent on models that it asks without `view.noting`."""
     spent = getattr(policy, "spent", None)
     return spent if isinstance(spent, Spent) else Spent()

@@ -21,7 +21,8 @@ class RunLimits:
         tokens: Greatest number of tokens sent and received. The default value protects against
             costs and therefore ignores answers that cost nothing, such as those of your own
             server. Any other value counts all answers.
-        cost: Greatest cost in US dollars. Answers without a known price count for `tokens` only.
+        cost: Greatest cost in US dollars; 0 admits models that are known to cost nothing. Answers
+            without a known price count for `tokens` only.
     """
 
     tokens: int | None = _TOKENS
@@ -47,8 +48,11 @@ class RunSpending:
     spent: Usage = field(default_factory=Usage)
     free: int = 0
 
-    def check(self) -> None:
+    def check(self, *, is_free: bool = False) -> None:
         """Refuse a further request if a limit is reached.
+
+        Args:
+            is_free: True if the request is known to cost nothing.
 
         Raises:
             ModelError: A limit is reached.
@@ -60,9 +64,10 @@ class RunSpending:
                 f"the run has used {used:,} tokens and may use {tokens:,}; "
                 "raise the limit to go on: --max-tokens, or max_tokens of a study"
             )
-        if cost is not None and (self.spent.cost or 0.0) >= cost:
+        paid = self.spent.cost or 0.0
+        if cost is not None and (paid > cost or (paid == cost and not is_free)):
             raise ModelError(
-                f"the run has cost {self.spent.cost:.2f} US dollars and may cost {cost:.2f}; "
+                f"the run has cost {paid:.2f} US dollars and may cost {cost:.2f}; "
                 "raise the limit to go on: --max-cost, or max_cost of a study"
             )
 
@@ -80,10 +85,17 @@ def tokens_of_free(usage: Usage) -> int:
 
 @dataclass(frozen=True)
 class MeteredModel:
-    """Model wrapper that counts answers against a budget and stops when it is used up."""
+    """Model wrapper that counts answers against a budget and stops when it is used up.
+
+    Attributes:
+        model: The model to ask.
+        budget: Limits of the run and its usage so far.
+        is_free: True if the model is known to cost nothing.
+    """
 
     model: Model
     budget: RunSpending
+    is_free: bool = False
 
     @property
     def name(self) -> str:
@@ -96,7 +108,7 @@ class MeteredModel:
         Raises:
             ModelError: A limit of the run is reached, or the model failed.
         """
-        self.budget.check()
+        self.budget.check(is_free=self.is_free)
         try:
             answer = self.model.answer(messages, sampling)
         except UnusableAnswerError as error:

@@ -12,6 +12,7 @@ from beliefnest.llm.clock import Clock, SystemClock
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.llm.option_models import OPTION_MODELS
+from beliefnest.llm.own_models import installed_models, names_own_model, own_model
 from beliefnest.llm.providers import PROVIDERS, endpoint
 from beliefnest.llm.recorded_models import FileRecordingModel, load_replay, load_script
 from beliefnest.llm.remote import AnswerLimits, RemoteModel
@@ -19,12 +20,17 @@ from beliefnest.llm.retrying import RetryingModel, RetryPolicy, Tell, tell_on_st
 
 __all__ = [
     "Connection",
+    "can_vary",
     "check_model",
+    "is_free",
     "is_of_provider",
     "model_names",
     "open_model",
     "resolve_model",
 ]
+
+_KINDS = ("replay", "scripted", *PROVIDERS)
+"""Words before the colon that are no names of modules."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +68,8 @@ class Connection:
 def model_names() -> tuple[str, ...]:
     """Return the forms of names that `resolve_model` accepts."""
     remote = (f"{name}:MODEL" for name in PROVIDERS)
-    return ("offline", *OPTION_MODELS, "replay:FILE", "scripted:FILE", *remote)
+    own = ("MODULE:CLASS", "FILE.py:CLASS", *installed_models())
+    return ("offline", *OPTION_MODELS, "replay:FILE", "scripted:FILE", *remote, *own)
 
 
 def resolve_model(
@@ -74,8 +81,9 @@ def resolve_model(
     """Return the bare model of a name; each answer takes one request.
 
     Args:
-        name: `offline`, `chance`, `first-option`, `replay:FILE`, `scripted:FILE` or
-            `PROVIDER:MODEL`.
+        name: `offline`, `chance`, `first-option`, `replay:FILE`, `scripted:FILE`,
+            `PROVIDER:MODEL`, or a model of the user's own: `MODULE:CLASS`, `FILE.py:CLASS`, or the
+            name of an entry point of the group `beliefnest.models`.
         environment: Variables with keys and base URLs, usually those of the process.
         limits: Limits on one answer of a provider.
 
@@ -89,7 +97,9 @@ def resolve_model(
     if name in OPTION_MODELS:
         return OPTION_MODELS[name]
     kind, _, rest = name.partition(":")
-    if kind not in ("replay", "scripted", *PROVIDERS):
+    if is_own(name):
+        return own_model(name)
+    if kind not in _KINDS:
         raise UnknownNameError(f"no model {name!r}{_nearest(kind)}")
     if not rest:
         raise InputError(f"{name!r} is incomplete; write {kind}:{_placeholder(kind)}")
@@ -127,7 +137,7 @@ def check_model(name: str, environment: Mapping[str, str], connection: Connectio
 
 
 def _resolved(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
-    if is_of_provider(name) and connection.cache_mode == "only":
+    if can_vary(name) and connection.cache_mode == "only":
         return _Unreachable(name, "no model is asked here")
     try:
         return resolve_model(name, environment, limits=connection.answer_limits)
@@ -138,16 +148,38 @@ def _resolved(name: str, environment: Mapping[str, str], connection: Connection)
 
 
 def is_of_provider(name: str) -> bool:
-    """Return True if a model is a provider's, so that its answers can vary."""
+    """Return True if a model is a provider's."""
     return name.partition(":")[0] in PROVIDERS
+
+
+def is_own(name: str) -> bool:
+    """Return True if a model is the user's own, in a file, a module or an installed package."""
+    if name in ("offline", *OPTION_MODELS) or name.partition(":")[0] in _KINDS:
+        return False
+    return name in installed_models() or names_own_model(name)
+
+
+def can_vary(name: str) -> bool:
+    """Return True if the answers of a model can vary: of a provider's, or of the user's own."""
+    return is_of_provider(name) or is_own(name)
+
+
+def is_free(name: str, environment: Mapping[str, str]) -> bool:
+    """Return True if a model is known to cost nothing, such as one on the user's own server."""
+    if not is_of_provider(name):
+        return not is_own(name)
+    try:
+        return endpoint(PROVIDERS[name.partition(":")[0]], environment).cost(None) == 0.0
+    except ModelError:
+        return False
 
 
 def open_model(name: str, environment: Mapping[str, str], connection: Connection) -> Model:
     """Return the model of a name with retries, limits, cache and recording around it.
 
-    A cached answer costs nothing and is recorded like any other. Only models of providers are
-    retried, metered and cached. If the cache has answers, a model may lack its key and address;
-    it then fails only when a request is not in the cache.
+    A cached answer costs nothing and is recorded like any other. Models of providers and the
+    user's own are metered and cached; those of providers are retried. If the cache has answers, a
+    model may lack its key and address; it then fails only when a request is not in the cache.
 
     Raises:
         BeliefNestError: As of `resolve_model`.
@@ -155,7 +187,8 @@ def open_model(name: str, environment: Mapping[str, str], connection: Connection
     model = _resolved(name, environment, connection)
     if is_of_provider(name):
         model = RetryingModel(model, connection.retries, connection.clock, connection.tell)
-        model = MeteredModel(model, connection.budget)
+    if can_vary(name):
+        model = MeteredModel(model, connection.budget, is_free(name, environment))
         if connection.cache is not None and connection.cache_mode != "off":
             model = CachedModel(model, connection.cache, connection.cache_mode)
     if connection.record is not None:
@@ -169,7 +202,7 @@ def _placeholder(kind: str) -> str:
 
 def _nearest(kind: str) -> str:
     close = difflib.get_close_matches(
-        kind, ["offline", *OPTION_MODELS, "replay", "scripted", *PROVIDERS], n=1
+        kind, ["offline", *OPTION_MODELS, *installed_models(), *_KINDS], n=1
     )
     hint = f"; did you mean {close[0]}?" if close else ""
     return f"{hint}; a model is one of {', '.join(model_names())}"

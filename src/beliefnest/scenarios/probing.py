@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from beliefnest.belief.view import State
 from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_program
 from beliefnest.llm.messages import Model, Sampling, Usage
+from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.face.simulator import Simulator
 from beliefnest.prompts import Template, built_in_template, instructions
@@ -19,7 +20,7 @@ from beliefnest.scenarios.naming import Naming
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply
 from beliefnest.scenarios.questioning import ask_question
 from beliefnest.scenarios.trial import Trial
-from beliefnest.skills import skills
+from beliefnest.skills import SkillDetail, skills_at
 
 __all__ = ["Asking", "resolved", "run_probe"]
 
@@ -31,12 +32,15 @@ class Asking:
     Attributes:
         attempts: Greatest number of requests for one probe; failed programs are sent back.
         sampling: Sampling options of answers.
+        settings: Settings of requests that the user chose; `sampling` contains their limit on the
+            length of an answer.
         keeps_unanswered: If True, a probe without a program after all attempts has the outcome
             `no_answer`. If False, it ends the scenario with an error.
     """
 
     attempts: int = 3
     sampling: Sampling = field(default_factory=Sampling)
+    settings: ModelSettings = field(default_factory=ModelSettings)
     keeps_unanswered: bool = False
 
 
@@ -75,12 +79,12 @@ def run_probe(
     believer, name = nest[probe.path], f"probe {number}"
     programs = _Programs((), None, ())
     if probe.asks_for_program:
-        noting = believer.noting(model, probe=name, task=probe.task)
+        noting = asking.settings.around(believer.noting(model, probe=name, task=probe.task))
         programs = _ask_for_program(nest, number, probe, noting, asking)
     replies: dict[Answers, Reply] = {}
     usage = sum((each.answer.usage for each in programs.attempts), Usage())
     for question in probe.questions:
-        noting = believer.noting(model, probe=name, task=question.question)
+        noting = asking.settings.around(believer.noting(model, probe=name, task=question.question))
         replies[question], used = ask_question(nest, probe, question, noting, seed, asking.sampling)
         usage += used
     judged = iter(programs.verdicts)
@@ -144,7 +148,7 @@ def _ask_for_program(
     nest: Nest, number: int, probe: Probe, model: Model, asking: Asking
 ) -> _Programs:
     trials = _Trials(nest, probe, f"probe {number}")
-    prompts = _Prompts(nest[probe.path], probe)
+    prompts = _Prompts(nest[probe.path], probe, asking.settings.skills)
     try:
         attempts = ask_for_program(
             model,
@@ -172,14 +176,14 @@ def _ask_for_program(
 class _Prompts:
     """Prompts of a probe: instructions, and the content of the belief."""
 
-    def __init__(self, believer: Simulator, probe: Probe) -> None:
+    def __init__(self, believer: Simulator, probe: Probe, detail: SkillDetail) -> None:
         self._believer = believer
         self._task = probe.task
         if probe.template is None:
             self._template = built_in_template("paper")
         else:
             self._template = Template("template of the probe", probe.template)
-        self.system = instructions(skills())
+        self.system = instructions(skills_at(detail))
 
     @property
     def prompt(self) -> Prompt:

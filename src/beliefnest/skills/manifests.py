@@ -6,7 +6,10 @@ from typing import Literal
 
 import msgspec
 
-__all__ = ["Parameter", "Skill", "skills"]
+__all__ = ["Parameter", "Skill", "SkillDetail", "skills", "skills_at"]
+
+SkillDetail = Literal["none", "names", "signatures", "full"]
+"""Detail of a list of skills: `names`, `signatures` with parameters, or `full` with effects."""
 
 
 class Parameter(msgspec.Struct, frozen=True):
@@ -66,3 +69,19 @@ def skills() -> tuple[Skill, ...]:
     """Return all skills in the order of the manifests, which are read once."""
     file = files("beliefnest") / "skills" / "manifests.json"
     return msgspec.json.decode(file.read_bytes(), type=tuple[Skill, ...])
+
+
+def skills_at(detail: SkillDetail) -> tuple[Skill, ...]:
+    """Return the skills for a list in a prompt; it leaves out texts beyond the detail."""
+    match detail:
+        case "none":
+            return ()
+        case "names":
+            return tuple(
+                msgspec.structs.replace(each, signature=each.name, description="")
+                for each in skills()
+            )
+        case "signatures":
+            return tuple(msgspec.structs.replace(each, description="") for each in skills())
+        case "full":
+            return skills()

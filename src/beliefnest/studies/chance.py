@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from beliefnest.episodes.policies import draws_by_seed
 from beliefnest.episodes.task import Task
-from beliefnest.llm.resolve import is_of_provider
+from beliefnest.llm.resolve import can_vary
 from beliefnest.scenarios.scenario import Scenario
 
 __all__ = ["episode_draws", "scenario_draws"]
@@ -20,7 +20,7 @@ def scenario_draws(scenario: Scenario, models: Iterable[str]) -> bool:
     # The seed shuffles the options of a question.
     asked = (question for probe in scenario.probes for question in probe.questions)
     return (
-        any(is_of_provider(model) for model in models)
+        any(can_vary(model) for model in models)
         or any(question.options for question in asked)
         or _script_draws(scenario)
     )

@@ -7,6 +7,7 @@ from typing import Any
 
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError
 from beliefnest.llm.budget import RunLimits
+from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.prompts.templates import (
     BUILT_IN_TEMPLATES,
     Template,
@@ -54,6 +55,7 @@ class Design:
         temperature: Sampling temperature; None: the provider's default.
         limits: Limits of tokens and cost of the whole study.
         claims_from: Name of the model that extracts claims from utterances; None: no extraction.
+        settings: Settings of requests to models.
         design: Allocation of conditions to variations.
         labels: Labels of groups of scenarios, by the scenario's name or path.
     """
@@ -71,6 +73,7 @@ class Design:
     temperature: float | None = 0.0
     limits: RunLimits = field(default_factory=RunLimits)
     claims_from: str | None = None
+    settings: ModelSettings = field(default_factory=ModelSettings)
     design: Allocation = "crossed"
     labels: Mapping[str, str] = field(default_factory=dict)
 
@@ -117,6 +120,7 @@ class Design:
             "attempts": self.attempts,
             "temperature": self.temperature,
             **({} if self.claims_from is None else {"claims_from": self.claims_from}),
+            **self.settings.chosen,
         }
 
     @property

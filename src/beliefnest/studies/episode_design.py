@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from beliefnest.episodes.policies import with_query
 from beliefnest.llm.budget import RunLimits
 from beliefnest.studies.checking import (
     StudyKeyError,
@@ -69,6 +70,7 @@ class EpisodeDesign:
         conditions: Numbers of conditions of scenarios; None: the scenario as written.
         world: Name of the world.
         help: Measure help, which plays further branches.
+        query: Settings of requests of models, as in the names of policies after `?`.
         limits: Limits of tokens and cost of the whole study.
     """
 
@@ -82,6 +84,7 @@ class EpisodeDesign:
     conditions: tuple[int, ...] | None = None
     world: str = "scripted"
     help: bool = False
+    query: str = ""
     limits: RunLimits = field(default_factory=RunLimits)
 
     def __post_init__(self) -> None:
@@ -134,11 +137,12 @@ class EpisodeDesign:
                     yield Player(policies, order, policy_named(policies, str(order)))
             else:
                 name, own = _named(policies)
-                yield Player(name, None, own)
+                yield Player(name, None, _with_query(own, self.query))
         for model in self.models:
             for order in self.orders:
                 name = f"model:{model}"
-                yield Player(name, order, policy_named(name, str(order)))
+                policy = with_query(policy_named(name, str(order)), self.query)
+                yield Player(name, order, policy)
 
     @property
     def setting(self) -> dict[str, Any]:
@@ -193,6 +197,12 @@ def _named(policies: Policies) -> tuple[str, str | Mapping[str, str]]:
 def listed(policies: Sequence[Policies] | Policies) -> tuple[Policies, ...]:
     """Return one or several policies as a tuple."""
     return (policies,) if isinstance(policies, str | Mapping) else tuple(policies)
+
+
+def _with_query(policies: str | Mapping[str, str], query: str) -> str | Mapping[str, str]:
+    if isinstance(policies, str):
+        return with_query(policies, query)
+    return {agent: with_query(policy, query) for agent, policy in policies.items()}
 
 
 def policy_named(player: str, order: str) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import msgspec
 from msgspec.structs import replace
@@ -22,12 +23,12 @@ from beliefnest.worlds.names import check_world
 __all__ = ["read_design"]
 
 
-def read_design(path: Path, claims_from: str | None = None) -> Design | EpisodeDesign:
+def read_design(path: Path, instead: Mapping[str, Any] | None = None) -> Design | EpisodeDesign:
     """Return the design in a YAML file; paths in the file are relative to its folder.
 
     Args:
         path: The file.
-        claims_from: Name of a model that extracts claims from utterances; None: as in the file.
+        instead: Values of keys in place of those of the file, with paths as given; None: none.
 
     Raises:
         ScenarioError: The file is wrong; the message names file, line and key.
@@ -51,7 +52,7 @@ def read_design(path: Path, claims_from: str | None = None) -> Design | EpisodeD
         constraints = several("constraints", keys.constraints)
         beside = _beside(keys, path)
         return design_of(
-            beside if claims_from is None else replace(beside, claims_from=claims_from),
+            replace(beside, **(instead or {})),
             templates,
             constraints,
         )
@@ -77,6 +78,7 @@ def _beside(keys: StudyKeys, path: Path) -> StudyKeys:
                 for label, names in labelled_scenarios(keys.scenarios)
             )
         ],
+        system=None if keys.system is None else str(path.parent / keys.system),
         tasks=None if keys.tasks is None else located("tasks", keys.tasks, known),
         policies=tuple(_policies_beside(each, path.parent) for each in listed(keys.policies)),
     )

@@ -7,8 +7,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 
 from beliefnest.errors import BodyError, MissingExtraError, UnknownNameError
+from beliefnest.llm.failures import UnavailableModelError
 from beliefnest.llm.messages import Usage
-from beliefnest.llm.resolve import is_of_provider
+from beliefnest.llm.resolve import can_vary
 from beliefnest.studies.cells import Cell, Keyed
 from beliefnest.studies.checking import check_count
 from beliefnest.studies.processes import Supply, processes
@@ -16,6 +17,7 @@ from beliefnest.studies.spending import spent_in
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.terms import Terms
 from beliefnest.studies.worker import CellResult, Worker, play_in_process
+from beliefnest.world.words import counted
 from beliefnest.worlds.minecraft.launching import ahead
 
 __all__ = ["BACKENDS", "OnStudyProgress", "StudyProgress", "run_cells"]
@@ -73,6 +75,7 @@ def run_cells(
         UnknownNameError: The backend does not exist.
         MissingExtraError: The backend is not installed.
         BodyError: A worker process ended unexpectedly.
+        UnavailableModelError: A model cannot be asked at all; the other cells are not tried.
     """
     check_count("jobs", jobs)
     if backend not in BACKENDS:
@@ -82,6 +85,11 @@ def run_cells(
     keys = {cell.key.name: cell.key for cell in left}
     with contextlib.closing(_results(left, terms, jobs, backend)) as results:
         for result in results:
+            if result.unavailable:
+                raise UnavailableModelError(
+                    f"{result.unavailable}; {counted(progress.left, 'cell')} left to play: run the "
+                    "same study again after that"
+                )
             key = keys[result.name]
             folder.note_seconds(result.name, result.seconds)
             folder.write_cell(
@@ -117,6 +125,11 @@ class _Counting:
             self._failed += 1
         self._say()
 
+    @property
+    def left(self) -> int:
+        """Number of cells without a result in this run."""
+        return self._total - self._done - self._failed
+
     def _say(self) -> None:
         spent = spent_in(self._folder.ledger)
         self._tell(StudyProgress(self._total, self._done, self._failed, spent))
@@ -149,7 +162,7 @@ def _is_quick(cell: Keyed) -> bool:
     if not isinstance(cell, Cell):
         return False
     models = (cell.key.model, cell.key.setting.get("claims_from"))
-    return not any(name is not None and is_of_provider(name) for name in models)
+    return not any(name is not None and can_vary(name) for name in models)
 
 
 def _in_processes(cells: Sequence[Keyed], terms: Terms, jobs: int) -> _Results:

@@ -11,7 +11,7 @@ import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular
-from beliefnest.llm.resolve import is_of_provider
+from beliefnest.llm.resolve import can_vary
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.studies.allocation import PARTICIPANT
@@ -397,7 +397,7 @@ def _sentences(facts: Facts) -> Iterator[str]:
         yield f"{_listed([_model(each) for each in facts.models], first=True)}."
     for people in facts.people:
         yield f"{_person(people)}."
-    if facts.asking and any(is_of_provider(each.name) for each in facts.models):
+    if facts.asking and any(can_vary(each.name) for each in facts.models):
         yield f"Models were asked {facts.asking}."
     if facts.templates:
         told = [
@@ -438,7 +438,7 @@ def _exclusion(name: str, count: int) -> str:
 
 
 def _model(model: ModelFacts) -> str:
-    if not is_of_provider(model.name):
+    if not can_vary(model.name):
         return f"{_code(model.name)} is no language model of a provider"
     if not model.answers:
         return f"{_code(model.name)} gave no recorded answer"

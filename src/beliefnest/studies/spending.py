@@ -28,11 +28,11 @@ class SharedBudget(RunSpending):
 
     file: Path = field(default=Path("spent.jsonl"))
 
-    def check(self) -> None:
-        """Raise ModelError if the limits are reached."""
+    def check(self, *, is_free: bool = False) -> None:
+        """Raise ModelError if the limits are reached; a free request may use what is left."""
         self.spent = spent_in(self.file)
         self.free = sum(map(tokens_of_free, _answers(self.file)))
-        super().check()
+        super().check(is_free=is_free)
 
     def add(self, usage: Usage) -> None:
         """Count the usage of an answer."""

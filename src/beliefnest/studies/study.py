@@ -8,10 +8,12 @@ import msgspec
 
 from beliefnest.errors import InputError, ModelError
 from beliefnest.files import read_regular_text
+from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.llm.resolve import check_model
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.sources import read_document
+from beliefnest.skills.manifests import SkillDetail
 from beliefnest.studies.allocation import LABEL, PARTICIPANT
 from beliefnest.studies.cells import C, Cell, Plan, plan_cells
 from beliefnest.studies.checking import (
@@ -82,6 +84,12 @@ class Study:
             free models.
         max_cost: Cost limit of the whole study in US dollars; None: no limit.
         claims_from: Name of a model that extracts claims from utterances; None: no extraction.
+        answer_seconds: Longest silence in an answer of a model; each token starts the count again.
+        first_token_seconds: Longest wait for an answer to begin.
+        max_output_tokens: Greatest length of an answer; None: the provider's own limit.
+        system: File with a system message in place of the built-in ones.
+        skills: Detail in which the built-in system message lists the skills: `none`, `names`,
+            `signatures` or `full`.
         tasks: Instead of scenarios: names of tasks or scenarios to play as episodes, or paths of
             their files.
         policies: Policies of the players as `beliefnest play` takes them, `search` and
@@ -119,6 +127,11 @@ class Study:
         max_tokens: int | None = 1_000_000,
         max_cost: float | None = 5.0,
         claims_from: str | None = None,
+        answer_seconds: float = ModelSettings().answer_seconds,
+        first_token_seconds: float = ModelSettings().first_token_seconds,
+        max_output_tokens: int | None = None,
+        system: str | Path | None = None,
+        skills: SkillDetail = "full",
         tasks: Sequence[str] | str = (),
         policies: Sequence[Policies] | Policies = (),
         orders: Sequence[Order] = (),
@@ -140,6 +153,11 @@ class Study:
             max_tokens=max_tokens,
             max_cost=max_cost,
             claims_from=claims_from,
+            answer_seconds=answer_seconds,
+            first_token_seconds=first_token_seconds,
+            max_output_tokens=max_output_tokens,
+            system=None if system is None else str(system),
+            skills=skills,
             tasks=tasks or None,
             policies=policies,
             orders=orders,
@@ -150,19 +168,23 @@ class Study:
         self._hold(design_of(keys, _templates(templates), _constraints(constraints)))
 
     @classmethod
-    def load(cls, file: str | Path, claims_from: str | None = None) -> Self:
+    def load(cls, file: str | Path, claims_from: str | None = None, **requests: Any) -> Self:
         """Return the study that a YAML file describes.
 
         Args:
             file: The file.
             claims_from: Name of a model that extracts claims from utterances; None: as in the file.
+            requests: Settings of requests to models in place of those of the file: the arguments
+                of the class from `answer_seconds` to `skills`.
 
         Raises:
             ScenarioError: The file is wrong; the message names file, line and key.
             InputError: It is a study of tasks, which does not extract claims.
         """
         study = cls.__new__(cls)
-        study._hold(read_design(Path(file), claims_from), read_regular_text(Path(file)))
+        if claims_from is not None:
+            requests["claims_from"] = claims_from
+        study._hold(read_design(Path(file), requests), read_regular_text(Path(file)))
         return study
 
     def _hold(self, design: Design | EpisodeDesign, written: str = "") -> None:

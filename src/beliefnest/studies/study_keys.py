@@ -1,10 +1,14 @@
 """Keys of a study, as its file and `Study` take them, and the design that they describe."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from beliefnest.errors import InputError
+from beliefnest.llm.model_settings import ModelSettings, query_of
 from beliefnest.studies.allocation import DESIGNS, Allocation
 from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
 from beliefnest.studies.design import Constraint, Design, Template
@@ -30,6 +34,11 @@ class StudyKeys(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     max_tokens: int | None = 1_000_000
     max_cost: float | None = 5.0
     claims_from: str | None = None
+    answer_seconds: float = ModelSettings().answer_seconds
+    first_token_seconds: float = ModelSettings().first_token_seconds
+    max_output_tokens: int | None = None
+    system: str | None = None
+    skills: str = ModelSettings().skills
     tasks: Sequence[str] | str | None = None
     policies: Sequence[Policies] | Policies = ()
     orders: Sequence[Order] = ()
@@ -72,6 +81,7 @@ def design_of(
         temperature=keys.temperature,
         limits=checked_limits(keys.max_tokens, keys.max_cost),
         claims_from=keys.claims_from,
+        settings=_settings(keys),
         design=_allocation(keys.design),
         labels={name: label for label, names in groups for name in names if label},
     )
@@ -103,6 +113,18 @@ def labelled_scenarios(entries: object) -> list[tuple[str, tuple[str, ...]]]:
         told = f"{bare[0]} has no label, which other scenarios have; give it one"
         raise StudyKeyError("scenarios", told)
     return found
+
+
+def _settings(keys: StudyKeys) -> ModelSettings:
+    """Return the settings of requests to models; `system` is the path of a file."""
+    values = {each.name: getattr(keys, each.name) for each in fields(ModelSettings)}
+    for name, value in values.items():
+        # One by one, so that an error names its key.
+        try:
+            ModelSettings.of_file(**{"system": None, name: value})
+        except InputError as error:
+            raise StudyKeyError(name, str(error)) from None
+    return ModelSettings.of_file(**values)
 
 
 def _allocation(name: object) -> Allocation:
@@ -138,5 +160,13 @@ def _episodes(keys: StudyKeys, constraints: Sequence[Constraint]) -> EpisodeDesi
         conditions=checked_conditions(keys.conditions),
         world="scripted" if keys.world is None else keys.world,
         help=keys.help,
+        query=_query(keys),
         limits=checked_limits(keys.max_tokens, keys.max_cost),
     )
+
+
+def _query(keys: StudyKeys) -> str:
+    """Return the settings of requests to models for the names of policies."""
+    chosen = _settings(keys).chosen
+    chosen.pop("system", None)
+    return query_of(None if keys.system is None else Path(keys.system), chosen)

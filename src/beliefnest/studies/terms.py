@@ -7,6 +7,7 @@ from pathlib import Path
 
 from beliefnest.llm.budget import RunLimits
 from beliefnest.llm.cache import CacheMode
+from beliefnest.llm.remote import AnswerLimits
 from beliefnest.llm.resolve import Connection
 from beliefnest.studies.spending import SharedBudget
 
@@ -38,10 +39,18 @@ class Terms:
         """Return the variables with addresses and keys of models."""
         return os.environ if self.environment is None else self.environment
 
-    def connection(self) -> Connection:
-        """Return the connection to models, with budget and cache."""
-        budget = SharedBudget.of(self.limits, self.ledger)
-        return Connection(budget=budget, cache=self.answers, cache_mode=self.cache_mode)
+    def connection(self, answer_limits: AnswerLimits | None = None) -> Connection:
+        """Return the connection to models, with budget and cache.
+
+        Args:
+            answer_limits: Limits on one answer; None: the default ones.
+        """
+        return Connection(
+            budget=SharedBudget.of(self.limits, self.ledger),
+            answer_limits=answer_limits or AnswerLimits(),
+            cache=self.answers,
+            cache_mode=self.cache_mode,
+        )
 
     def store(self, cell: str) -> Path | None:
         """Return the run file of a cell, after deleting an earlier try's; None: no recording."""

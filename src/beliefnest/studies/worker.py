@@ -9,8 +9,10 @@ from typing import Any
 
 from beliefnest.errors import BeliefNestError
 from beliefnest.llm.claim_reader import claims_from_model
+from beliefnest.llm.failures import UnavailableModelError
 from beliefnest.llm.messages import Sampling
-from beliefnest.llm.resolve import is_of_provider, open_model
+from beliefnest.llm.model_settings import ModelSettings
+from beliefnest.llm.resolve import can_vary, is_free, open_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
 from beliefnest.scenarios.records import expectation_json, probe_json
@@ -33,11 +35,13 @@ class CellResult:
         name: Name of the cell.
         content: Plain values; reproducible, apart from answers of providers' models.
         seconds: Wall time in seconds.
+        unavailable: Why no further cell can be played; empty: others can be.
     """
 
     name: str
     content: Mapping[str, Any]
     seconds: float
+    unavailable: str = ""
 
 
 class Worker:
@@ -55,6 +59,7 @@ class Worker:
     def play(self, cell: Keyed, terms: Terms) -> CellResult:
         """Play a cell; an error of the scenario, world or model is its result."""
         started = time.perf_counter()
+        unavailable = ""
         try:
             if isinstance(cell, EpisodeCell):
                 content = play_episode(cell, terms, self._worlds)
@@ -64,18 +69,21 @@ class Worker:
                 raise TypeError(f"{cell!r} is no cell that can be played")
         except BeliefNestError as error:
             content = {"error": str(error), "kind": type(error).__name__}
-        return CellResult(cell.key.name, content, time.perf_counter() - started)
+            if isinstance(error, UnavailableModelError):
+                unavailable = str(error)
+        return CellResult(cell.key.name, content, time.perf_counter() - started, unavailable)
 
     def _played(self, cell: Cell, terms: Terms) -> dict[str, Any]:
         key, scenario = cell.key, cell.scenario
         environment = terms.surroundings
-        connection = terms.connection()
-        if is_of_provider(key.model):
+        settings = ModelSettings.of_chosen(key.setting)
+        connection = terms.connection(settings.answer_limits)
+        if can_vary(key.model):
             # Check this before the script, which would otherwise be played in vain.
-            connection.budget.check()
+            connection.budget.check(is_free=is_free(key.model, environment))
         model = open_model(key.model, environment, connection)
-        sampling = Sampling(key.setting["temperature"], key.seed)
-        asking = Asking(key.setting["attempts"], sampling, keeps_unanswered=True)
+        sampling = settings.sampling(Sampling(key.setting["temperature"], key.seed))
+        asking = Asking(key.setting["attempts"], sampling, settings, keeps_unanswered=True)
         store = terms.store(key.name)
         reader = key.setting.get("claims_from")
         claims_from = None

@@ -133,7 +133,7 @@ def test_an_agent_who_is_not_there(worlds):
             with pytest.raises(bn.WorldError, match="ann has no bot"):
                 nest.explore("/bob", "ann", PROGRAMS[:2], seen, processes=processes)
             assert nest["/bob"].branch == "follow"
-            assert [info.key.branch for info in nest["/bob"].branches()] == ["plan 1"]
+            assert nest["/bob"].branches() == ()
 
 
 def test_an_interrupted_exploration_has_not_happened(worlds, monkeypatch):
@@ -159,3 +159,58 @@ def test_no_process_at_all_is_refused(worlds):
         pytest.raises(bn.InputError, match="processes is 0"),
     ):
         nest.explore("/", "ann", PROGRAMS, seen, processes=0)
+
+
+def alone():
+    return bn.ScriptedWorld(box=((0, 0, 0), (8, 4, 8)), agents={"ann": (1.5, 1, 1.5)})
+
+
+def test_programs_and_scores_can_have_names():
+    plans = {"hello": "bot.chat('a')", "twice": "bot.chat('a'); bot.chat('b')"}
+
+    def score(simulator, result):
+        return {"said": len(result.said), "ticks": result.ticks}
+
+    with bn.Nest(alone()) as nest:
+        attempts = nest.explore("/ann", "ann", plans, score, name="try")
+        assert [(each.name, each.program) for each in attempts] == list(plans.items())
+        assert [each.branch for each in attempts] == ["try hello", "try twice"]
+        assert [each.score["said"] for each in attempts] == [1, 2]
+        assert "said 2, ticks" in repr(attempts[1])
+
+
+@pytest.mark.parametrize("score", [None, "good", {"good": None}, [1]])
+def test_a_score_that_is_no_number_is_refused_and_blocks_nothing(score):
+    with bn.Nest(alone()) as nest:
+        with pytest.raises(bn.InputError, match=r"for the program '1'; return a number, or a map"):
+            nest.explore("/ann", "ann", ["1", "2"], lambda *_: score)
+        assert nest["/ann"].branch == "follow"
+        assert nest["/ann"].branches() == ()
+        (attempt,) = nest.explore("/ann", "ann", ["1"], lambda *_: True)
+        assert attempt.score == 1.0
+
+
+@pytest.mark.parametrize("programs", ["bot.chat('a')", 7, [1], {1: "bot.chat('a')"}])
+def test_what_is_no_list_of_programs_is_refused(programs):
+    with bn.Nest(alone()) as nest, pytest.raises(bn.InputError, match="program"):
+        nest.explore("/ann", "ann", programs, lambda *_: 0)
+
+
+def test_one_prompt_shows_several_simulators_and_branches():
+    template = (
+        "{{ branch.tick }} {% for name in tried %}{{ name }}: {{ tried[name] | chat_log }}; "
+        "{% endfor %}{{ others[0] | chat_log }}"
+    )
+    with bn.Nest(alone()) as nest:
+        plans = {"a": "bot.chat('left')", "b": "bot.chat('right')"}
+        attempts = nest.explore("/ann", "ann", plans, lambda *_: 0)
+        ann = nest["/ann"]
+        tried = {each.name: ann.on(each.branch) for each in attempts}
+        text = ann.render(template, tried=tried, others=[nest["/"]])
+        assert "a: " in text
+        assert text.index("left") < text.index("b: ") < text.index("right")
+        assert text.endswith("No chats")
+        assert ann.branch == "follow"
+        assert ann.on("follow").state == ann.state
+        with pytest.raises(bn.BranchError, match="/ann has no branch 'plan c'"):
+            ann.on("plan c")

@@ -3,14 +3,17 @@
 import difflib
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import parse_qsl, urlencode
 
 from beliefnest.episodes.agent_view import Policy
 from beliefnest.episodes.policies.simple import Person, Program, Random, Scripted
-from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
 from beliefnest.files import read_regular_text
 from beliefnest.importing import imported_object, is_object_name, text_of_object
+from beliefnest.llm.model_settings import ModelSettings
 
 if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.resolve import Connection
@@ -29,6 +32,7 @@ __all__ = [
     "policy_of_file",
     "resolve_policy",
     "text_of_policy",
+    "with_query",
 ]
 
 POLICIES = (
@@ -37,6 +41,7 @@ POLICIES = (
     "omniscient:search",
     "model:MODEL:ORDER",
     "model:MODEL:omniscient",
+    "model:MODEL:ORDER?SETTING=VALUE&...",
     "random",
     "program:FILE",
     "scripted:FILE",
@@ -63,8 +68,9 @@ def resolve_policy(
 
     Args:
         name: Name in one of the forms of `POLICIES`. In a file of `scripted`, lines of `---`
-            separate the programs. A model is `offline` or `PROVIDER:NAME`. A class of one's own,
-            or a function that makes a policy, is called without arguments.
+            separate the programs. A model is `offline` or `PROVIDER:NAME`; its settings are those
+            of `ModelSettings`, where `system` is a file. A class of one's own, or a function that
+            makes a policy, is called without arguments.
         environment: Variables with keys and base URLs of models; None: those of the process.
         connection: Connection to models; None: retries and limits only.
 
@@ -132,6 +138,10 @@ def _of_user(name: str) -> Policy:
         raise InputError(
             f"{name!r} cannot be called without arguments: {error}; give them defaults"
         ) from error
+    except BeliefNestError:
+        raise
+    except (Exception, SystemExit) as error:  # Code of users may raise anything.
+        raise InputError(f"{name!r} raised {type(error).__name__}: {error}") from error
     if not callable(getattr(policy, "act", None)):
         raise InputError(
             f"{name!r} makes no policy: {type(policy).__name__} has no method act(view), which "
@@ -149,9 +159,9 @@ def draws_by_seed(name: str) -> bool:
     """
     kind, _, rest = name.partition(":")
     if kind == "model":
-        from beliefnest.llm.resolve import is_of_provider
+        from beliefnest.llm.resolve import can_vary
 
-        return is_of_provider(rest)
+        return can_vary(rest)
     return kind not in ("search", "infer", "omniscient", *_READ)
 
 
@@ -163,7 +173,35 @@ def text_of_policy(name: str) -> str:
     """
     if is_own_policy(name):
         return text_of_object(name)
+    file = _system_file(name)
+    if file:
+        return ModelSettings.of_file(file).system or ""
     return _text(name.partition(":")[2]) if is_program(name) else ""
+
+
+def with_query(name: str, query: str) -> str:
+    """Return the name of a policy with settings of requests; only models have such settings.
+
+    Args:
+        name: Name of a policy. Settings in it count before others.
+        query: Settings, as in the names of policies after `?`; empty: none.
+    """
+    if not query or not name.startswith("model:"):
+        return name
+    plain, _, own = name.partition("?")
+    return f"{plain}?{query}&{own}" if own else f"{plain}?{query}"
+
+
+def _system_file(name: str) -> str:
+    """Return the file of a system message in the name of a policy; empty if it names none."""
+    if not name.startswith("model:"):
+        return ""
+    return dict(parse_qsl(name.partition("?")[2])).get("system", "")
+
+
+def _with_system_file(name: str, file: Path) -> str:
+    plain, _, query = name.partition("?")
+    return f"{plain}?{urlencode({**dict(parse_qsl(query)), 'system': str(file)}, safe='/.')}"
 
 
 def is_program(name: str) -> bool:
@@ -177,6 +215,8 @@ def policy_beside(name: str, folder: Path) -> str:
     if is_own_policy(name):
         file, _, made = name.rpartition(":")
         return f"{folder / file}:{made}" if file.endswith(".py") else name
+    if system := _system_file(name):
+        return _with_system_file(name, folder / system)
     kind, _, file = name.partition(":")
     return f"{kind}:{folder / file}" if is_program(name) else name
 
@@ -186,6 +226,8 @@ def file_of_policy(name: str) -> str:
     if is_own_policy(name):
         file = name.rpartition(":")[0]
         return file if file.endswith(".py") else ""
+    if system := _system_file(name):
+        return system
     return name.partition(":")[2] if is_program(name) else ""
 
 
@@ -193,6 +235,8 @@ def policy_of_file(name: str, file: Path) -> str:
     """Return the name of a policy with another file in it."""
     if is_own_policy(name):
         return f"{file}:{name.rpartition(':')[2]}"
+    if _system_file(name):
+        return _with_system_file(name, file)
     return f"{name.partition(':')[0]}:{file}"
 
 
@@ -202,12 +246,21 @@ def _model(
     from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
     from beliefnest.llm.resolve import Connection, open_model
 
-    model_name, colon, order = rest.rpartition(":")
+    plain, _, query = rest.partition("?")
+    try:
+        settings = ModelSettings.of_query(query)
+    except InputError as error:
+        raise InputError(f"{name!r}: {error}") from None
+    model_name, colon, order = plain.rpartition(":")
     if not colon:
         raise InputError(f"{name!r} is not complete; give model:MODEL:ORDER")
     number = 2 if order == "omniscient" else order_of(order, name)
-    model = open_model(model_name, environment, connection or Connection())
-    return (OmniscientModelPolicy if order == "omniscient" else ModelPolicy)(model, number)
+    known = connection or Connection()
+    if query:
+        known = replace(known, answer_limits=settings.answer_limits)
+    model = open_model(model_name, environment, known)
+    kind = OmniscientModelPolicy if order == "omniscient" else ModelPolicy
+    return kind(model, number, settings=settings)
 
 
 def order_of(text: str, name: str) -> int:

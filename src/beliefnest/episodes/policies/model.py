@@ -1,17 +1,15 @@
 """Policies that ask a model, with beliefs of others in the prompt as its order allows."""
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 
 from beliefnest.episodes.agent_view import AgentView
-from beliefnest.episodes.decided import Spent
 from beliefnest.llm.asking import ask_for_program
-from beliefnest.llm.failures import UnusableAnswerError
-from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+from beliefnest.llm.messages import Model, Sampling
+from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.prompts import built_in_template
 from beliefnest.scenarios.goals import Goal
-from beliefnest.skills import skills
+from beliefnest.skills import skills_at
 
 __all__ = ["ModelPolicy", "OmniscientModelPolicy"]
 
@@ -28,13 +26,13 @@ class ModelPolicy:
         model: The model.
         order: Order of Theory of Mind.
         attempts: Greatest number of requests in a round; answers without a program are sent back.
-        spent: Spending so far.
+        settings: Settings of requests.
     """
 
     model: Model
     order: int
     attempts: int = 2
-    spent: Spent = field(default_factory=Spent)
+    settings: ModelSettings = field(default_factory=ModelSettings)
 
     def act(self, view: AgentView) -> str:
         """Return the program that the model answers with.
@@ -44,14 +42,18 @@ class ModelPolicy:
             TemplateError: The prompt cannot be rendered.
         """
         prompt = self.prompt(view)
-        system = view.render(built_in_template("instructions").text, skills=skills())
+        settings = self.settings
+        system = settings.system
+        if system is None:
+            template = built_in_template("instructions").text
+            system = view.render(template, skills=skills_at(settings.skills))
         answer = ask_for_program(
-            _Counted(view.noting(self.model), self._spend),
+            view.noting(self.model),
             prompt,
             lambda _: None,
             self.attempts,
             system=system,
-            sampling=Sampling(seed=view.brief.seed),
+            sampling=settings.sampling(Sampling(seed=view.brief.seed)),
         )
         return answer.program
 
@@ -75,36 +77,6 @@ class ModelPolicy:
             last_code=view.last.program or None,
             last_error=view.last.message or None,
         )
-
-    def _spend(self, usage: Usage) -> None:
-        self.spent += Spent(usage.requests, usage.tokens, usage.cost)
-
-
-@dataclass(frozen=True)
-class _Counted:
-    """Model that reports the usage of each answer, even of unusable ones."""
-
-    model: Model
-    spend: Callable[[Usage], None]
-
-    @property
-    def name(self) -> str:
-        """Return the name of the model."""
-        return self.model.name
-
-    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Ask the model.
-
-        Raises:
-            ModelError: The model failed, or its answer is not usable.
-        """
-        try:
-            answer = self.model.answer(messages, sampling)
-        except UnusableAnswerError as error:
-            self.spend(error.usage)
-            raise
-        self.spend(answer.usage)
-        return answer
 
 
 @dataclass

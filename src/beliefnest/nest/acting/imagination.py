@@ -9,6 +9,7 @@ of courses. An imagination contains nothing from the simulators above the believ
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from beliefnest.belief.grounds import PerceivedEvent, Source
 from beliefnest.belief.initial import forked_forest
 from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.belief.node_view import NodeView
-from beliefnest.errors import BeliefNestError, PathError
+from beliefnest.errors import BeliefNestError, InputError, PathError, WorldError
 from beliefnest.nest.past.embodiable import embodiable, with_chests
 from beliefnest.perception.sight import Sight, SightLines
 from beliefnest.skills.calls import Call
@@ -28,11 +29,16 @@ from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_belo
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.terrain import States, Terrain
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position, block_at
+from beliefnest.worlds.protocol import ProgramResult, RunRules
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
 from beliefnest.worlds.scripted.powered import switches_in
 from beliefnest.worlds.scripted.skills import perform
 from beliefnest.worlds.scripted.world import ScriptedWorld
+
+if TYPE_CHECKING:  # Programs take long to import, and few imaginations run one.
+    from beliefnest.worlds.scripted.desk import Desk
+    from beliefnest.worlds.scripted.ground_cache import Grounds
 
 __all__ = ["Imagination", "Performer"]
 
@@ -131,6 +137,7 @@ class Imagination:
         self._columns: Columns | None = None
         self._held = 0
         self._stride = 1
+        self._shared: list[tuple[Grounds, Desk]] = []
         if forest is not None:
             self._columns = forest.columns
         world.listen(self._take)
@@ -285,6 +292,7 @@ class Imagination:
         # They hold as long as the blocks are the same.
         made._ground, made._geometry = self._ground, self._geometry
         made._switches = self._switches
+        made._shared = self._shared
         return made
 
     def doubting(self, speakers: Collection[str]) -> tuple["Imagination", frozenset[Position]]:
@@ -355,6 +363,53 @@ class Imagination:
                 del performer.calls[0]
                 self._begin(name, performer)
         return passed
+
+    def run(
+        self, agent: str, program: str, timeout_ticks: int = 1200, *, seed: int = 0
+    ) -> ProgramResult:
+        """Run a program of an agent in this world until it ends, as the scripted world does.
+
+        The program changes this world: `fork` it first to try another one from here.
+
+        Args:
+            agent: Name of the agent.
+            program: JavaScript, as for `Simulator.run`.
+            timeout_ticks: Ticks after which the program is stopped.
+            seed: Seed of its random numbers.
+
+        Raises:
+            WorldError: The believer does not know where the agent is.
+            InputError: `timeout_ticks` is no whole number, at least 1.
+        """
+        from beliefnest.worlds.scripted.programs import run_programs
+
+        if isinstance(timeout_ticks, bool) or not isinstance(timeout_ticks, int):
+            raise InputError(f"timeout_ticks is {timeout_ticks!r}; give a whole number of ticks")
+        if timeout_ticks < 1:
+            raise InputError(f"timeout_ticks is {timeout_ticks}; give at least 1")
+        if agent not in self.world.agents:
+            there = ", ".join(sorted(self.world.agents)) or "nobody"
+            raise WorldError(f"{agent} is not there: its pose is not known; there are {there}")
+        rules = RunRules(self._speech_ticks)
+        results = run_programs(
+            self.world,
+            {agent: program},
+            timeout_ticks,
+            {},
+            rules,
+            f"{seed} imagined",
+            *self._tools(),
+        )
+        return results[agent]
+
+    def _tools(self) -> "tuple[Grounds, Desk]":
+        """Return the caches of running programs, which forks share; a new desk takes long."""
+        from beliefnest.worlds.scripted.desk import Desk
+        from beliefnest.worlds.scripted.ground_cache import Grounds
+
+        if not self._shared:
+            self._shared.append((Grounds(), Desk()))
+        return self._shared[0]
 
     def _begin(self, name: str, performer: Performer) -> None:
         """Let an agent begin its next call. Calls that fail at once are dropped."""

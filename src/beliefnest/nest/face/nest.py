@@ -13,7 +13,7 @@ from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.frame_recorder import ChatListener
 from beliefnest.nest.acting.script import Progress, play_script
 from beliefnest.nest.face.base import NestBase
-from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction
+from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction, programs_by_name
 from beliefnest.nest.face.given import tick_of
 from beliefnest.nest.face.layout import Layout, layout_of
 from beliefnest.nest.face.opening import BareSetting, HasSetting, as_scenario, begun, resumed
@@ -115,7 +115,8 @@ class Nest(NestBase):
             worlds: Pool that lends the world to one nest after the other; None: start a world.
             limits: Memory and time that the world's process may use, if one is started.
             claims_from: Function or model that reads claims out of utterances; None: nobody does.
-            renderer: Renderer of prompts, shared by several nests; None: a new one.
+            renderer: Renderer of prompts with filters of your own, `Renderer(filters)`; several
+                nests may share it. None: a new one.
             realtime: True if the embedded world runs in real time, so that people can join
                 (docs/people.md).
             listen: Address at which people join: a port of this machine, or HOST:PORT; 0: any free
@@ -144,6 +145,7 @@ class Nest(NestBase):
         limits: ProcessLimits | None = None,
         worlds: Worlds | None = None,
         claims_from: ClaimsFrom | None = None,
+        renderer: Renderer | None = None,
     ) -> Self:
         """Continue a recorded run where it was left, on every branch, with its seed.
 
@@ -155,12 +157,13 @@ class Nest(NestBase):
             worlds: Pool that lends the world to one nest after the other; None: start a world.
             claims_from: Function or model that reads claims out of utterances from now on; None:
                 nobody does. Claims that were read before are in the record.
+            renderer: Renderer of prompts, which is not recorded; None: a new one.
 
         Raises:
             StoreError: There is no such run, it cannot be read or written, or another process
                 writes to it.
         """
-        return cls._of(resumed(store, limits, worlds, claims_from))
+        return cls._of(resumed(store, limits, worlds, claims_from, renderer))
 
     @staticmethod
     def read(store: str | Path) -> RecordedNest:
@@ -202,7 +205,14 @@ class Nest(NestBase):
 
     @in_turn
     def states(self, paths: Iterable[str]) -> Mapping[str, State]:
-        """Return the states of several simulators by path, read-only; faster than one by one."""
+        """Return the states of several simulators by path, read-only; faster than one by one.
+
+        Args:
+            paths: Belief paths; the keys of the result are these texts.
+
+        Raises:
+            PathError: A path is malformed or names an unknown agent.
+        """
         nodes = {path: parse_path(path, self.agents) for path in paths}
         states = self._recording.states(nodes.values())
         return {path: states[node] for path, node in nodes.items()}
@@ -222,7 +232,7 @@ class Nest(NestBase):
         self,
         path: str,
         agent: str,
-        programs: Sequence[str],
+        programs: Mapping[str, str] | Sequence[str],
         score: ScoreFunction,
         timeout_ticks: int = 1200,
         name: str = "plan",
@@ -237,10 +247,12 @@ class Nest(NestBase):
         Args:
             path: Belief path of the simulator. At the end it is again on its present branch.
             agent: Name of the agent whose bot runs the programs.
-            programs: Texts of the programs to try.
-            score: Function that rates the outcome of a program.
+            programs: Texts of the programs to try, or texts by name.
+            score: Function that rates the outcome of a program: by a number, or by a mapping from
+                names to numbers.
             timeout_ticks: Ticks after which a program is stopped.
-            name: Prefix of the branch names: `NAME 1`, `NAME 2` and so on.
+            name: Prefix of the branch names: `NAME 1`, `NAME 2` and so on, or with the names of
+                the programs.
             processes: Number of processes that run programs at the same time. Each further process
                 takes about a second to start, once, and 200 MB while the nest is open. None: the
                 first program runs alone; the others use all processors if they would take more
@@ -256,8 +268,9 @@ class Nest(NestBase):
             BranchError: One of the branches exists already. Nothing was run.
             WorldError: The simulator does not know the agent's pose, or the world cannot run
                 programs.
-            InputError: `processes` is below 1, `senses` is none of the two, or the path is `/` and
-                the real world runs in real time.
+            InputError: `processes` is below 1, `senses` is none of the two, the path is `/` and
+                the real world runs in real time, or the score is no number. If anything fails, no
+                branch is left.
         """
         self[path].child(agent)
         parsed = parse_path(path, self.agents)
@@ -270,7 +283,7 @@ class Nest(NestBase):
             engine=self._engine,
             path=parsed,
             agent=agent,
-            programs=tuple(programs),
+            programs=programs_by_name(programs),
             score=score,
             timeout_ticks=timeout_ticks,
             name=name,

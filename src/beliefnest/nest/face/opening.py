@@ -129,6 +129,7 @@ def resumed(
     limits: ProcessLimits | None,
     worlds: Worlds | None,
     claims_from: ClaimsFrom | None = None,
+    renderer: Renderer | None = None,
 ) -> Engine:
     """Continue a recorded run. The world starts when it is first needed.
 
@@ -138,7 +139,7 @@ def resumed(
     """
     journal = SqliteJournal.open(store)
     try:
-        recording, name = read_recording(journal)
+        recording, name = read_recording(journal, renderer)
         if worlds is not None:
             world = worlds.lend(name)
         elif is_hosted(name) or (is_server(name) and recording.setting.people):

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.view import State
-from beliefnest.errors import BeliefNestError, InputError, PathError
+from beliefnest.errors import BeliefNestError, BranchError, InputError, PathError
 from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
 from beliefnest.nest.explain.explanation import Explanation
@@ -27,10 +27,11 @@ from beliefnest.pictures.words import state_words
 from beliefnest.prompts import Template
 from beliefnest.prompts.mind_view import MindView
 from beliefnest.prompts.observations import Observation
+from beliefnest.timeline.journal import FOLLOW, TimelineKey
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Placements, Position
-from beliefnest.world.words import counted, point_words
+from beliefnest.world.words import counted, nearest_or_all, point_words
 
 if TYPE_CHECKING:  # Modules for drawing and inference take long to import, and few nests use them.
     from beliefnest.minds.inference import Inference
@@ -122,21 +123,42 @@ class ShownSimulator(ABC):
         """The state of the simulator, read-only."""
         return self._recording.state(self._path, self._tick)
 
+    @in_turn
+    def on(self, branch: str) -> "PastSimulator":
+        """Return this simulator on another of its branches, read-only, at that branch's last tick.
+
+        The simulator itself stays where it is, so that one prompt can show several branches.
+
+        Args:
+            branch: Name of the branch; `follow`: the belief as it follows its parent.
+
+        Raises:
+            BranchError: There is no such branch, or the real world is to follow.
+        """
+        recording = self._recording
+        if branch == FOLLOW and self._path:
+            return PastSimulator(recording.following(self._path), self._path, None)
+        key = TimelineKey(self._path, branch)
+        if not recording.journal.has(key):
+            timelines = recording.journal.timelines()
+            own = [each.key.branch for each in timelines if each.key.path == self._path]
+            raise BranchError(f"{self.path} has no branch {branch!r}{nearest_or_all(branch, own)}")
+        return PastSimulator(recording.on(key), self._path, None)
+
     def render(self, template: Template | Path | str, **variables: object) -> str:
         """Return the text of a prompt template, filled from this simulator.
 
         Args:
             template: A Jinja2 template: its text, or the path of its file.
-            variables: Further variables of the template, for example `task`.
+            variables: Further variables of the template, for example `task`. Simulators, also in
+                lists and mappings, are for filters, as `branch` is: other paths, past ticks
+                (`nest.at`) and other branches (`on`).
 
         Raises:
             TemplateError: The template is wrong; the message names its line.
         """
         with self._recording.turn:
-            views = {
-                name: value.view if isinstance(value, ShownSimulator) else value
-                for name, value in variables.items()
-            }
+            views = {name: _viewed(value) for name, value in variables.items()}
             return self._recording.renderer.render(template, self.view, views)
 
     @in_turn
@@ -398,6 +420,17 @@ class ShownSimulator(ABC):
         if agent not in agents:
             raise PathError(f"there is no agent {agent!r}; the agents are {', '.join(agents)}")
         return normalised((*self._path, agent))
+
+
+def _viewed(value: object) -> object:
+    """Return a variable of a template, with views in place of simulators."""
+    if isinstance(value, ShownSimulator):
+        return value.view
+    if isinstance(value, Mapping):
+        return {key: _viewed(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_viewed(each) for each in value]
+    return value
 
 
 class PastSimulator(ShownSimulator):

@@ -97,6 +97,12 @@ class Recording(Barred):
         other.selected = {**above, key.path: key}
         return other
 
+    def following(self, path: BeliefPath) -> Self:
+        """Return the recording with the simulators of a path and below in follow mode."""
+        other = copy(self)
+        other.selected = {p: k for p, k in self.selected.items() if p[: len(path)] != path}
+        return other
+
     def controller(self, path: BeliefPath) -> TimelineKey:
         """Return the timeline of the nearest simulator in control mode, the node itself included.
 
@@ -182,15 +188,21 @@ class Recording(Barred):
             self.journal.close()
 
 
-def read_recording(journal: SqliteJournal) -> tuple[Recording, str]:
+def read_recording(
+    journal: SqliteJournal, renderer: Renderer | None = None
+) -> tuple[Recording, str]:
     """Return the recording of a run file as it was left, and the name of its world.
+
+    Args:
+        journal: The run file.
+        renderer: Renderer of prompts; None: a new one.
 
     Raises:
         StoreError: The file cannot be read, or the run was stopped before it had begun.
     """
     run = journal.records.run()
     setting, world = decode_start(run.setting)
-    recording = Recording(setting, journal, run.seed, world=world)
+    recording = Recording(setting, journal, run.seed, renderer, world)
     context = recording.context
     journal.keep_within(Bounds(context.box, frozenset(context.agents), context.registry))
     recording.selected = {

@@ -1,0 +1,90 @@
+"""Models of the user's own, in a file, a module or an installed package."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import entry_points
+
+from beliefnest.errors import BeliefNestError, InputError, ModelError
+from beliefnest.importing import imported_object, is_importable, is_object_name
+from beliefnest.llm.failures import excerpt
+from beliefnest.llm.messages import Answer, Message, Model, Sampling
+
+__all__ = ["MODEL_GROUP", "OwnModel", "installed_models", "names_own_model", "own_model"]
+
+MODEL_GROUP = "beliefnest.models"
+"""Group of entry points, each of which names a class or function that makes a model."""
+
+
+@dataclass(frozen=True)
+class OwnModel:
+    """Model of the user's own, under the name by which it is found.
+
+    Attributes:
+        name: The name as given.
+        model: The object, which has a method `answer`.
+    """
+
+    name: str
+    model: Model
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        """Ask the model.
+
+        Raises:
+            ModelError: It raised something, or gave no `Answer`.
+        """
+        try:
+            found: object = self.model.answer(messages, sampling)
+        except BeliefNestError:
+            raise
+        except (Exception, SystemExit) as error:  # Code of users may raise anything.
+            told = excerpt(f"{type(error).__name__}: {error}")
+            raise ModelError(f"{self.name} raised {told}") from error
+        if not isinstance(found, Answer):
+            raise ModelError(
+                f"{self.name} gave {type(found).__name__} and no answer; return "
+                "beliefnest.llm.Answer(text)"
+            )
+        return found
+
+
+def installed_models() -> tuple[str, ...]:
+    """Return the names of models that installed packages offer."""
+    return tuple(sorted({each.name for each in entry_points(group=MODEL_GROUP)}))
+
+
+def names_own_model(name: str) -> bool:
+    """Return True if a name is `FILE.py:NAME`, or `MODULE:NAME` of a module that exists."""
+    return is_object_name(name) and is_importable(name.rpartition(":")[0])
+
+
+def own_model(name: str) -> OwnModel:
+    """Return the model of the user's own with a name.
+
+    Args:
+        name: `FILE.py:NAME`, `MODULE:NAME` or the name of an entry point. A class, or a function
+            that makes a model, is called without arguments.
+
+    Raises:
+        InputError: There is no such object, or it makes no model.
+    """
+    (installed,) = tuple(entry_points(group=MODEL_GROUP, name=name))[:1] or (None,)
+    made = imported_object(name if installed is None else installed.value, "model")
+    if isinstance(made, type) or not callable(getattr(made, "answer", None)):
+        if not callable(made):
+            raise InputError(f"{name!r} is no class and no function; name one that makes a model")
+        try:
+            made = made()
+        except BeliefNestError:
+            raise
+        except (Exception, SystemExit) as error:  # Code of users may raise anything.
+            raise InputError(
+                f"{name!r} cannot be called without arguments: {type(error).__name__}: {error}"
+            ) from error
+    if not callable(getattr(made, "answer", None)):
+        raise InputError(
+            f"{name!r} makes no model: {type(made).__name__} has no method "
+            "answer(messages, sampling), which returns an Answer"
+        )
+    model: Model = made
+    return OwnModel(name, model)
