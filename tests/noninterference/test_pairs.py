@@ -1,4 +1,4 @@
-"""What is said or shown in an agent's name is the same in worlds that are the same to the agent."""
+"""Nothing that is said or shown for an agent differs in worlds that are the same to the agent."""
 
 import pytest
 import tests.noninterference.asked_doors

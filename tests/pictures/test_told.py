@@ -10,6 +10,7 @@ from beliefnest.pictures.lettering import text_width
 from beliefnest.pictures.marks import Drawing, Rectangle, Text
 from beliefnest.pictures.palette import INK, MARKS, Mark
 from beliefnest.pictures.raster import raster
+from beliefnest.world.registry import Registry
 
 BOX, DOOR, SIGN = (8, 0, 2), (6, 0, 7), (2, 0, 7)
 DOORS = {DOOR: "oak_door[half=lower]", (6, 1, 7): "oak_door[half=upper]"}
@@ -105,3 +106,37 @@ def test_signs_that_the_font_lacks_are_drawn_as_those_it_has():
 
     assert pixels("\u2713") == pixels("\u221a") != pixels("\u2603")
     assert text_width("\u2717", 10) == text_width("\u00d7", 10)
+
+
+def test_what_was_never_perceived_is_never_called_seen():
+    prior = bn.InitialBelief(
+        ("max",),
+        containers={BOX: ({"bread": 1}, True)},
+        blocks={BOX: Registry.load().state_id("chest")},
+        agents={"nora": (6.5, 0, 2.5)},
+    )
+    wall = {(4, y, z): "bricks" for y in range(4) for z in range(10)}
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (9, 3, 9)),
+        wall,
+        {"max": (2.5, 0, 2.5), "nora": (6.5, 0, 2.5)},
+        containers={BOX: {}, (8, 0, 6): {}},
+    )
+    with bn.Nest(world, initial_beliefs=[prior], static_blocks=["bricks"]) as nest:
+        for moves in range(2):
+            said = texts(nest["/max"].figure().drawing())
+            assert "(8, 0, 2): bread (believed from the start)" in said
+            assert "believed from the start" in said
+            assert not any("ago" in each or "seen now" in each for each in said)
+            assert "nora at (6.5, 0, 2.5), believed from the start" in repr(nest["/max"].state)
+            rows = nest["/max"].render("{{ branch | events_and_visibilities }}")
+            assert "0;assumed;nora;position:[6.5, 0, 2.5];" in rows
+            world.place_agent("nora", (7.5, 0, 2.5 + moves))
+        # The place has become false.
+        said = texts(nest["/max"].figure().drawing())
+        assert not any("seen" in each for each in said if "seen by" not in each), said
+        nest["/max"].edit(containers={(8, 0, 6): {"apple": 1}})
+        world.step(3)
+        world.think("nora", "hm")
+        said = texts(nest["/max"].figure().drawing())
+        assert "(8, 0, 6): apple (edited 4 ticks ago)" in said

@@ -185,3 +185,25 @@ def test_a_static_position_is_known_to_everybody_whatever_is_there():
     assert (state.blocks[PLACE], state.blocks[9, 0, 2]) == ("bricks", None)
     with pytest.raises(bn.InputError, match="outside the box"):
         nest_of(AGENTS, CLOSED, static_blocks=[(99, 0, 0)])
+
+
+def test_possessions_can_be_known_from_the_start_at_any_depth():
+    prior = bn.InitialBelief(("b", "**"), inventories={"a": {"diamond": 1}})
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (9, 3, 9)),
+        agents={"a": (1.5, 0, 1.5), "b": (5.5, 0, 1.5), "c": (5.5, 0, 5.5)},
+        inventories={"a": {"apple": 2}},
+        containers={(2, 0, 3): {}},
+    )
+    with bn.Nest(world, initial_beliefs=[prior]) as nest:
+
+        def known(path):
+            agent = nest[path].state.agents["a"]
+            return dict(agent.inventory), agent.inventory_complete
+
+        assert known("/b") == known("/b/a") == known("/b/c") == ({"diamond": 1}, False)
+        assert known("/c") == ({}, False)
+        # What it has itself, an agent knows.
+        assert known("/a") == ({"apple": 2}, True)
+        world.deposit("a", (2, 0, 3), {"apple": 1})
+        assert known("/b") == ({"diamond": 1}, False)
