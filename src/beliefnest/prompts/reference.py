@@ -51,9 +51,10 @@ _HEAD = """\
 
 <!-- Written by `python -m beliefnest.prompts.reference`; change the docstrings, not this. -->
 
-A prompt template is a Jinja2 text. The variable `branch` is a view of a simulator: its state, what its
-owner observed, and the owner's names for things. A filter turns it into text. The examples on this page show one belief: Sally's at tick 240
-(`beliefnest.prompts.example`). Numbers have at most three decimals.
+A prompt template is a Jinja2 text. The variable `branch` is a view of a simulator: its state,
+what its owner observed, and the owner's names for things. A filter turns it into text. The
+examples on this page show one belief: Sally's at tick 240 (`beliefnest.prompts.example`).
+Numbers have at most three decimals.
 
 A filter prints `No data`, `Cannot be seen`, `Not observed`, `No chats`, `No thought` or
 `Empty` only if the value is truly unknown or empty. An unknown filter, variable or agent is
@@ -77,19 +78,21 @@ Questions get the variables `question`, `options`, `reason` and `places`; progra
 `story` and `question` tell what the mind of the probe's `path` observed, and leave it to the
 reader what follows. They do not tell who else perceived an event, nor what somebody believes
 now; contents that nobody looked at do not appear. With the path `/` a narrator tells
-everything: which agents and things each agent could see, and who knew at first what somebody has.
-Unless hearing is `global`, `story` says who heard an utterance. Of a unique item it says that there is only one. With a path such as `/lia/wim`
-the text tells only what Lia knows that Wim observed: the nest has worked that out already. To
-leave it to the reader, take `/lia` or `/` and ask about Wim in words. `story` has no coordinates in
-questions; it has them in tasks, because programs need them. Containers without a `label` are
-named by their block, and by a compass direction or a number if there are several (`western
-chest`, `third chest`, counted from the west). A mind has names for what it knows alone: behind a wall there may be a
-second chest, and the first is `the chest` all the same. Named places are told to it if it knows their cell or their floor.
+everything: which agents and things each agent could see, and who knew at first what somebody
+has. Unless hearing is `global`, `story` says who heard an utterance. Of a unique item it says
+that there is only one. With a path such as `/lia/wim` the text tells only what Lia knows that
+Wim observed: the nest has worked that out already. To leave it to the reader, take `/lia` or
+`/` and ask about Wim in words. `story` has no coordinates in questions; it has them in tasks,
+because programs need them. Containers without a `label` are named by their block, and by a
+compass direction or a number if there are several (`western chest`, `third chest`, counted from
+the west). A mind has names for what it knows alone: behind a wall there may be a second chest,
+and the first is `the chest` all the same. Named places are told to it if it knows their cell or
+their floor.
 
-`run` and `study` read the narrator's stories back: if the right answer to a question about an item does not
-follow from the text alone, for example because it rests on an initial belief that no narrator
-tells, they warn with file, line and probe before any model is asked. The reader judges no stories with several such items, and none under
-`testimony: informed`.
+`run` and `study` read the narrator's stories back: if the right answer to a question about an
+item does not follow from the text alone, for example because it rests on an initial belief that
+no narrator tells, they warn with file, line and probe before any model is asked. The reader
+judges no stories with several such items, and none under `testimony: informed`.
 
 ## Your own filters
 
