@@ -209,7 +209,7 @@ def test_the_command_goes_on_with_no_other_episode(
 
 
 PULLS = "await say(bot, 'Now!')\nawait turnOnLever(bot, new Vec3(5, 1, 1))"
-WHY = "line 2: turnOnLever: there is no lever at (5, 1, 1), but air. Give that of a lever."
+WHY = "line 2: turnOnLever: there is no lever at (5, 1, 1), but air. Give the position of a lever."
 
 
 def test_why_a_program_failed_is_told_to_readers_and_not_to_its_agent(

@@ -79,7 +79,7 @@ def test_programs_go_on_together(nest: bn.Nest) -> None:
         ("await bot.findBlocks({})", "refused", 1, "no bot.findBlocks"),
         ("await craftItem(bot, 'stick')", "refused", 1, "the scripted world has no craftItem"),
         ("await eat(bot, 'apple')", "refused", 1, "the scripted world has no eat"),
-        ("await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})", "skill", 1, "no container"),
+        ("await getItemFromChest(bot, new Vec3(1, 1, 1), {apple: 1})", "skill", 1, "no chest"),
         ("const = 3", "syntax", 1, ""),
         ("\n\nthrow new TypeError('oh')", "error", 3, "TypeError: oh"),
         ("await new Promise(() => {})", "stuck", 1, "nothing will settle"),

@@ -21,8 +21,8 @@ The world records what agents do; skills do not report it. It records a gift whe
 another one has picked it up within 240 ticks, and an arrival when an agent has walked and then stands still.
 
 An utterance, whisper, thought or gesture is one line of at most 256 characters; an agent can make at most 20 of them
-in a tick. A longer text, or one with line breaks, control characters or the separators U+2028 and U+2029, is refused
-with an error.
+in a tick. A longer text, or one with line breaks, control characters, the separators U+2028 and U+2029 or marks that
+change the direction of text, is refused with an error.
 
 This page is generated from the skills' own files by \`src/beliefnest/skills/code/generate.js\`.
 `

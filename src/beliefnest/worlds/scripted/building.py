@@ -63,7 +63,9 @@ def place_item(hand: Hand, name: Any, position: Any) -> Doing:
     """Place a block of the inventory, from a position next to it."""
     place, item = block_in(position), text_in(name)
     if not hand.world.agents[hand.name].inventory.get(item, 0):
-        raise SkillError(f"there is no {item} in the inventory")
+        raise SkillError(
+            f"the inventory holds no {item}; it holds: {hand.contents}. Get some first."
+        )
     yield from walk(hand, place, hand.reach(place, beside=True), "the position")
     hand.check_touch(place, "the position")
     yield 0
@@ -75,7 +77,9 @@ def _is_powered(hand: Hand, place: Position, kind: str) -> bool:
     registry, there = Registry.load(), _name_at(hand, place)
     if not there.endswith(kind):
         called = kind.strip("_")
-        raise SkillError(f"there is no {called} at {place}, but {there}. Give that of a {called}.")
+        raise SkillError(
+            f"there is no {called} at {place}, but {there}. Give the position of a {called}."
+        )
     return registry.properties(_state_at(hand, place))["powered"] == "true"
 
 

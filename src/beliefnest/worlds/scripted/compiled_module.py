@@ -2,16 +2,17 @@
 
 import atexit
 import hashlib
-import os
-import tempfile
-from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+from beliefnest.files import read_regular, replace_file
+
 __all__ = ["Compiled", "compiled"]
 
+_DIGEST = hashlib.sha256().digest_size
 _RESERVED = 96 << 20
 """Addresses reserved for the memory of an interpreter, which is never larger."""
 
@@ -50,16 +51,28 @@ def compiled(file: Path) -> Compiled:
     engine = wasmtime.Engine(config)
     source = file.read_bytes()
     name = f"{hashlib.sha256(source).hexdigest()[:16]}.cwasm"
-    for folder in _folders():
-        kept = folder / name
-        try:
-            return _described(engine, wasmtime.Module.deserialize_file(engine, str(kept)))
-        except wasmtime.WasmtimeError:
-            # Absent, damaged, or of another processor.
-            continue
+    kept = _folder() / name
+    code = _kept(kept)
+    if code is not None:
+        with suppress(wasmtime.WasmtimeError):  # It is of another processor.
+            return _described(engine, wasmtime.Module.deserialize(engine, code))
     module = wasmtime.Module(engine, source)
-    _keep(bytes(module.serialize()), name)
+    code = bytes(module.serialize())
+    # Where nothing can be kept, each process compiles.
+    with suppress(OSError):
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        replace_file(kept, hashlib.sha256(code).digest() + code)
     return _described(engine, module)
+
+
+def _kept(file: Path) -> bytes | None:
+    """Return machine code that was kept in a file; None if it is not there, or is damaged."""
+    try:
+        held = read_regular(file)
+    except OSError:
+        return None
+    digest, code = held[:_DIGEST], held[_DIGEST:]
+    return code if hashlib.sha256(code).digest() == digest else None
 
 
 def _described(engine: Any, module: Any) -> Compiled:
@@ -68,24 +81,10 @@ def _described(engine: Any, module: Any) -> Compiled:
     return Compiled(engine, module, imports, module.exports[0].name)
 
 
-def _folders() -> Iterator[Path]:
-    """Yield the folders in which machine code may be kept, the best first."""
+def _folder() -> Path:
+    """Return the folder in which machine code is kept."""
     from importlib.metadata import version
 
     from platformdirs import user_cache_path
 
-    yield user_cache_path("beliefnest", appauthor=False) / f"wasmtime-{version('wasmtime')}"
-
-
-def _keep(code: bytes, name: str) -> None:
-    """Write machine code into the first folder that takes it, if one does."""
-    for folder in _folders():
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            handle, written = tempfile.mkstemp(dir=folder)
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(code)
-            Path(written).replace(folder / name)
-        except OSError:
-            continue
-        return
+    return user_cache_path("beliefnest", appauthor=False) / f"wasmtime-{version('wasmtime')}"

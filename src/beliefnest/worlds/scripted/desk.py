@@ -19,6 +19,7 @@ _FUEL = 1_000_000_000
 """Fuel of one request; reading the longest usual program takes a twentieth."""
 _MEMORY_BYTES = 64 << 20
 _MOST_KEPT = 200
+_LONGEST_KEPT = 2000
 _RESERVE = 10_000_000
 
 
@@ -66,6 +67,7 @@ class Desk:
 
     def __init__(self) -> None:
         self._interpreter: Interpreter | None = None
+        self._answers: dict[str, Any] = {}
         self._prepared: dict[str, Prepared | Mapping[str, Any]] = {}
 
     def prepare(self, code: str) -> Prepared | Mapping[str, Any]:
@@ -96,7 +98,7 @@ class Desk:
 
     def admit_skill(self, name: str, wires: Sequence[Any], facts: Facts) -> dict[str, Any]:
         """Check a call of a skill; see `admitSkill` in desk.js."""
-        told: dict[str, Any] = self._ask("admitSkill", name, wires, facts.plain)
+        told: dict[str, Any] = self._remembered("admitSkill", name, wires, facts.plain)
         return told
 
     def admit_call(
@@ -106,10 +108,24 @@ class Desk:
         told: dict[str, Any] = self._ask("admitCall", kind, name, wires, facts.plain)
         return told
 
+    def _remembered(self, *request: object) -> Any:
+        """Return the answer to a request, if possible without asking: equal ones are frequent."""
+        text = json.dumps(request)
+        if len(text) > _LONGEST_KEPT:
+            return self._asked(text)
+        if text not in self._answers:
+            self._answers[text] = self._asked(text)
+            while len(self._answers) > _MOST_KEPT:
+                del self._answers[next(iter(self._answers))]
+        return self._answers[text]
+
     def _ask(self, *request: object) -> Any:
+        return self._asked(json.dumps(request))
+
+    def _asked(self, request: str) -> Any:
         interpreter = self._interpreter or self._opened()
         interpreter.fuel = _FUEL
-        message = interpreter.string(json.dumps(request))
+        message = interpreter.string(request)
         try:
             answer = interpreter.call(parts().desk.functions["dispatch"], [message])
             text = interpreter.text(answer)

@@ -124,6 +124,10 @@ class Guest:
         self._engine.close()
 
     @property
+    def _is_over(self) -> bool:
+        return self.ended is not None
+
+    @property
     def last_statement(self) -> int:
         """Number of the statement that began last; 0 for none."""
         place, length = self._marks
@@ -146,7 +150,7 @@ class Guest:
 
     def _call(self, number: int, values: int) -> int:
         """Answer a host function; the host's own frames count as stack."""
-        if self.ended is not None:
+        if self._is_over:
             return 0
         engine, meter = self._engine, parts().meter
         before = engine.depth
@@ -157,7 +161,7 @@ class Guest:
             self._fault(error)
             value = 0
         engine.depth = before
-        if self.ended is not None:
+        if self._is_over:
             engine.fuel = meter.last_breath
         return value
 

@@ -109,6 +109,21 @@ class Hand:
             return
         raise SkillError(f"{what} at {place} cannot be reached from here: {fault}")
 
+    @property
+    def contents(self) -> str:
+        """What it carries, for messages."""
+        held = self.world.agents[self.name].inventory
+        return ", ".join(f"{count} {name}" for name, count in held.items()) or "nothing"
+
+    def lacking(self, called: str, place: Position, advice: str) -> SkillError:
+        """Return the error that there is no such block at a place.
+
+        It names the block that is there if the agent may know everything.
+        """
+        registry, state = Registry.load(), self.world.state_at(place)
+        there = f", but {registry.name(state)}" if self.known() is self.ground() else ""
+        return SkillError(f"there is no {called} at {place}{there}. {advice}")
+
     def may_utter(self) -> bool:
         """Count an utterance of this tick; return False if there have been too many.
 

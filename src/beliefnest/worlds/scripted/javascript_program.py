@@ -5,18 +5,17 @@ It is the twin of `worlds/minecraft/node/src/sandbox/session.js`. What both chec
 
 import json
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.skills.manifests import skills as all_skills
 from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import Body, BotReads, Window, state_of
 from beliefnest.worlds.scripted.desk import Desk, Facts, Prepared, TooIntricateError
 from beliefnest.worlds.scripted.guest import Guest, GuestEndedError, parsed
+from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.sfc32 import Sfc32
 
-__all__ = ["JavaScriptProgram", "Request"]
+__all__ = ["JavaScriptProgram"]
 
 _HEARD = ("chat", "whisper", "messagestr")
 """Events to which a program can listen here."""
@@ -53,27 +52,6 @@ _HAS: Mapping[str, tuple[str, ...]] = {
     ),
     "entity": ("type", "name", "username", "position", "yaw", "pitch", "height"),
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """Call of a program.
-
-    Attributes:
-        number: Its number.
-        name: What it calls.
-        args: Arguments as the program gave them, as plain data.
-        checked: Arguments that the skill gets.
-        aim: What it aims at, as the desk says.
-        error: Error of its arguments, for the program.
-    """
-
-    number: int
-    name: str
-    args: list[Any]
-    checked: list[Any]
-    aim: Mapping[str, Any] | None = None
-    error: Mapping[str, Any] | None = None
 
 
 class RefusedError(Exception):
@@ -139,7 +117,7 @@ class JavaScriptProgram:
         except TooIntricateError:
             prepared = {"message": _INTRICATE, "kind": "syntax"}
         if not isinstance(prepared, Prepared):
-            self._outcome, self._fault = {"ok": False}, _fault(prepared)
+            self._outcome, self._fault = {"ok": False}, fault_of(prepared)
             return
         self._prepared = prepared
         guest = self._guest = Guest(self._answer, lambda: self._reads.now_ms, self._random.fraction)
@@ -198,7 +176,7 @@ class JavaScriptProgram:
         """
         if number in self._under_way:
             name = self._under_way.pop(number)[0]
-            self._wake(["settle", number, False, _error_of(name, error)])
+            self._wake(["settle", number, False, error_of(name, error)])
 
     def requests(self) -> list[Request]:
         """Return the calls since the last request."""
@@ -261,7 +239,7 @@ class JavaScriptProgram:
             error = self._desk.outcome(self._prepared, outcome, last, under)
         except TooIntricateError:
             error = {"message": _INTRICATE, "kind": "error"}
-        self._fault = _fault(error or {})
+        self._fault = fault_of(error or {})
 
     def _wake(self, message: list[object]) -> None:
         """Send a message; its error ends the program, for nobody else can catch it."""
@@ -371,22 +349,26 @@ class JavaScriptProgram:
         assert self._guest is not None
         self._guest.charge(told["cost"] + (_ERROR_COST if "error" in told else 0))
 
-    def _promise(self, name: str, told: Mapping[str, Any]) -> Any:
-        """Note a call, and return the promise of its result."""
+    def _promise(self, name: str, told: Mapping[str, Any], label: str | None = None) -> Any:
+        """Note a call, and return the promise of its result.
+
+        Args:
+            name: The call, for the world.
+            told: What the desk says of it.
+            label: The call, for the program's author; by default its name.
+        """
         most = parts().limits.calls
         if len(self._under_way) >= most:
             raise RefusedError(f"{most} calls are under way, which is the limit")
         number = self._ask(name, told)
-        self._under_way[number] = (name, self._began[number])
+        self._under_way[number] = (label or name, self._began[number])
         return {"$": "p", "id": number}
 
     def _ask(self, name: str, told: Mapping[str, Any]) -> int:
         assert self._guest is not None
         number, self._next = self._next, self._next + 1
         self._began[number] = self._guest.last_statement
-        own, checked = told.get("own", []), told.get("checked", [])
-        made = Request(number, name, own, checked, told.get("aim"), told.get("error"))
-        self._requests.append(made)
+        self._requests.append(Request.admitted(number, name, told))
         return number
 
     def _speak(self, name: str, told: Mapping[str, Any]) -> Any:
@@ -400,7 +382,8 @@ class JavaScriptProgram:
         if not isinstance(target, dict) or "position" not in target:
             raise RefusedError(f"the scripted world opens blocks alone; {_ELSEWHERE}")
         place = [target["position"]]
-        return self._promise("openContainer", {**told, "own": place, "checked": place})
+        told = {**told, "own": place, "checked": place}
+        return self._promise("openContainer", told, "bot.openContainer")
 
     def _listen(self, event: str, wire: Any, once: bool) -> Any:
         if event not in _HEARD:
@@ -457,7 +440,7 @@ class JavaScriptProgram:
         """Return the result of a call for the program."""
         if value is None:
             return _NOTHING.get(name, _UNDEFINED)
-        if name == "openContainer":
+        if name == "bot.openContainer":
             window = Window("the window of a container", lambda: value, "containerItems")
             return self._handle("window", window)
         return _plain(value)
@@ -498,7 +481,7 @@ _CALLS: Mapping[str, Callable[[JavaScriptProgram, Mapping[str, Any]], Any]] = {
     "openContainer": lambda program, told: program._open(told),
     "openChest": lambda program, told: program._open(told),
     "closeWindow": lambda program, told: _UNDEFINED,
-    "waitForTicks": lambda program, told: program._promise("waitTicks", told),
+    "waitForTicks": lambda program, told: program._promise("waitTicks", told, "bot.waitForTicks"),
 }
 
 _ACTIONS: Mapping[str, Callable[..., Any]] = {
@@ -523,21 +506,6 @@ def _is_plain_place(wires: list[Any]) -> bool:
     if not wires or not isinstance(wires[0], dict) or wires[0].get("$") != "v":
         return False
     return all(type(part) in (int, float) and abs(part) < _NEAR for part in wires[0]["c"])
-
-
-def _fault(error: Mapping[str, Any]) -> Fault:
-    keys = ("line", "column", "skill", "reason")
-    return Fault(error["message"], error["kind"], **{key: error.get(key) for key in keys})
-
-
-def _error_of(name: str, error: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the error of a call for the program."""
-    if "$" in error:
-        return error
-    is_skill = any(name == each.name for each in all_skills())
-    reason = {"reason": error["reason"]} if error["reason"] else {}
-    told = {"$": "e", "message": f"{name}: {error['message']}", "skill": name, "kind": "skill"}
-    return {**told, "name": "SkillError" if is_skill else "Error", **reason}
 
 
 def _item(name: str, count: int) -> Any:

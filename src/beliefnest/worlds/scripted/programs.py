@@ -24,8 +24,10 @@ from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.hand import Doing, Hand, SkillError
-from beliefnest.worlds.scripted.javascript_program import JavaScriptProgram, Request
+from beliefnest.worlds.scripted.javascript_program import JavaScriptProgram
+from beliefnest.worlds.scripted.literal_program import LiteralProgram, literal_calls
 from beliefnest.worlds.scripted.program_memory import Memory
+from beliefnest.worlds.scripted.requests import Request
 from beliefnest.worlds.scripted.skills import CALLS, SKILLS, UTTERANCES
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -41,7 +43,7 @@ class _Run:
     """Running program."""
 
     hand: Hand
-    program: JavaScriptProgram
+    program: JavaScriptProgram | LiteralProgram
     sense: Sense
     doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
     memory: Memory = field(default_factory=Memory)
@@ -194,14 +196,7 @@ class RunningPrograms:
             ground=ground,
             speech_ticks=rules.speech_ticks,
         )
-        program = JavaScriptProgram(
-            BotReads(world, agent, sense),
-            SKILLS,
-            code,
-            f"{seed} {agent}",
-            self._desk,
-            speech_lasts=rules.speech_ticks > 0,
-        )
+        program = self._program(BotReads(world, agent, sense), code, f"{seed} {agent}")
         past = rules.past.get(agent)
         missed = () if past is None else sense().heard
         run = _Run(
@@ -210,6 +205,13 @@ class RunningPrograms:
         program.start()
         _take_calls(run)
         return run
+
+    def _program(self, reads: BotReads, code: str, seed: str) -> JavaScriptProgram | LiteralProgram:
+        calls = literal_calls(code, SKILLS)
+        if calls is not None:
+            return LiteralProgram(reads, code, calls, self._desk)
+        lasts = self._rules.speech_ticks > 0
+        return JavaScriptProgram(reads, SKILLS, code, seed, self._desk, speech_lasts=lasts)
 
     def _hear(self, frame: Frame) -> None:
         self._happened.extend((frame.tick, event) for event in frame.events)

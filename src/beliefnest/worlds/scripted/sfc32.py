@@ -27,7 +27,9 @@ class Sfc32:
 
     def reseed(self, seed: str) -> None:
         """Begin anew, with another seed."""
-        self._words = struct.unpack("<4I", hashlib.sha256(seed.encode()).digest()[:16])
+        self._words: tuple[int, ...] = struct.unpack(
+            "<4I", hashlib.sha256(seed.encode()).digest()[:16]
+        )
 
     def fraction(self) -> float:
         """Return the next number, 0 <= n < 1, with 53 random bits."""

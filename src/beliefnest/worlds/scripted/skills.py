@@ -11,7 +11,7 @@ from typing import Any
 from beliefnest.errors import InputError, WorldError
 from beliefnest.skills.calls import OPEN_CONTAINER, Call
 from beliefnest.world.claims import Claim, claims_from_plain
-from beliefnest.world.doors import is_open
+from beliefnest.world.doors import is_door, is_open
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_fault
 from beliefnest.world.texts import MOST_UTTERANCES
@@ -35,6 +35,8 @@ from beliefnest.worlds.scripted.hand import (
 __all__ = ["CALLS", "SKILLS", "UTTERANCES", "perform"]
 
 _NEAR = 2.0
+_CHEST = "Give the position of a chest or barrel."
+_SIGN = "Give the position of a sign."
 
 
 def _go_to_position(hand: Hand, position: Any, dist: Any = 2, doors: Any = None) -> Doing:
@@ -56,7 +58,8 @@ def _get_item_from_chest(hand: Hand, position: Any, items: Any) -> Doing:
     if moved:
         hand.world.withdraw(hand.name, place, moved)
     missing = [
-        f"{n} {name} asked for from the chest at {place}, it holds {there.get(name, 0)}"
+        f"{n} {name} asked for from the chest at {place}, it holds {there.get(name, 0)}; "
+        f"{moved.get(name, 0)} taken"
         for name, n in wanted.items()
         if there.get(name, 0) < n
     ]
@@ -85,6 +88,8 @@ def _use_door(to_open: bool) -> Callable[..., Doing]:
         there = world.state_at(place)
         if is_open(Registry.load(), there) is to_open:
             return
+        if not is_door(Registry.load().name(there)):
+            raise hand.lacking("door", place, "Give the position of a door.")
         yield 0
         world.use_door(hand.name, place, open=to_open)
 
@@ -99,6 +104,8 @@ def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doin
     if fault := sign_fault(text):
         raise SkillError(f"text is {fault}")
     yield from walk_to_use(hand, place)
+    if not hand.ground().is_sign(place):
+        raise hand.lacking("sign", place, _SIGN)
     yield 0
     hand.world.write_sign(hand.name, place, text, told)
 
@@ -123,7 +130,7 @@ def _look_at(hand: Hand, position: Any) -> Doing:
 def _read_sign(hand: Hand, position: Any) -> Doing:
     place = block_in(position)
     if hand.known().is_sign(place) is False:
-        raise SkillError(f"there is no sign at {place}. Give the position of a sign.")
+        raise hand.lacking("sign", place, _SIGN)
     x, y, z = place
     yield from _look_at(hand, (x + 0.5, y + 0.5, z + 0.5))
     yield 0
@@ -152,6 +159,18 @@ def _whisper(hand: Hand, other: Any, text: Any, claims: Any = ()) -> Doing:
     yield from _speak(hand)
     if hand.may_utter():
         hand.world.whisper(hand.name, text_in(other), text_in(text), _claims(claims))
+
+
+def _chat(hand: Hand, text: str) -> Doing:
+    yield from _speak(hand)
+    if text and hand.may_utter():
+        hand.world.say(hand.name, text)
+
+
+def _tell(hand: Hand, other: str, text: str) -> Doing:
+    yield from _speak(hand)
+    if text and hand.may_utter():
+        hand.world.whisper(hand.name, other, text)
 
 
 def _speak(hand: Hand) -> Doing:
@@ -235,8 +254,8 @@ SKILLS: Mapping[str, Callable[..., Doing]] = {
 
 CALLS: Mapping[str, Callable[..., Doing]] = {
     "openContainer": _open_container,
-    "bot.chat": _say,
-    "bot.whisper": _whisper,
+    "bot.chat": _chat,
+    "bot.whisper": _tell,
 }
 """Methods of the bot by name."""
 
@@ -254,9 +273,7 @@ def perform(hand: Hand, call: Call) -> Doing:
 def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
     if walks:
         if not hand.known().may_hold(place):
-            raise SkillError(
-                f"there is no container at {place}. Give the position of a chest or barrel."
-            )
+            raise hand.lacking("chest", place, _CHEST)
         yield from walk_to_use(hand, place)
     yield 0
     hand.check_touch(place, "the container")
@@ -267,5 +284,5 @@ def _open(hand: Hand, place: Position, *, walks: bool = True) -> Doing:
 def _check_container(hand: Hand, place: Position) -> None:
     try:
         hand.world.contents(place)
-    except WorldError as error:
-        raise SkillError(f"{error}. Give the position of a chest or barrel.") from None
+    except WorldError:
+        raise hand.lacking("chest", place, _CHEST) from None

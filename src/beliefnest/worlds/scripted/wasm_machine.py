@@ -52,7 +52,7 @@ class Machine:
         self._words = (ffi.wasmtime_val_raw_t * _MOST_WORDS)()
         self._trap = ctypes.POINTER(ffi.wasm_trap_t)()
         self._value = ffi.wasmtime_val_t()
-        self._value.kind = ffi.WASMTIME_I32.value
+        self._value.kind = ffi.WASMTIME_I32
         # The C side keeps no reference to functions of Python.
         self._kept: list[object] = []
         self._raised: BaseException | None = None

@@ -22,6 +22,13 @@ const MOST_PROGRAMS = 200
 const programs = new Map()
 const registry = { itemsByName: {}, blocksByName: {} }
 
+/** Stand-in for an object of the game. */
+class GameObject {
+  constructor (members) {
+    Object.assign(this, members)
+  }
+}
+
 /** Take the names of all items, and blocks with their properties, as minecraft-data lists them. */
 function know ({ items, blocks }) {
   for (const name of items) registry.itemsByName[name] = { name }
@@ -112,10 +119,10 @@ function answered (cost, label, act) {
  *   object that the program holds
  */
 function exchangeOf ({ me, agents, kinds: held }) {
-  const bot = { username: me, registry, players: Object.fromEntries(agents.map(name => [name, {}])), blockAt: position => ({ position }) }
-  const exchange = new Exchange({ bot, functionFor: number => ({ number }), kindOf: () => null, spend: () => true })
+  const bot = new GameObject({ username: me, registry, players: Object.fromEntries(agents.map(name => [name, {}])), blockAt: position => new GameObject({ position }) })
+  const exchange = new Exchange({ bot, functionFor: () => () => undefined, kindOf: () => null, spend: () => true })
   exchange.handle(bot, 'bot')
-  for (const kind of held.slice(1)) exchange.handle({ kind, object: exchange.objects.length }, kind)
+  for (const kind of held.slice(1)) exchange.handle(new GameObject({ kind }), kind)
   return exchange
 }
 

@@ -1,0 +1,66 @@
+"""Requests of programs of the scripted world, and the errors that answer them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from beliefnest.skills.manifests import skills
+from beliefnest.worlds.protocol import Fault
+
+__all__ = ["Request", "error_of", "fault_of"]
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """Call of a program.
+
+    Attributes:
+        number: Its number.
+        name: What it calls.
+        args: Arguments as the program gave them, as plain data.
+        checked: Arguments that the skill gets.
+        aim: What it aims at, as the desk says.
+        error: Error of its arguments, for the program.
+    """
+
+    number: int
+    name: str
+    args: list[Any]
+    checked: list[Any]
+    aim: Mapping[str, Any] | None = None
+    error: Mapping[str, Any] | None = None
+
+    @classmethod
+    def admitted(cls, number: int, name: str, told: Mapping[str, Any]) -> "Request":
+        """Return a request as the desk admitted it."""
+        own, checked = told.get("own", []), told.get("checked", [])
+        return cls(number, name, own, checked, told.get("aim"), told.get("error"))
+
+
+def error_of(name: str, error: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the error of a call for its program.
+
+    Args:
+        name: What was called.
+        error: Message, and a reason or None; or an error of the desk, which stays as it is.
+    """
+    if "$" in error:
+        return error
+    reason = {"reason": error["reason"]} if error["reason"] else {}
+    told = {"$": "e", "skill": name, "kind": "skill", **reason}
+    # Errors of the bot's own methods do not begin with their names.
+    if name not in _skills():
+        return {**told, "message": error["message"], "name": "Error"}
+    return {**told, "message": f"{name}: {error['message']}", "name": "SkillError"}
+
+
+def fault_of(error: Mapping[str, Any]) -> Fault:
+    """Return a described error as a fault of the program."""
+    keys = ("line", "column", "skill", "reason")
+    return Fault(error["message"], error["kind"], **{key: error.get(key) for key in keys})
+
+
+@cache
+def _skills() -> frozenset[str]:
+    return frozenset(each.name for each in skills())
