@@ -283,7 +283,7 @@ class Rules:
             if event.kind not in MOVES or event.detail["position"] in looked_into:
                 continue
             place = event.detail["position"]
-            if not self._is_gone(place, around, view):
+            if not self.is_gone(place, around, view):
                 old = after.containers.get(place)
                 known = {} if old is None else old.items
                 after.containers[place] = ContainerBelief(
@@ -323,13 +323,13 @@ class Rules:
             is_replaced = old is not None and old.state != new.state
             if is_replaced and (name is None or name != self.container_name(old)):
                 after.drop(place)
-            if name is None and (old is None or self._is_gone(place, around, view)):
+            if name is None and (old is None or self.is_gone(place, around, view)):
                 after.drop(place)
             is_news = old is None or old.state != new.state
             if name is not None and is_news and place not in after.containers:
                 after.containers[place] = ContainerBelief({}, False, new.basis, current=False)
 
-    def _is_gone(self, place: Position, around: Node, view: "View") -> bool:
+    def is_gone(self, place: Position, around: Node, view: "View") -> bool:
         """Return True if a perception of this tick shows that the place holds no container."""
         block = around.blocks.get(place)
         return (

@@ -177,7 +177,7 @@ def _weigh(
     *,
     known: bool,
 ) -> None:
-    if _is_beaten(after, me, view, claim, rules.unique):
+    if _is_beaten(rules, after, around, me, view, claim):
         believed = False
         after.ear.verdicts[key] = False
     elif speaker == me:
@@ -190,18 +190,18 @@ def _weigh(
 
 
 def _is_beaten(
-    after: "Node", me: str, view: "View | None", claim: Claim, unique: frozenset[str]
+    rules: "Rules", after: "Node", around: "Node", me: str, view: "View | None", claim: Claim
 ) -> bool:
     """Rule 0: whether what is perceived of the matter in this tick beats what is said."""
     if claim.kind is ClaimKind.POSITION and view is not None and claim.agent in view.agents:
         return True
     if claim.item is None:
         return view is not None and _sees_claimed(view, claim)
-    if after.perceives(claim.cell, claim.item):
+    if after.perceives(claim.cell, claim.item) or claim.kind is not ClaimKind.LOCATED:
+        return after.perceives(claim.cell, claim.item)
+    if view is not None and rules.is_gone(claim.cell, around, view):
         return True
-    if claim.kind is not ClaimKind.LOCATED:
-        return False
-    if claim.item in unique and is_perceived_elsewhere(after, me, claim.item, claim.cell):
+    if claim.item in rules.unique and is_perceived_elsewhere(after, me, claim.item, claim.cell):
         return True
     return any(
         place != claim.cell and claim.item in content.items and after.perceives(place, claim.item)

@@ -400,3 +400,19 @@ def test_nobody_can_be_told_where_they_are_themselves() -> None:
     hall.world.say("nora", "You are there.", claims=[bn.Claim.position("max", FAR)])
     assert hall.nest["/max"].state.agents["max"].position == HALL
     assert hall.nest["/nora/bob"].state.agents["max"].position == FAR
+
+
+@pytest.mark.parametrize("testimony", ["accept", "informed"])
+@pytest.mark.parametrize("block", ["bricks", "air"])
+def test_who_sees_no_container_at_a_place_believes_nothing_to_be_in_it(
+    testimony: str, block: str
+) -> None:
+    hall = Hall(testimony=testimony)
+    place = (4, 0, 4)
+    hall.world.set_block(place, block)
+    hall.world.step(3 * GRACE)
+    hall.world.say("nora", "Right here.", claims=[bn.Claim.located("diamond", place)])
+    # Max and Nora see the place; Bob is far away.
+    for path in ("/max", "/nora", "/max/nora", "/nora/max"):
+        assert hall.where(path) == []
+    assert hall.where("/bob") == [place]

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from functools import cache
+from random import Random
 
 import numpy as np
 import pytest
@@ -252,3 +253,41 @@ def test_feet_are_on_top_of_low_blocks(block: str, feet: float) -> None:
     (cell,) = (cell for cell in way if cell[0] == MIDDLE)
     assert ground.feet(cell) == (MIDDLE + 0.5, feet, 1.5)
     assert ground.cell_of(ground.feet(cell)) == cell
+
+
+def planned_walk(seed: int) -> tuple[Snapshot, list[Position]]:
+    """Return a floor with blocks of many shapes, and a walk on a planner's map of it."""
+    random, registry = Random(seed), Registry.load()
+    box = Box((0, 0, 0), (12, 5, 12))
+    blocks = np.zeros(box.shape, dtype=np.int32)
+    blocks[:, :2] = registry.state_id("stone")
+    shapes = [registry.state_id(text) for text in BY_DAY if "door" not in text]
+    for x, z in np.ndindex(13, 13):
+        if (x, z) != (6, 6) and random.random() < 0.35:
+            blocks[x, 2, z] = random.choice(shapes)
+    begin = (6, 2, 6)
+    terrain = Terrain.of(blocks)
+    ways = ways_from(box, [Floor(registry, terrain)], [begin], diagonal=False, most=10_000)
+    assert ways is not None
+    walk = [begin]
+    while len(walk) < 25:
+        number = ways.cells.index(walk[-1])
+        ahead = [to for to in ways.moves[0, number].tolist() if to != number]
+        walk.append(ways.cells[random.choice(ahead)])
+    agents = {"ann": AgentState((6.5, 2.0, 6.5))}
+    return Snapshot(0, box, terrain, {}, agents), walk
+
+
+@pytest.mark.parametrize("seed", few_by_day(range(8)))
+def test_walks_on_planners_maps_are_walks_of_programs(
+    seed: int, embedded: World, scripted: World
+) -> None:
+    start, walk = planned_walk(seed)
+    program = "\n".join(f"await goToPosition(bot, new Vec3{cell}, 0)" for cell in walk)
+    for world in (scripted, embedded):
+        body = world.open_body("/", "seed", start, lambda frame: None)
+        try:
+            result = body.run({"ann": program}, 4000)["ann"]
+        finally:
+            body.close()
+        assert result.ok, (result.error, walk)

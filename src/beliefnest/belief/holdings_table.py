@@ -323,7 +323,7 @@ class HoldingsTable:
         touched = [(cell_of(box, a.detail["position"]), a) for a in acts if a.kind in AT_CONTAINERS]
         own = {cell for cell, act in touched if act.actor == owner and cell in known}
         for cell, act in touched:
-            if cell not in own | into and not self._is_gone(node, cell):
+            if cell not in own | into and not self.sees_no_container(node, cell):
                 witness(holdings, cell, act, tick)
                 moved = act.detail["items"] if act.kind.traits.stores else ()
                 self._seen_moved.update((node, cell, item) for item in moved)
@@ -445,7 +445,7 @@ class HoldingsTable:
             parent = self._table.block(self._table.parent(node), cell)
             if self._context.holds[state] or cell not in self._holdings[node].containers:
                 del doubtful[cell]
-            elif self._is_gone(node, cell) or (
+            elif self.sees_no_container(node, cell) or (
                 before < 0
                 and parent >= 0
                 and not self._context.holds[parent]
@@ -458,7 +458,7 @@ class HoldingsTable:
         if not doubtful:
             del self._doubtful[node]
 
-    def _is_gone(self, node: int, cell: int) -> bool:
+    def sees_no_container(self, node: int, cell: int) -> bool:
         """Return True if the owner of a node perceives now that a cell holds no container."""
         parent = self._table.parent(node)
         state = self._table.block(parent, cell)

@@ -319,8 +319,8 @@ class Testimony:
         """Return by node what its owner perceives of a claim's matter in this tick (section 8.0).
 
         Returns:
-            Two flags by node: the owner perceives the matter elsewhere; the owner perceives the
-            claimed place.
+            Two flags by node: the owner perceives the matter elsewhere, or that the claimed place
+            holds no container; the owner perceives the claimed place.
         """
         from beliefnest.belief import seeing
 
@@ -348,7 +348,9 @@ class Testimony:
                 if claim.kind is ClaimKind.ABSENT:
                     return nowhere, at_place
                 elsewhere = [
-                    self._holdings.perceives_elsewhere(node, cell, item) for node in which.tolist()
+                    self._holdings.perceives_elsewhere(node, cell, item)
+                    or self._holdings.sees_no_container(node, cell)
+                    for node in which.tolist()
                 ]
                 return np.array(elsewhere, dtype=np.bool_), at_place
 

@@ -21,9 +21,10 @@ from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.signs import plain_state
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import AgentState, Items, Point, Position, block_at, feet_in
+from beliefnest.world.values import AgentState, Items, Point, Position
 from beliefnest.worlds.protocol import Fault, RunRules
 from beliefnest.worlds.scripted.desk import Desk
+from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.programs import RunningPrograms
 from beliefnest.worlds.scripted.world import ScriptedWorld
@@ -302,7 +303,11 @@ class Course:
     def _walker(self, name: str, strategy: Strategy, draw: Draw) -> Walker:
         state = self.world.agent(name)
         pose = (state.position, state.yaw, state.pitch)
-        return Walker(strategy, draw, pose, block_at(state.position))
+        return Walker(strategy, draw, pose, self._ground.cell_of(state.position))
+
+    @property
+    def _ground(self) -> Ground:
+        return self.plan.grounds.of(self.world.box, self.world.terrain).ground
 
     def _walk(self, walker: Walker, now: int) -> None:
         if walker.is_over or (now - self.start) % walker.strategy.step_ticks:
@@ -312,8 +317,9 @@ class Course:
         state = world.agent(name)
         if isinstance(action, Step):
             if action.cell != walker.cell:
-                yaw = _yaw(state.position, feet_in(action.cell))
-                world.place_agent(name, feet_in(action.cell), yaw=yaw, pitch=0.0)
+                feet = self._ground.feet(action.cell)
+                yaw = _yaw(state.position, feet)
+                world.place_agent(name, feet, yaw=yaw, pitch=0.0)
                 state = world.agent(name)
         elif isinstance(action, Open):
             world.open(name, action.place)

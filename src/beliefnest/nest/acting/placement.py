@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
+from beliefnest.geometry.bodies import HARMFUL
 from beliefnest.world.doors import is_open
 from beliefnest.world.registry import BoxBounds, Registry
 from beliefnest.world.terrain import Terrain
@@ -33,9 +34,6 @@ _JUMP = 1.25
 _DROP = 3.0
 _AROUND = 4
 _SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
-_HARMFUL = frozenset(
-    {"lava", "fire", "soul_fire", "magma_block", "cactus", "campfire", "soul_campfire"}
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +122,7 @@ class BodySpace:
         cells = [(x, y + up, z) for up in (-1, 0, 1)]
         names = {self.registry.name(s) for cell in cells if (s := self.state(cell)) >= 0}
         beside = (box for cell in cells for box in self.boxes_at(cell))
-        return not names & _HARMFUL and all(box[4] <= place[1] + _TOUCH for box in beside)
+        return not names & HARMFUL and all(box[4] <= place[1] + _TOUCH for box in beside)
 
 
 def placed(

@@ -277,7 +277,8 @@ class Reading:
     def _cell(self, scene: Scene, pose: Pose, *, on_ground: bool) -> Position:
         """Return the cell of an agent; during a jump or over an edge, its previous cell."""
         x, y, z = block_at(pose[0])
-        for cell in ((x, y, z), (x, y - 1, z)):
+        # Feet on a low block are in its place, below the cell in which the agent stands.
+        for cell in ((x, y, z), (x, y - 1, z), *([(x, y + 1, z)] if on_ground else ())):
             if scene.can_stand(cell):
                 return cell
         at = (x, y, z)
