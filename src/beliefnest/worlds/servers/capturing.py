@@ -27,7 +27,7 @@ _MOST_NAMED = 5
 _LONGEST_NAMED = 40
 
 Unknown = Literal["refuse", "air"]
-"""What to do with blocks and items that this version lacks."""
+"""Treatment of blocks and items that this version lacks."""
 
 _Placed = tuple[int, int, int]
 
