@@ -46,7 +46,7 @@ EXAMPLES: Mapping[str, tuple[str, ...]] = {
 }
 """Example templates for each filter."""
 
-_HEAD = """\
+_HEAD = '''\
 # Prompt filters
 
 <!-- Written by `python -m beliefnest.prompts.reference`; change the docstrings, not this. -->
@@ -118,8 +118,42 @@ of a package to every template, add entry points of the group `beliefnest.filter
 greeting = "my_package.filters:greeting"
 ```
 
+To use filters in one nest alone, give it a renderer: `Nest.open(..., renderer=Renderer(filters))`,
+with `Renderer` from `beliefnest.prompts`; so with `Nest.resume`. A run does not record it.
+
+## Several simulators in one prompt
+
+Variables of a template may be simulators, too: of other paths, of past ticks (`nest.at`) and of
+other branches (`on`), alone or in lists and mappings. Filters take them like `branch`:
+
+```python
+import beliefnest as bn
+
+template = """\\
+Anne believes:
+{{ branch | containers }}
+
+At first she believed:
+{{ before | containers }}
+{% for name in plans %}
+After "{{ name }}" she would say:
+{{ plans[name] | chat_log }}
+{% endfor %}"""
+
+world = bn.ScriptedWorld(
+    box=((0, 0, 0), (8, 4, 8)), agents={"anne": (1.5, 1, 1.5)}, containers={(3, 1, 3): {"bone": 1}}
+)
+with bn.Nest(world) as nest:
+    world.open("anne", (3, 1, 3))
+    plans = {"greet": "bot.chat('Hello!')", "ask": "bot.chat('Where is it?')"}
+    nest.explore("/anne", "anne", plans, lambda simulator, result: result.ticks)
+    anne = nest["/anne"]
+    tried = {name: anne.on(f"plan {name}") for name in plans}
+    print(anne.render(template, before=nest.at(0)["/anne"], plans=tried))
+```
+
 ## The built-in filters
-"""
+'''
 
 
 def filter_reference() -> str:

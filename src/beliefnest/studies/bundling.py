@@ -10,6 +10,7 @@ from beliefnest.llm.providers import PROVIDERS
 from beliefnest.llm.secrets import Secrets, secrets_in
 from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.archive import check_secrets, with_manifest
+from beliefnest.studies.filter_packages import PACKAGES, filter_packages
 from beliefnest.studies.inputs import no_inputs
 from beliefnest.studies.methods import Facts, methods_text, run_facts, study_facts
 from beliefnest.studies.page import page_text
@@ -71,6 +72,7 @@ def _files(result: Results, *, runs: bool) -> dict[str, bytes]:
         files = dict(_study_files(result, runs=runs))
     else:
         files = dict(_run_files(result, runs=runs))
+    files |= filter_packages()
     facts = facts_of(result)
     for form, name in (("markdown", "methods.md"), ("latex", "methods.tex")):
         files[name] = methods_text(facts, "latex" if form == "latex" else "markdown").encode()
@@ -134,6 +136,12 @@ def _readme(result: Results, facts: Facts, files: Mapping[str, bytes]) -> str:
     version = facts.versions.get("beliefnest", "")
     pin = f"=={version}" if version else ""
     kind = kind_of(result)
+    filters = ""
+    if any(name.startswith(f"{PACKAGES}/") for name in files):
+        filters = (
+            "\nPrompts use filters of the packages in `packages/`. If these are not installed, "
+            f"read them, and write `PYTHONPATH={PACKAGES}` before the command.\n"
+        )
     contents = "\n".join(
         f"| `{name}` | {told} |"
         for name, told in _CONTENTS[kind].items()
@@ -151,7 +159,7 @@ beliefnest reproduce .
 
 The command takes the recorded answers in place of models. It says that all rows are equal, or
 which ones differ and where.
-
+{filters}
 | file | content |
 |---|---|
 {contents}
@@ -175,6 +183,7 @@ _CONTENTS = {
         "rows.csv": "one row for each probe or episode",
         "figure.svg": "accuracies with 95 % intervals",
         "study.html": "the page: figure, intervals, differences, all rows",
+        "packages/": "packages of prompt filters",
         "methods.md": "the paragraph above; `methods.tex`: the same in LaTeX",
         "bundle.json": "versions, and the SHA-256 of every file",
     },
@@ -186,6 +195,7 @@ _CONTENTS = {
         "rows.csv": "one row for each probe",
         "picture.png": "all conditions at their ends",
         "report.html": "the page",
+        "packages/": "packages of prompt filters",
         "methods.md": "the paragraph above; `methods.tex`: the same in LaTeX",
         "bundle.json": "versions, and the SHA-256 of every file",
     },
