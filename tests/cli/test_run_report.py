@@ -146,7 +146,8 @@ def test_why_a_program_failed_is_told_by_the_run_its_report_and_its_files(
     command = ["run", str(tmp_path / "ask.yaml"), "--world", "scripted"]
     command += ["--model", f"scripted:{tmp_path / 'says.json'}", "--out", str(tmp_path / "out")]
     assert run_command_line(command) == 0
-    why = "line 1: turnOnLever: there is no lever at (5, 1, 1), but air. Give the position of a lever."
+    why = "line 1: turnOnLever: there is no lever at (5, 1, 1), but air. "
+    why += "Give the position of a lever."
     assert f"probe 1: the program failed: {why}" in capsys.readouterr().out
     page = html.unescape((tmp_path / "out" / "report.html").read_text("utf-8"))
     assert f"the program failed: {why}; it ran from tick 0 to tick 1" in page

@@ -1,4 +1,4 @@
-"""What one world refuses, the other refuses as well, with the same kind, message and place."""
+"""Both worlds refuse the same, with the same kind, message and place."""
 
 from collections.abc import Iterator
 from typing import Any

@@ -112,7 +112,8 @@ def test_why_a_program_failed_is_told_beside_it(browser: Browser, tmp_path: Path
         episode.play(1)
         write_page(ShowOptions(tmp_path / "run.bn", depth=1), tmp_path / "page.html")
     browser.open((tmp_path / "page.html").as_uri())
-    why = "line 1: turnOnLever: there is no lever at (5, 1, 1), but air. Give the position of a lever."
+    why = "line 1: turnOnLever: there is no lever at (5, 1, 1), but air. "
+    why += "Give the position of a lever."
     assert texts(browser, ".deed .why") == [why]
     assert any(each.endswith(f"which fails: {why}") for each in texts(browser, ".events .what"))
     assert texts(browser, ".goal .when") == ["not yet", "at no tick so far"]

@@ -1,4 +1,4 @@
-"""What a program of the scripted world reads of its bot and of the world."""
+"""Reads of programs of the scripted world: of their bot, of other agents, of blocks."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

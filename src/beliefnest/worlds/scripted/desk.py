@@ -44,7 +44,7 @@ class Prepared:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """What checks of arguments need to know.
+    """Facts of a world that checks of arguments need.
 
     Attributes:
         me: The program's agent.

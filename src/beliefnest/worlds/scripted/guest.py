@@ -123,7 +123,6 @@ class Guest:
         """Free its memory, when no code of it is on the stack."""
         self._engine.close()
 
-    @property
     def _is_over(self) -> bool:
         return self.ended is not None
 
@@ -150,7 +149,7 @@ class Guest:
 
     def _call(self, number: int, values: int) -> int:
         """Answer a host function; the host's own frames count as stack."""
-        if self._is_over:
+        if self._is_over():
             return 0
         engine, meter = self._engine, parts().meter
         before = engine.depth
@@ -161,7 +160,7 @@ class Guest:
             self._fault(error)
             value = 0
         engine.depth = before
-        if self._is_over:
+        if self._is_over():
             engine.fuel = meter.last_breath
         return value
 

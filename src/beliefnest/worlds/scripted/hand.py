@@ -111,7 +111,7 @@ class Hand:
 
     @property
     def contents(self) -> str:
-        """What it carries, for messages."""
+        """Items that it carries, for messages."""
         held = self.world.agents[self.name].inventory
         return ", ".join(f"{count} {name}" for name, count in held.items()) or "nothing"
 

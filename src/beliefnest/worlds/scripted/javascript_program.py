@@ -21,7 +21,7 @@ _HEARD = ("chat", "whisper", "messagestr")
 """Events to which a program can listen here."""
 _UNDEFINED = {"$": "u"}
 _NOTHING: Mapping[str, Any] = {"waitForChat": None}
-"""What programs get from skills that return nothing, where that is not `undefined`."""
+"""Results, for programs, of skills that return nothing, where that is not `undefined`."""
 _NOBODY = 0
 _NEAR = 1_000_000
 """Coordinates below this are in the world; the desk looks at others."""

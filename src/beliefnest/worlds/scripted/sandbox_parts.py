@@ -1,4 +1,4 @@
-"""What the build made of the bots' sandbox for the scripted world: names, limits, and first states.
+"""Parts of the bots' sandbox for the scripted world: names, limits, and first states.
 
 `worlds/minecraft/node/build.js` writes it, so that both worlds hold programs to the same rules.
 """
