@@ -180,6 +180,10 @@ def _reproduce_run(result: RunResult, again: Path, *, trust: bool) -> Reproducti
             f"{folder} was run in the world {settings['world']}, which is in real time and cannot "
             f"be repeated; runs in {', '.join(WORLDS)} can"
         )
+    system = None
+    if "system" in settings:
+        system = again.with_name("system.txt")
+        system.write_text(str(settings["system"]), encoding="utf-8")
     try:
         options = RunOptions(
             scenario=str(folder / "scenario.yaml"),
@@ -194,6 +198,10 @@ def _reproduce_run(result: RunResult, again: Path, *, trust: bool) -> Reproducti
             temperature=settings["temperature"],
             claims_from=models.get(settings.get("claims_from", "")),
             json=True,
+            # Limits of time have no effect on recorded answers.
+            system=system,
+            skills=settings.get("skills"),
+            max_output_tokens=settings.get("max_output_tokens"),
         )
     except (KeyError, TypeError) as error:
         raise InputError(

@@ -324,7 +324,14 @@ def _asking(plan: Mapping[str, Any]) -> str:
         return ""
     heat = plan["temperature"]
     told = "the provider's default temperature" if heat is None else f"temperature {heat:g}"
-    return f"at {told}, with at most {counted(plan['attempts'], 'request')} for a program"
+    parts = [f"at {told}", f"with at most {counted(plan['attempts'], 'request')} for a program"]
+    if "max_output_tokens" in plan:
+        parts.append(f"at most {counted(plan['max_output_tokens'], 'token')} for an answer")
+    if "system" in plan:
+        parts.append("a system message of our own")
+    if "skills" in plan:
+        parts.append(f"and skills listed with the detail {_code(plan['skills'])}")
+    return ", ".join(parts)
 
 
 def _templates(result: StudyRecord) -> dict[str, str | None]:
