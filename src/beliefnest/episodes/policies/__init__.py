@@ -43,6 +43,7 @@ POLICIES = (
     "model:MODEL:omniscient",
     "model:MODEL:ORDER?SETTING=VALUE&...",
     "random",
+    "rule:NAME",
     "program:FILE",
     "scripted:FILE",
     "person",
@@ -87,6 +88,10 @@ def resolve_policy(
             return _model(
                 rest, name, os.environ if environment is None else environment, connection
             )
+        case "rule" if rest:
+            from beliefnest.episodes.policies.rules import rule_of
+
+            return rule_of(rest)
         case "search" | "infer" if rest:
             return _planning(kind, order_of(rest, name))
     if name in _WITHOUT_OPTIONS:
@@ -162,6 +167,8 @@ def draws_by_seed(name: str) -> bool:
         from beliefnest.llm.resolve import can_vary
 
         return can_vary(rest)
+    if kind == "rule":
+        return "any" in rest
     return kind not in ("search", "infer", "omniscient", *_READ)
 
 

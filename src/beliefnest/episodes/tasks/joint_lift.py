@@ -1,9 +1,10 @@
 """A joint lift without a word (Sebanz, Bekkering and Knoblich 2006; Tomasello 2014).
 
-A lift rises while both its levers are on, with an agent at each of them. There are two lifts. Both
-agents are nearer to one of them, but only Anne sees it, and Bob does not know of it. They cannot
-talk. An agent that considers what the other one sees goes to the lift where the other one will be.
-Further agents stand beside Bob and see what he sees; each lift then has a lever for each of them.
+A lift rises while all its levers are on, with an agent at each of them. Each lift is in a stall
+behind a door. Anne knows all lifts, and knows that Bob has been shown only one of them: never the
+one nearest to both, else any. They cannot talk. An agent that considers what the other one knows
+goes to the lift where the other one will be. Further agents stand beside Bob and know what he
+knows; each lift then has a lever for each of them.
 """
 
 import random
@@ -11,39 +12,43 @@ from typing import Any
 
 from beliefnest.episodes.tasks.building import FLOOR, WALL, abreast, also, hall, wall
 
-PARAMETERS = {"far": (14, 12, 20), "agents": (2, 2, 4)}
+PARAMETERS = {"far": (14, 12, 20), "lifts": (4, 3, 5), "agents": (2, 2, 4)}
 
 _COMPANIONS = ("bob", "carl", "dora")
+_STALL, _DEPTH, _ROUND = 6, 12, 15
+"""Depth of a stall; depth of the hall; ticks of a round."""
 
 
-def instance(chance: random.Random, far: int, agents: int) -> dict[str, Any]:
+def instance(chance: random.Random, far: int, lifts: int, agents: int) -> dict[str, Any]:
     """Return an instance.
 
     Args:
-        chance: Random source of the side and the places.
-        far: Blocks between the lift that Bob does not see and the lift that he sees.
-        agents: Number of agents: Anne, Bob, and agents beside Bob who see what he sees; each lift
+        chance: Random source of the lift that Bob knows, of the sides and the places.
+        far: Blocks from one lift to the next.
+        lifts: Number of lifts.
+        agents: Number of agents: Anne, Bob, and agents beside Bob who know what he knows; each lift
             has a lever for each agent.
     """
-    corner = 5
-    width, depth = corner + far + 5, 12
-    x, z = corner + far + chance.randint(0, 2), chance.randint(1, 3)
-    sites = [_site((0, 1, 0), 6, agents), _site((x, 1, z), 8, agents)]
-    # These walls, with a gap at their corner, hide the lift that Bob does not see.
-    blocks = [
-        wall((corner, 1, 0), (corner, 2, 5)),
-        wall((0, 1, 7), (corner + 1, 2, 7)),
-    ]
-    # All agents stand nearer to this lift than to the other one.
+    width, depth = far * lifts, _DEPTH
+    columns = [far // 2 + far * number for number in range(lifts)]
+    near, shown = chance.sample(columns, 2)
     companions = _COMPANIONS[: agents - 1]
+    sites = {x: _site(x, agents) for x in columns}
+    hung = "oak_door[facing=south,half={},hinge=left,open=false,powered=false]"
+    blocks = [wall((0, 1, _STALL), (width, 3, _STALL))]
+    blocks += [wall((x, 1, 0), (x, 3, _STALL)) for x in range(0, width + 1, far)]
+    blocks += [
+        {"block": hung.format(half), "at": [x, y, _STALL]}
+        for x in columns
+        for y, half in ((1, "lower"), (2, "upper"))
+    ]
+    levers = [place for site in sites.values() for place in site]
     feet = {
-        "anne": [corner - 1.5, 1, 4.5],
-        **abreast(companions, [corner + 2.5, 1, 10.5], (1, 0)),
+        "anne": [near + 0.5, 1, _STALL + 2.5],
+        **abreast(companions, [near + 0.5, 1, _STALL + 3.5], (0, 1)),
     }
-    mirrored = chance.random() < 0.5
-    levers = [place for site in sites for place in site]
     every = "both" if agents == 2 else "all"
-    content = {
+    return {
         "description": (
             f"A lift rises while {every} of its levers are on, with somebody at each. Anne and Bob "
             f"do not talk.{also(companions[1:], 'cannot talk either.')}"
@@ -54,48 +59,28 @@ def instance(chance: random.Random, far: int, agents: int) -> dict[str, Any]:
             **hall(width, depth, [*blocks, *map(_lever, levers)]),
             "agents": {name: {"position": at, "facing": "north"} for name, at in feet.items()},
             "perception": {"max_visible_distance": 64},
-            "static_blocks": [FLOOR, WALL],
+            "static_blocks": [FLOOR, WALL, "oak_door"],
             "initial_beliefs": [
-                {
-                    "path": path,
-                    "blocks": [_lever(place) for place in known],
-                    "agents": feet,
-                }
-                for path, known in (("/anne", levers), ("/**", sites[-1]))
+                {"path": path, "blocks": [_lever(place) for place in known], "agents": feet}
+                for path, known in (("/anne", levers), ("/**", sites[shown]))
             ],
         },
-        "goal": {"reach": [{"agents": list(feet), "sites": [list(map(list, s)) for s in sites]}]},
+        "goal": {
+            "reach": [{"agents": list(feet), "sites": [list(map(list, s)) for s in sites.values()]}]
+        },
         "players": ["anne"],
         "policies": dict.fromkeys(companions, "search:0"),
-        "round_ticks": 5,
-        "rounds": -(-(far + 11) // 5),
+        "round_ticks": _ROUND,
+        # Long enough to go there, too short to come back from another lift.
+        "rounds": -(-(abs(shown - near) + _STALL + 3) // _ROUND),
     }
-    return _mirror(content, width) if mirrored else content
 
 
-def _site(first: tuple[int, int, int], length: int, levers: int) -> list[tuple[int, int, int]]:
-    """Return the places of a lift's levers, in a row from north to south."""
-    x, y, z = first
-    return [(x, y, z + length * number // (levers - 1)) for number in range(levers)]
+def _site(x: int, levers: int) -> list[tuple[int, int, int]]:
+    """Return the places of a lift's levers, at the walls of its stall."""
+    places = [(x - 1, 1, 1), (x + 1, 1, 1), (x - 1, 1, 3), (x + 1, 1, 3)]
+    return places[:levers]
 
 
 def _lever(at: tuple[int, int, int]) -> dict[str, Any]:
     return {"block": "lever[face=floor,facing=north,powered=false]", "at": list(at)}
-
-
-def _mirror(content: dict[str, Any], width: int) -> dict[str, Any]:
-    """Return the instance with east and west exchanged."""
-
-    def swapped(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {key: swapped(each) for key, each in value.items()}
-        if isinstance(value, list | tuple):
-            items = list(value)
-            if len(items) == 3 and all(isinstance(each, int | float) for each in items):
-                x = width + 1 - items[0] if isinstance(items[0], float) else width - items[0]
-                return [x, *items[1:]]
-            return [swapped(each) for each in items]
-        return value
-
-    mirrored: dict[str, Any] = swapped(content)
-    return mirrored

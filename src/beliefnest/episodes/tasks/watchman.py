@@ -3,7 +3,8 @@
 The watchman knows what is in the coffers and believes that the spy does not know it. The spy knows
 it, and wants gold. If the spy takes gold in view of the watchman, the watchman learns that the spy
 knows the contents. A spy that does not consider what the watchman believes about the spy's beliefs
-takes the nearest gold. Further agents are watchmen beside him, who must not learn it either.
+takes the nearest gold. The coffer that the watchman cannot see is any of the others, wherever he
+stands. Further agents are watchmen beside him, who must not learn it either.
 """
 
 import itertools
@@ -13,37 +14,40 @@ from typing import Any
 
 from beliefnest.episodes.tasks.building import abreast, also, belief, chest, hall, wall
 
-PARAMETERS = {"coffers": (5, 2, 6), "reach": (10, 8, 16), "agents": (2, 2, 4)}
+PARAMETERS = {"coffers": (5, 3, 6), "reach": (10, 8, 16), "agents": (2, 2, 4)}
 
 _WATCHMEN = ("watchman", "warden", "sentry")
+_APART, _WALL, _FRONT = 8, 6, 3
+"""Blocks between coffers; z of the glass; z at which the spy stands at a coffer."""
 
 
 def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> dict[str, Any]:
     """Return an instance.
 
     Args:
-        chance: Random source of places and sides.
+        chance: Random source of the places of the spy, the watchman and the hidden coffer.
         coffers: Number of coffers; the watchman cannot see one of them.
-        reach: Blocks from the middle of the hall to its ends.
+        reach: Half of the blocks between the watchman and the glass.
         agents: Number of agents: the spy, and watchmen side by side, none of whom may find out.
     """
-    width, depth = 2 * reach, 10
-    mirrored = chance.random() < 0.5
-    spots = [(x, 1, 1) for x in chance.sample(range(4, reach), coffers - 1)]
-    hidden = (width - 1, 1, chance.randint(1, 3))
-    screen = wall((width - 5, 1, 0), (width - 5, 3, 6))
-
-    def turned(x: float, *, feet: bool = False) -> float:
-        if not mirrored:
-            return x
-        return width + 1 - x if feet else width - x
-
-    places = [(int(turned(x)), y, z) for x, y, z in [*spots, hidden]]
+    width, depth = _APART * coffers, 2 * reach + _WALL + 2
+    columns = [_APART // 2 + _APART * number for number in range(coffers)]
+    # The spy begins in front of a coffer that the watchman sees.
+    near, hidden = chance.sample(columns, 2)
+    post = chance.choice(columns)
+    places = [(x, 1, 1) for x in columns]
     contents = {place: {"gold_ingot": 3} for place in places}
-    (low, high) = sorted((screen["fill"][0][0], screen["fill"][1][0]))
-    screen = wall((int(turned(low)), 1, 0), (int(turned(high)), 3, 6))
+    # Spy and watchman are on two sides of a glass wall. Stone in it hides the spy at one coffer.
+    # Fins beside the coffers let the spy reach each only from the front.
+    slant = (_WALL - _FRONT) / (depth - 2 - _FRONT)
+    stone = hidden + round((post - hidden) * slant)
+    blocks = [
+        wall((0, 1, _WALL), (width, 3, _WALL), "glass"),
+        wall((max(0, stone - 3), 1, _WALL), (min(width, stone + 3), 3, _WALL)),
+        *(wall((x + side, 1, 0), (x + side, 2, 2)) for x in columns for side in (-1, 1)),
+    ]
     watchmen = _WATCHMEN[: agents - 1]
-    posts = abreast(watchmen, [turned(1.5, feet=True), 1, 5.5], (0, 1))
+    posts = abreast(watchmen, [post + 0.5, 1, depth - 1.5], (1, 0))
     return {
         "description": (
             "The spy wants a gold ingot. The watchman must not find out that the spy knows what is "
@@ -52,10 +56,10 @@ def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> di
         "order": 2,
         "scenario": {
             "name": "watchman",
-            **hall(width, depth, [screen]),
+            **hall(width, depth, blocks),
             "containers": [chest(place, contents[place], "coffer") for place in places],
             "agents": {
-                "spy": {"position": [turned(reach + 0.5, feet=True), 1, 5.5], "facing": "north"},
+                "spy": {"position": [near + 0.5, 1, 4.5], "facing": "north"},
                 **{name: {"position": at, "facing": "north"} for name, at in posts.items()},
             },
             "perception": {"max_visible_distance": 64},
@@ -73,7 +77,7 @@ def instance(chance: random.Random, coffers: int, reach: int, agents: int) -> di
         "players": ["spy"],
         "policies": dict.fromkeys(watchmen, "search:0"),
         "round_ticks": 10,
-        "rounds": -(-(2 * reach + 20) // 10),
+        "rounds": -(-(width + 10) // 10),
     }
 
 

@@ -1,0 +1,119 @@
+"""Shortcuts: rules without beliefs, and the tasks that must not be won by them."""
+
+import json
+from pathlib import Path
+
+import pytest
+from tests.profiles import at_night, few_by_day
+
+import beliefnest as bn
+from beliefnest.cli.app import run_command_line
+from beliefnest.episodes.policies import resolve_policy
+from beliefnest.episodes.shortcuts import rules_of, success_of, trained_rule
+
+SEEDS = at_night(40, 6)
+BALANCED = ("watchman", "kitchen", "joint-lift")
+"""Tasks whose right choice is any but the nearest: a rule wins at most about a third."""
+
+
+def rules(name: str) -> list[str]:
+    return [rule for rule in rules_of(bn.Task.load(name)) if "any" not in rule]
+
+
+@pytest.mark.parametrize(
+    ("name", "rule"), few_by_day([(name, rule) for name in BALANCED for rule in rules(name)], 4)
+)
+def test_no_rule_without_beliefs_wins_a_balanced_task(name: str, rule: str) -> None:
+    won = success_of(lambda seed: bn.Task.load(name, seed), rule, range(SEEDS))
+    # A shortcut wins all; chance wins so many in less than one of a hundred cases.
+    assert won <= at_night(24, 5)
+
+
+@pytest.mark.parametrize("name", few_by_day(BALANCED))
+def test_the_right_place_is_spread_over_all_ranks(name: str) -> None:
+    ranks = set()
+    for seed in range(200):
+        columns, near, right = choice_of(name, bn.Task.load(name, seed))
+        assert right != near
+        by_distance = sorted(columns, key=lambda x: (abs(x - near), x))
+        ranks.add((columns.index(right), by_distance.index(right)))
+    assert {place for place, _ in ranks} == set(range(len(columns)))
+    assert {rank for _, rank in ranks} == set(range(1, len(columns)))
+
+
+def choice_of(name: str, task: bn.Task) -> tuple[list[int], int, int]:
+    """Return the columns of the places to choose from, the nearest, and the right one."""
+    scene = task.form.scenario
+    if name == "joint-lift":
+        (_, known) = scene["initial_beliefs"]
+        sites = task.form.goal.reach[0].sites
+        columns = [(site[0][0] + site[1][0]) // 2 for site in sites]
+        right = sum(lever["at"][0] for lever in known["blocks"]) // 2
+        return columns, int(scene["agents"]["anne"]["position"][0]), right
+    kind, agent = ("hatch", "cook") if name == "kitchen" else ("coffer", "spy")
+    columns = sorted(each["at"][0] for each in scene["containers"] if each["label"] == kind)
+    # The window, or the stone, is in front of the right one as the other agent sees it.
+    (x0, _, z0), (x1, _, _) = scene["blocks"][2]["fill"]
+    other = scene["agents"]["waiter" if name == "kitchen" else "watchman"]["position"]
+    eye, z = (x0 + x1) / 2, 3
+    behind = {x: x + (other[0] - 0.5 - x) * (z0 - z) / (other[2] - z) for x in columns}
+    right = min(columns, key=lambda x: abs(behind[x] - eye))
+    return columns, int(scene["agents"][agent]["position"][0]), right
+
+
+def test_a_shortcut_of_ones_own_task_is_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.yaml"
+    chests = [{"at": [1, 1, 3], "items": {"apple": 1}}, {"at": [9, 1, 3], "items": {"apple": 1}}]
+    goal = {"reach": [{"agent": "ann", "items": {"apple": 1}}]}
+    content = {
+        "name": "mine",
+        "box": [[0, 0, 0], [10, 3, 6]],
+        "blocks": [{"block": "stone", "fill": [[0, 0, 0], [10, 0, 6]]}],
+        "containers": chests,
+        "agents": {"ann": {"position": [3.5, 1, 3.5]}},
+        "initial_beliefs": [
+            {"path": "/**", "containers": [{**each, "complete": True} for each in chests]}
+        ],
+        "episode": {"goal": goal, "rounds": 8, "order": 1},
+    }
+    file.write_text(json.dumps(content), encoding="utf-8")
+
+    def load(seed: int) -> bn.Task:
+        return bn.Task.load(str(file), seed)
+
+    assert [success_of(load, f"rule:{key}", range(1)) for key in ("nearest", "farthest")] == [1, 1]
+    assert success_of(load, trained_rule(load, range(1), tries=2), range(1)) == 1
+    command = ["play", str(file), "--baselines", "--seeds", "1", "--json"]
+    assert run_command_line(command) == 1
+    found = json.loads(capsys.readouterr().out)["baselines"]
+    assert {each["policy"]: each["right"] for each in found}["rule:farthest"] == 1
+
+
+def test_rules_speak_where_players_may() -> None:
+    names = rules_of(bn.Task.load("help-find"))
+    assert "rule:any+plan:tell-all" in names
+    assert "rule:any+plan" in names
+    assert "rule:farthest-sally+plan:tell" in names
+    # To say everything is against its rules, or not: that is what the trial is for.
+    won = success_of(lambda seed: bn.Task.load("help-find", seed), "rule:any+plan", range(1))
+    assert won == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("rule:nearset", "there is no rule 'nearset'; rules are nearest, farthest"),
+        ("rule:nearest+x", "there is no rule 'x'"),
+        ("rule:linear=a/b", "there is no rule 'linear=a/b'"),
+        ("rule:first:shout", "'shout' in the rule 'first:shout' is unknown; give tell or tell-all"),
+    ],
+)
+def test_what_is_no_rule_is_refused(
+    name: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(bn.UnknownNameError, match=message):
+        resolve_policy(name)
+    assert run_command_line(["play", "watchman", "--agent", f"spy={name}"]) == 2
+    assert message in capsys.readouterr().err
