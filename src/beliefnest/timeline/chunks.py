@@ -8,7 +8,6 @@ search skips chunks without a match.
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from typing import NamedTuple
 
 import msgspec
@@ -255,8 +254,10 @@ class Chunks:
             agents = self._agents_before(timeline, first)
         agents = agents | codec.decode_last_agents(self.raw(timeline, first, entries))
         if self.bounds is not None:
-            with self._told():
+            try:
                 self.bounds.check_agents(agents)
+            except StoreError as fault:
+                raise damage(self._database.path, str(fault)) from fault
         return agents
 
     def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
@@ -307,23 +308,16 @@ class Chunks:
         """Return an entry of a chunk; StoreError if it is damaged or out of bounds."""
         if self.bounds is None:
             return codec.decode_entry(encoded)
-        with self._told():
+        # Hot path: a context manager takes longer than many a check.
+        try:
             entry = codec.decode_entry(encoded)
             self.bounds.check(entry)
-            if not chunk.first_tick <= entry.tick <= chunk.last_tick:
-                raise StoreError(
-                    f"an entry of tick {entry.tick} stands between ticks {chunk.first_tick} and "
-                    f"{chunk.last_tick}"
-                )
-        return entry
-
-    @contextmanager
-    def _told(self) -> Iterator[None]:
-        """Name the file in a StoreError of the block."""
-        try:
-            yield
         except StoreError as fault:
             raise damage(self._database.path, str(fault)) from fault
+        if not chunk.first_tick <= entry.tick <= chunk.last_tick:
+            between = f"stands between ticks {chunk.first_tick} and {chunk.last_tick}"
+            raise damage(self._database.path, f"an entry of tick {entry.tick} {between}")
+        return entry
 
     def _encoded(self, chunk: _Chunk) -> list[msgspec.Raw]:
         """Return the encoded entries of a chunk."""

@@ -7,7 +7,6 @@ or misspelt kind, raises a StoreError that names the place inside the value.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any, Literal, TypeVar, cast
 
 import msgspec
@@ -229,9 +228,12 @@ def _decoded(decoder: msgspec.msgpack.Decoder[T], data: bytes | msgspec.Raw, wha
 def _with_tuples(value: Any) -> Any:
     """Return the value with every sequence inside the details of its events as a tuple."""
     if isinstance(value, Frame) and value.events:
-        return replace(value, events=tuple(_with_tuples(event) for event in value.events))
+        # Hot path: `dataclasses.replace` takes three times as long.
+        events = tuple(Event(e.kind, e.actor, _frozen(e.detail)) for e in value.events)
+        changes = (value.tick, value.agents, value.blocks, value.containers, value.items)
+        return Frame(*changes, events)
     if isinstance(value, Event):
-        return replace(value, detail=_frozen(value.detail))
+        return Event(value.kind, value.actor, _frozen(value.detail))
     return value
 
 

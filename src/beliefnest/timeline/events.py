@@ -29,9 +29,12 @@ def event_from(
         InputError: The kind or an agent is unknown, or a detail is missing, unknown or of another
             type.
     """
-    if kind not in set(EventKind):
-        raise InputError(f"unknown event {quoted(kind)}; events are {', '.join(EventKind)}")
-    known = EventKind(kind)
+    try:
+        known = EventKind(kind)
+    except ValueError:
+        raise InputError(
+            f"unknown event {quoted(kind)}; events are {', '.join(EventKind)}"
+        ) from None
     if actor is None and known.traits.sense is not Sense.PLACE:
         raise InputError(f"event {quoted(kind)} has no actor; name the agent who did it")
     try:
