@@ -77,6 +77,11 @@ def lane(kind: str, state: int, blocks: np.ndarray) -> Position:
             blocks[MIDDLE, FLOOR + 1] = state
         case "high barrier":
             blocks[MIDDLE, FLOOR + 1], blocks[MIDDLE, FLOOR + 2] = state, upper(state)
+        case "beam":
+            blocks[MIDDLE, FLOOR + 2] = state
+        case "tunnel":
+            blocks[:, FLOOR + 3] = stone
+            blocks[MIDDLE, FLOOR + 1] = state
         case "floor":
             blocks[MIDDLE, FLOOR] = state
         case "bridge":
@@ -154,14 +159,13 @@ def scripted() -> Iterator[World]:
     with_world.close()
 
 
-KINDS = ("barrier", "high barrier", "floor", "bridge")
+KINDS = ("barrier", "high barrier", "floor", "bridge", "beam", "tunnel")
 GAPS = [f"gap {far} {up} {low}" for far in (1, 2, 3, 4) for up in (1, 0, -1, -2) for low in (0, 1)]
 
 
 def cases_by_day() -> list[Case]:
     registry = Registry.load()
     states = [registry.state_id(text) for text in BY_DAY]
-    # In turns, so that each kind of lane has each kind of block within four days of a change.
     return [(KINDS[n % 2], state) for n, state in enumerate(states)]
 
 

@@ -131,7 +131,7 @@ def _has_plate(code: int, dx: int, dz: int) -> bool:
 def stands_at(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> bool:
     """Return True if a body can be in a cell: it stands on a floor, or swims."""
     own, head = code_at(codes, sizes, x, y, z), code_at(codes, sizes, x, y + 1, z)
-    if not _enters(own) or not (_clears(head) or head & _WAYS):
+    if not _enters(own) or not (_clears(head) or own & head & _WAYS):
         return False
     # On a high layer the head reaches into the next cell.
     is_raised = own & ROOM and own & (LADDER | UNKNOWN) == 0 and own >> TOP_SHIFT > _LOW
@@ -177,18 +177,18 @@ def _has_room(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> bool:
 
 @inner
 def _passes_plates(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int) -> bool:
-    """Return True if no plate of a ladder stands between two cells, or one that is jumped over."""
-    own, ahead = code_at(codes, sizes, x, y, z), code_at(codes, sizes, x + dx, y, z + dz)
-    if (own | ahead) & LADDER == 0 or not (_has_plate(own, dx, dz) or _has_plate(ahead, -dx, -dz)):
-        own, ahead = (
-            code_at(codes, sizes, x, y + 1, z),
-            code_at(codes, sizes, x + dx, y + 1, z + dz),
-        )
-        return not (_has_plate(own, dx, dz) or _has_plate(ahead, -dx, -dz))
-    own, ahead = code_at(codes, sizes, x, y + 1, z), code_at(codes, sizes, x + dx, y + 1, z + dz)
-    if _has_plate(own, dx, dz) or _has_plate(ahead, -dx, -dz):
+    """Return True if no plate of a ladder stops a body between two cells.
+
+    A body jumps or climbs over the plate that it leaves, and over one at the height of its feet.
+    """
+    i, k = x + dx, z + dz
+    own, ahead = code_at(codes, sizes, x, y, z), code_at(codes, sizes, i, y, k)
+    head, next_head = code_at(codes, sizes, x, y + 1, z), code_at(codes, sizes, i, y + 1, k)
+    if _has_plate(next_head, -dx, -dz):
         return False
-    above, beyond = code_at(codes, sizes, x, y + 2, z), code_at(codes, sizes, x + dx, y + 2, z + dz)
+    if not (_has_plate(own, dx, dz) or _has_plate(ahead, -dx, -dz) or _has_plate(head, dx, dz)):
+        return True
+    above, beyond = code_at(codes, sizes, x, y + 2, z), code_at(codes, sizes, i, y + 2, k)
     return _clears(above) and _clears(beyond)
 
 

@@ -76,7 +76,12 @@ class Rules:
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
         x, y, z = cell
-        return self.bears((x, y - 1, z)) and self.passes((x, y, z)) and self.passes((x, y + 1, z))
+        head = (x, y + 1, z)
+        # In a gate at the height of the head alone nobody stands.
+        has_room = self.room(head) or (
+            self.gate(head) is not None and self.gate(head) == self.gate(cell)
+        )
+        return self.bears((x, y - 1, z)) and self.passes(cell) and has_room
 
     def steps(self, cell: Position) -> Iterator[Position]:
         """Yield the cells that one step leads to."""
