@@ -6,6 +6,7 @@ import math
 import pytest
 
 from beliefnest.errors import InputError
+from beliefnest.scenarios.scoring import wilson_interval
 from beliefnest.studies.clusters import exchange_p
 from beliefnest.studies.counting import count_rows, paired_rows
 from beliefnest.studies.guessing import chance_of
@@ -208,3 +209,20 @@ def test_the_chance_level_is_that_of_options():
     assert found["chance"] == 0.375
     (found,) = count_rows([*rows, row("a", 3, True)], ["model"])
     assert found["chance"] is None
+
+
+def test_intervals_of_few_variations_are_never_those_of_a_bootstrap():
+    rows = [each for n in range(4) for each in clustered(f"v{n}", "a", [n % 2 == 0, True, True])]
+    (found,) = count_rows(rows, ["model"])
+    assert found["interval"] == "wilson"
+    assert (found["low"], found["high"]) == pytest.approx(wilson_interval(4 * 10 / 12, 4))
+    both = [*rows, *[{**each, "model": "b", "ok": True} for each in rows]]
+    (pairs,) = paired_rows(both, "model", ["model", "spot", "repeat"])
+    low, high = pairs.interval
+    assert low < -0.4 and high > 0.1
+
+
+def test_a_mean_that_does_not_vary_has_no_interval():
+    rows = [{**each, "ticks": 7} for n in range(9) for each in clustered(f"v{n}", "a", [True])]
+    (found,) = count_rows(rows, ["model"], {"ticks": True})
+    assert (found["ticks"], found["ticks_low"], found["ticks_high"]) == (7, None, None)

@@ -11,7 +11,7 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.studies.allocation import balanced, latin_lists
 from beliefnest.studies.positions import choices_of, count_positions
-from beliefnest.studies.power import Assumed, power_rows
+from beliefnest.studies.power import Assumed, Resampled, power_rows
 from beliefnest.studies.regression import fit_rows
 
 SQUARE = [{"a": str(one), "b": str(other)} for one in range(3) for other in range(3)]
@@ -154,3 +154,14 @@ def test_power_of_a_planned_study_is_printed_and_wrong_numbers_are_refused(tmp_p
     assert "1 row in each variation" in told
     assert run_command_line(["power", file, "--difference", "0.9"]) == 2
     assert "between 0 and 1" in capsys.readouterr().err
+
+
+def test_power_says_if_there_is_too_little_to_draw_from():
+    few = Resampled((((True, False), ()),) * 3)
+    same = Resampled((((True, True), ((True, True),)),) * 9)
+    fine = Resampled(tuple(((n % 3 > 0, True), ()) for n in range(9)))
+    rows = power_rows([("few", few), ("same", same), ("fine", fine)], [10], 5, 1)
+    notes = [row["note"] for row in rows]
+    assert "3 variations recorded" in notes[0]
+    assert "the same result" in notes[1]
+    assert notes[2] == ""

@@ -177,7 +177,8 @@ def run_power(options: PowerOptions) -> int:
         own = [row for row in rows if row[measure] is not None]
         _show(f"{title}, {options.simulations} simulated studies each", own, _POWER[measure])
     console = stdout()
-    for line in _NOTES:
+    notes = dict.fromkeys(f"{row['of']}: {row['note']}" for row in rows if row["note"])
+    for line in (*map(escape, map(printable, notes)), *_NOTES):
         console.print(line, highlight=False, soft_wrap=True)
     return 0
 

@@ -11,10 +11,13 @@ import numpy.typing as npt
 
 from beliefnest.scenarios.scoring import wilson_interval
 
-__all__ = ["DRAWS", "crossed_interval", "exchange_p", "mean_interval", "rate_interval"]
+__all__ = ["DRAWS", "FEWEST", "crossed_interval", "exchange_p", "mean_interval", "rate_interval"]
 
 DRAWS = 2_000
 """Draws of a bootstrap."""
+
+FEWEST = 5
+"""Least number of clusters for a bootstrap of a share; of fewer, its intervals are too narrow."""
 
 _MOST_WEIGHTS = 4_000_000
 """Greatest number of weights that are computed at once."""
@@ -32,7 +35,8 @@ def mean_interval(
         clusters: Values by cluster, at least one in each.
 
     Returns:
-        Lowest and highest mean; None for both if there are fewer than two clusters.
+        Lowest and highest mean; None for both if there are fewer than two clusters, or if all have
+        the same mean, so that the draws do not vary.
     """
     if len(clusters) < 2:
         return None, None
@@ -41,7 +45,7 @@ def mean_interval(
     draws = np.random.default_rng(0).integers(0, len(clusters), (DRAWS, len(clusters)))
     means = sums[draws].sum(axis=1) / counts[draws].sum(axis=1)
     low, high = np.percentile(means, [2.5, 97.5])
-    return float(low), float(high)
+    return (float(low), float(high)) if low < high else (None, None)
 
 
 def rate_interval(clusters: Sequence[Sequence[bool]]) -> tuple[float, float, str]:
@@ -53,16 +57,15 @@ def rate_interval(clusters: Sequence[Sequence[bool]]) -> tuple[float, float, str
     Returns:
         Lowest share, highest share, and the method, `wilson` or `bootstrap`. The method is
         Wilson's interval if each cluster has one value, else the cluster bootstrap. If all
-        clusters have the same share, every bootstrap mean is the same; the method then is
-        Wilson's interval for as many values as there are clusters.
+        clusters have the same share, or there are fewer than `FEWEST`, a bootstrap says nothing;
+        the method then is Wilson's interval for as many values as there are clusters.
     """
-    shares = {sum(values) / len(values) for values in clusters}
-    if all(len(values) == 1 for values in clusters) or len(shares) == 1:
-        mean = sum(map(sum, clusters)) / sum(map(len, clusters))
-        return *wilson_interval(mean * len(clusters), len(clusters)), "wilson"
-    low, high = mean_interval(clusters)
-    assert low is not None and high is not None
-    return low, high, "bootstrap"
+    if len(clusters) >= FEWEST and any(len(values) > 1 for values in clusters):
+        low, high = mean_interval(clusters)
+        if low is not None and high is not None:
+            return low, high, "bootstrap"
+    mean = sum(map(sum, clusters)) / sum(map(len, clusters))
+    return *wilson_interval(mean * len(clusters), len(clusters)), "wilson"
 
 
 def crossed_interval(

@@ -12,6 +12,7 @@ from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.scenarios.scoring import wilson_interval
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import (
+    FEWEST,
     crossed_interval,
     exchange_p,
     mean_interval,
@@ -207,19 +208,18 @@ class Pairs:
         With one pair in each variation, the method is that of Bonett and Price (2012): Wald's
         interval after adding one to both counts of discordant pairs, which is valid for few pairs
         too. With several pairs, it is the cluster bootstrap. If all variations have the same
-        difference, every bootstrap mean is the same; the method then is Bonett and Price's for
-        as many pairs as there are variations. With people in pairs, it is the pigeonhole bootstrap
+        difference, or there are fewer than `FEWEST`, the method is Bonett and Price's for as many
+        pairs as there are variations. With people in pairs, it is the pigeonhole bootstrap
         over variations and people.
         """
         differences = [[one - other for one, other in cluster] for cluster in self.clusters]
         if any(person for cluster in self.people for person in cluster):
             bounds, count = self._crossed(differences)
             return self._after_adding(count) if bounds is None else bounds
-        several = any(len(cluster) > 1 for cluster in differences)
-        if several and len({sum(each) / len(each) for each in differences}) > 1:
+        if self.variations >= FEWEST and any(len(cluster) > 1 for cluster in differences):
             low, high = mean_interval(differences)
-            assert low is not None and high is not None
-            return low, high
+            if low is not None and high is not None:
+                return low, high
         return self._after_adding(self.variations)
 
     def _crossed(

@@ -10,8 +10,9 @@ import numpy as np
 
 from beliefnest.errors import InputError
 from beliefnest.studies.checking import is_count, is_whole
-from beliefnest.studies.clusters import rate_interval
+from beliefnest.studies.clusters import FEWEST, rate_interval
 from beliefnest.studies.counting import Pairs
+from beliefnest.world.words import counted
 
 __all__ = [
     "Assumed",
@@ -34,6 +35,10 @@ Cluster = tuple[tuple[bool, ...], tuple[tuple[bool, bool], ...]]
 
 class Source(Protocol):
     """Source of simulated variations."""
+
+    @property
+    def note(self) -> str:
+        """Return why simulations from this source say little; empty: there is no reason."""
 
     @property
     def accuracy(self) -> float:
@@ -79,6 +84,11 @@ class Assumed:
                 f"{self.accuracy - self.difference:g}; it must lie between 0 and 1"
             )
 
+    @property
+    def note(self) -> str:
+        """Return the empty text."""
+        return ""
+
     def draw(self, count: int, chance: "np.random.Generator") -> Sequence[Cluster]:
         """Draw variations."""
         spread = math.sqrt(self.correlation / (1 - self.correlation))
@@ -113,6 +123,22 @@ class Resampled:
         rows = [each for own, _ in self.clusters for each in own]
         return sum(rows) / len(rows) if rows else 0.0
 
+    @property
+    def note(self) -> str:
+        """Return that there are too few recorded variations, or that they are all the same."""
+        if len(self.clusters) < FEWEST:
+            told = counted(len(self.clusters), "variation")
+            return f"{told} recorded, too few to draw from; play at least {FEWEST}"
+        if len({self._shares(each) for each in self.clusters}) == 1:
+            return "all recorded variations have the same result, so that draws do not vary"
+        return ""
+
+    @staticmethod
+    def _shares(cluster: Cluster) -> tuple[float, ...]:
+        rows, pairs = cluster
+        sides = [rows, [one for one, _ in pairs], [other for _, other in pairs]]
+        return tuple(sum(side) / len(side) if side else 0.0 for side in sides)
+
     def draw(self, count: int, chance: "np.random.Generator") -> Sequence[Cluster]:
         """Draw variations."""
         return [self.clusters[n] for n in chance.integers(0, len(self.clusters), count)]
@@ -130,6 +156,7 @@ class Power:
         coverage: Share of studies whose interval contains the true accuracy.
         difference_width: Mean width of the 95 % interval of the difference; None: no pairs.
         power: Share of studies that find a difference with p < 0.05; None: no pairs.
+        note: Reason why the simulations say little; empty: there is none.
     """
 
     variations: int
@@ -139,6 +166,7 @@ class Power:
     coverage: float | None
     difference_width: float | None
     power: float | None
+    note: str
 
     def plain(self) -> dict[str, Any]:
         """Return the values by name."""
@@ -233,4 +261,5 @@ def _power(source: Source, size: int, studies: Sequence[_Study]) -> Power:
         power=sum(p < _ALPHA for _, _, p in differences) / len(differences)
         if differences
         else None,
+        note=source.note,
     )
