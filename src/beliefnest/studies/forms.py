@@ -102,6 +102,7 @@ class PeopleForm(msgspec.Struct):
     """Entries of cells that participants answered."""
 
     cells: list[_PlannedPerson]
+    sessions: dict[str, dict[str, int]] = {}
 
 
 class _EpisodesPlan(msgspec.Struct):

@@ -65,6 +65,7 @@ class PeopleFacts:
         rows: Number of their rows.
         shown: What they were shown: `film`, `story`, `both`.
         dates: First and last day; None: no date is recorded.
+        sessions: How many began, were complete, partial, unanswered, repeated; empty: not noted.
     """
 
     name: str
@@ -72,6 +73,7 @@ class PeopleFacts:
     rows: int
     shown: Sequence[str]
     dates: tuple[str, str] | None
+    sessions: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -209,6 +211,7 @@ def _people(result: StudyRecord) -> Iterator[PeopleFacts]:
             rows=sum(row["model"] == name for row in result.rows),
             shown=sorted({str(page["shown"]) for page in pages if page.get("shown")}),
             dates=(days[0], days[-1]) if days else None,
+            sessions=result.folder.sessions().get(name, {}),
         )
 
 
@@ -404,6 +407,8 @@ def _sentences(facts: Facts) -> Iterator[str]:
         yield f"{_listed([_model(each) for each in facts.models], first=True)}."
     for people in facts.people:
         yield f"{_person(people)}."
+        if people.sessions:
+            yield f"{_told_sessions(people.sessions)}."
     if facts.asking and any(can_vary(each.name) for each in facts.models):
         yield f"Models were asked {facts.asking}."
     if facts.templates:
@@ -417,11 +422,7 @@ def _sentences(facts: Facts) -> Iterator[str]:
         if facts.unpriced:
             cost += f", without {counted(facts.unpriced, 'row')} whose price is not known"
         yield f"The answers used {facts.tokens:,} tokens and {cost}."
-    if facts.excluded:
-        told = [_exclusion(name, count) for name, count in facts.excluded.items()]
-        yield f"Excluded were {_listed(told)}."
-    else:
-        yield "Nothing was excluded."
+    yield from _exclusions(facts)
     yield (
         f"{counted(facts.judged, 'row').capitalize()} of "
         f"{counted(facts.variations, 'independent variation')} "
@@ -433,6 +434,20 @@ def _sentences(facts: Facts) -> Iterator[str]:
         yield f"Right answers{of} were computed from the beliefs of the simulated agents."
     if facts.intervals:
         yield f"The 95 % intervals of accuracies are by {_listed(facts.intervals)}."
+
+
+def _exclusions(facts: Facts) -> Iterator[str]:
+    """Yield the sentences about what was excluded."""
+    if facts.excluded:
+        told = [_exclusion(name, count) for name, count in facts.excluded.items()]
+        yield f"Excluded were {_listed(told)}."
+    else:
+        yield "Nothing that was read was excluded." if facts.people else "Nothing was excluded."
+    if facts.people:
+        yield (
+            "Participants or answers that were left out of the files by hand are not recorded: "
+            "report them."
+        )
 
 
 def _exclusion(name: str, count: int) -> str:
@@ -469,6 +484,19 @@ def _person(people: PeopleFacts) -> str:
         return f"{told} (dates not recorded)"
     first, last = people.dates
     return f"{told}, {f'on {first}' if first == last else f'from {first} to {last}'} (UTC)"
+
+
+def _told_sessions(sessions: Mapping[str, int]) -> str:
+    """Return how many participants began, ended and stopped, as a clause."""
+    told = (
+        f"Of {counted(sessions['began'], 'participant')} who began, {sessions['complete']} "
+        f"answered all questions, {sessions['partial']} stopped in the middle (complete probes "
+        "count) and "
+        f"{sessions['unanswered']} gave no answer"
+    )
+    if sessions["repeated"]:
+        told += f"; {sessions['repeated']} took part more than once, and the first session counts"
+    return told
 
 
 _SHOWN = {"film": "films", "story": "stories", "both": "stories and films"}

@@ -1,6 +1,7 @@
 """Studies: from a design to a folder of results."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -364,7 +365,7 @@ class Study:
         with place.lock():
             if not place.has_plan:
                 self._write_plan(place, self._plan_json(self.plan()))
-            place.write_people(name, found.cells)
+            place.write_people(name, found.cells, asdict(found.sessions))
             write_answers(place.path / "people.csv", found.answers)
         return StudyResult(place), tuple(found.notes)
 

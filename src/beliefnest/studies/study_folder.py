@@ -179,13 +179,27 @@ class StudyFolder:
         checked_form(found, PeopleForm, file, _READ_AGAIN)
         return list(found["cells"])
 
-    def write_people(self, name: str, cells: Iterable[PersonCell]) -> None:
+    def sessions(self) -> dict[str, dict[str, int]]:
+        """Return how many participants of each name began, ended and stopped; empty: not noted.
+
+        Raises:
+            InputError: The file is damaged.
+        """
+        self.people()
+        file = self.path / _PEOPLE
+        return dict(read_json(file, _READ_AGAIN).get("sessions", {})) if file.is_file() else {}
+
+    def write_people(
+        self, name: str, cells: Iterable[PersonCell], sessions: Mapping[str, int]
+    ) -> None:
         """Replace the cells of the people of a name; those of other names stay.
 
         Args:
             name: Name of the people in the column `model`.
             cells: Their cells.
+            sessions: Numbers of participants who began, ended and stopped.
         """
+        noted = {**self.sessions(), name: dict(sessions)}
         before = self.people()
         others = [each for each in before if each["key"]["model"] != name]
         own = {str(cell.planned["name"]): cell for cell in cells}
@@ -194,10 +208,12 @@ class StudyFolder:
                 (self.cells / f"{each['name']}.json").unlink(missing_ok=True)
         for cell, person in own.items():
             self.write_cell(cell, person.found)
-        self._write_entries([*others, *(dict(cell.planned) for cell in own.values())])
+        self._write_entries([*others, *(dict(cell.planned) for cell in own.values())], noted)
 
-    def _write_entries(self, entries: Iterable[Mapping[str, Any]]) -> None:
-        content = {"form": _PEOPLE_FORM, "cells": list(entries)}
+    def _write_entries(
+        self, entries: Iterable[Mapping[str, Any]], sessions: Mapping[str, Mapping[str, int]]
+    ) -> None:
+        content = {"form": _PEOPLE_FORM, "cells": list(entries), "sessions": sessions}
         _write(self.path / _PEOPLE, _json(content))
 
     def check_subjects(self, plan: Mapping[str, Any]) -> None:
@@ -235,6 +251,7 @@ class StudyFolder:
                 different results of one cell. Nothing is copied.
         """
         people = {each["name"]: each for each in self.people()}
+        sessions = self.sessions()
         new: dict[str, dict[str, Any]] = {}
         homes: dict[str, StudyFolder] = {}
         for other in map(StudyFolder.existing, others):
@@ -245,6 +262,7 @@ class StudyFolder:
                     "with other files, seeds or settings"
                 )
             people |= {each["name"]: each for each in other.people()}
+            sessions |= other.sessions()
             for name in sorted(other.names()):
                 theirs = other.cell(name) or {}
                 ours = new.get(name) or self.cell(name)
@@ -265,7 +283,7 @@ class StudyFolder:
                 self.note_seconds(name, seconds[other.path][name])
             self.write_cell(name, content)
         if people:
-            self._write_entries(people.values())
+            self._write_entries(people.values(), sessions)
         return len(new)
 
     @property

@@ -132,7 +132,7 @@ def violations(browser):
 
 
 def test_a_film_plays_pauses_and_asks_at_its_end_by_keyboard_alone(browser, page):
-    opened(browser, page, participant="7")
+    opened(browser, page, participant="17")
     for _ in range(2):
         press(browser, TAB, ENTER)
     # Make all pictures short; the film is otherwise as it is.
@@ -167,7 +167,7 @@ def press(browser, *keys):
 
 
 def test_an_unanswered_question_is_not_left(browser, page):
-    opened(browser, page, participant="7")
+    opened(browser, page, participant="27")
     browser.click(".bn-continue")
     browser.click(".bn-continue")
     browser.one(".bn-trial")
@@ -187,7 +187,7 @@ return [properties.participant, properties.list, told]
 
 
 def test_orders_come_from_the_participant_and_lists_from_the_number(browser, page):
-    opened(browser, page, participant="7")
+    opened(browser, page, participant="37")
     content = content_of(page / "page")
 
     def session(search):
@@ -218,7 +218,7 @@ def test_orders_come_from_the_participant_and_lists_from_the_number(browser, pag
 
 
 def test_a_list_that_does_not_exist_is_told(browser, page):
-    opened(browser, page, participant="7", list=3)
+    opened(browser, page, participant="47", list=3)
     assert browser.one("[role=alert]").text == (
         "There is no list 3: the address may name list 1 to 2."
     )
@@ -269,10 +269,55 @@ def test_answers_are_sent_where_the_study_says(browser, tmp_path, status, told):
         play(browser, "chest", 6)
         browser.until_script("return document.getElementById('page').dataset.ended")
         assert told in browser.one("[role=status]").text
-        rows = posted.get(timeout=60)
-    (tmp_path / "sent.json").write_text(json.dumps(rows), encoding="utf-8")
-    result, notes = study.read_participants(tmp_path / "out", [tmp_path / "sent.json"])
+        ending = browser.one("h1").is_displayed()
+        assert ending is (status == 200)
+        batches = [posted.get(timeout=60) for _ in range(posted.qsize())]
+        if status == 500:
+            browser.script("document.querySelectorAll('.bn-controls button')[1].click()")
+            assert browser.one("h1").is_displayed()
+    # Each answer is sent as it is given; what a server refuses is sent again.
+    assert len(batches) > 1
+    assert len([row for batch in batches for row in batch] if status == 200 else batches[-1]) == 7
+    folder = tmp_path / "sent"
+    folder.mkdir()
+    for number, batch in enumerate(batches if status == 200 else batches[-1:]):
+        (folder / f"{number}.json").write_text(json.dumps(batch), encoding="utf-8")
+    result, notes = study.read_participants(tmp_path / "out", [folder])
     assert (len(result.rows), notes) == (4, ())
+    assert "Of 1 participant who began, 1 answered all questions" in result.methods()
+
+
+def test_a_session_goes_on_after_a_reload_and_keeps_the_address(browser, tmp_path):
+    with receiving(200) as (address, posted):
+        study = bn.Study.load(transfer_in(tmp_path))
+        study.participants(tmp_path / "page", "story", post=address)
+        opened(browser, tmp_path, id="sona 5", session="b2", list=1)
+        browser.click(".bn-continue")
+        play(browser, "chest", 2)
+        browser.driver.refresh()
+        browser.until_script("return document.documentElement.dataset.ready")
+        told = "You have answered 2 of 6 questions. Your answers are kept."
+        assert told in browser.one(".bn-screen").text
+        browser.click(".bn-continue")
+        assert browser.script("return document.querySelector('progress').value") == 2
+        play(browser, "chest", 3)
+        rows = []
+        while len(rows) < 6:
+            rows += posted.get(timeout=60)
+    assert [row.get("trial_index") for row in rows] == [None, 0, 1, 2, 3, 4]
+    assert {row["participant"] for row in rows} == {"sona 5"}
+    assert {json.dumps(row["address"]) for row in rows} == {'{"session": "b2"}'}
+    assert len({row["started"] for row in rows}) == 1
+    other = {**rows[0], "participant": "8", "address": {}}
+    (tmp_path / "sent.json").write_text(json.dumps([*rows, other]), encoding="utf-8")
+    result, notes = study.read_participants(tmp_path / "out", [tmp_path / "sent.json"])
+    assert notes == (
+        "participant sona 5 answered 5 of 6 questions",
+        "1 participant began and gave no answer",
+    )
+    told = result.methods()
+    assert "Of 2 participants who began, 0 answered all questions, 1 stopped in the middle" in told
+    assert "Nothing was excluded" not in told
 
 
 def test_the_plugin_keeps_the_conventions_of_jspsych(browser, page, tmp_path):

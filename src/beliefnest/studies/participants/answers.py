@@ -17,6 +17,8 @@ __all__ = ["Answer", "answer_files", "read_answers", "with_pseudonyms"]
 
 _TRIAL = "beliefnest-question"
 """Value of `trial_type` of our trials, which jsPsych writes as well."""
+_START = "beliefnest-start"
+"""Value of `trial_type` of the row that a page sends when a session begins."""
 _NEEDED = ("participant", "cell", "question", "response")
 
 
@@ -52,6 +54,11 @@ class Answer:
     started: str
     plain: Mapping[str, Any]
 
+    @property
+    def is_start(self) -> bool:
+        """True for the row of a session's beginning, which answers nothing."""
+        return not self.cell
+
     def fault(self, column: str, message: str) -> InputError:
         """Return an error that names file, row and column."""
         return InputError(f"{self.where}, column {column}: {message}")
@@ -78,7 +85,7 @@ def answer_files(paths: Iterable[Path]) -> list[Path]:
 def read_answers(file: Path) -> list[Answer]:
     """Return the answers in a CSV or JSON file of the page or of jsPsych.
 
-    Trials of other plugins are left out.
+    The rows of beginnings of sessions are among them; trials of other plugins are left out.
 
     Raises:
         InputError: The file has another form; the message names file, row and column.
@@ -98,6 +105,7 @@ def read_answers(file: Path) -> list[Answer]:
         for where, row in rows
         if row.get("trial_type", _TRIAL) == _TRIAL
     ]
+    found += [_start(where, row, spoilt) for where, row in rows if row.get("trial_type") == _START]
     if not found:
         raise InputError(f"{file} has no answers: no row has the trial_type {_TRIAL!r}")
     return found
@@ -115,7 +123,11 @@ def with_pseudonyms(answers: Sequence[Answer]) -> list[Answer]:
         replace(
             answer,
             participant=names[answer.participant],
-            plain={**answer.plain, "participant": names[answer.participant]},
+            plain={
+                # Parameters of the address may name persons, too.
+                **{name: value for name, value in answer.plain.items() if name != "address"},
+                "participant": names[answer.participant],
+            },
         )
         for answer in answers
     ]
@@ -151,6 +163,12 @@ def _answer(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) ->
                 "of an id; give the file as it was written, without opening it in a spreadsheet"
             )
     return Answer(where=where, options=_options(where, row), plain=dict(row), **texts)
+
+
+def _start(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) -> Answer:
+    """Return the beginning of a session as an answer to no question."""
+    named = {"cell": "-", "question": "-", "response": ""}
+    return replace(_answer(where, {**row, **named}, spoilt), cell="", question="")
 
 
 def _text(where: str, row: Mapping[str, Any], name: str) -> str:

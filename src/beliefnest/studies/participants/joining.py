@@ -19,7 +19,7 @@ from beliefnest.studies.study_folder import PersonCell
 from beliefnest.world.texts import visible
 from beliefnest.world.words import counted
 
-__all__ = ["Joined", "check_name", "counted_answers", "joined"]
+__all__ = ["Joined", "Sessions", "check_name", "counted_answers", "joined"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,17 +33,38 @@ class _PersonKey(CellKey):
     participant: str
 
 
+@dataclass(frozen=True, slots=True)
+class Sessions:
+    """Numbers of participants.
+
+    Attributes:
+        began: All of whom there is an answer or the beginning of a session.
+        complete: Those who answered all questions of their list.
+        partial: Those who stopped after some answers.
+        unanswered: Those who stopped before the first answer.
+        repeated: Those who took part more than once, of whom the first session counts.
+    """
+
+    began: int
+    complete: int
+    partial: int
+    unanswered: int
+    repeated: int
+
+
 @dataclass
 class Joined:
     """Answers of participants, joined to the study.
 
     Attributes:
         cells: A cell for each participant and item with complete answers.
+        sessions: Numbers of participants who began, ended and stopped.
         answers: All counted answers, each with True if it is right.
         notes: What was left out or is unusual, in words.
     """
 
     cells: list[PersonCell] = field(default_factory=list)
+    sessions: Sessions = field(default_factory=lambda: Sessions(0, 0, 0, 0, 0))
     answers: list[tuple[Answer, bool]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -132,6 +153,7 @@ def joined(
     name: str,
     shown: Sequence[Item],
     notes: Sequence[str],
+    read: Sequence[Answer],
 ) -> Joined:
     """Return the cells of participants, judged as the study judges models.
 
@@ -141,6 +163,7 @@ def joined(
         name: Name of the people in the column `model`.
         shown: All items of the study.
         notes: Notes of `counted_answers`.
+        read: All answers and beginnings of sessions in the files.
     """
     found = Joined(notes=list(notes))
     known = {item.name: (item, by) for item, by in judged}
@@ -156,6 +179,20 @@ def joined(
             if outcomes:
                 found.cells.append(_cell(item, by, outcomes, name, participant, given))
         found.notes += _missing(participant, cells, shown)
+    stopped = sum(bool(_missing(each, cells, shown)) for each, cells in sessions.items())
+    started: dict[str, set[str]] = {}
+    for each in read:
+        started.setdefault(each.participant, set()).add(each.started)
+    silent = len(started) - len(sessions)
+    if silent:
+        found.notes.append(f"{counted(silent, 'participant')} began and gave no answer")
+    found.sessions = Sessions(
+        began=len(started),
+        complete=len(sessions) - stopped,
+        partial=stopped,
+        unanswered=silent,
+        repeated=sum(len(times) > 1 for times in started.values()),
+    )
     return found
 
 

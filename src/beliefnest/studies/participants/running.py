@@ -141,8 +141,9 @@ def join_answers(
     if pseudonyms:
         answers = with_pseudonyms(answers)
     notes: list[str] = []
-    sessions = counted_answers(answers, {item.name: item for item in items}, notes)
-    answered = {cell for given in sessions.values() for cell in given}
+    given = [each for each in answers if not each.is_start]
+    sessions = counted_answers(given, {item.name: item for item in items}, notes)
+    answered = {cell for own in sessions.values() for cell in own}
     wanted = [item for item in items if item.name in answered]
     pages = {each.study for each in answers if each.study}
     if len(pages) > 1:
@@ -150,7 +151,7 @@ def join_answers(
             f"the answers come from {len(pages)} different pages ({', '.join(sorted(pages))}), "
             "whose cells are all part of this study"
         )
-    return joined(sessions, judged_items(wanted, on_item), name, items, notes)
+    return joined(sessions, judged_items(wanted, on_item), name, items, notes, answers)
 
 
 def write_answers(file: Path, answers: Sequence[tuple[Answer, bool]]) -> None:

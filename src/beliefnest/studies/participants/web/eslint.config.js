@@ -3,8 +3,8 @@
 // The rules are those of the JavaScript of worlds; run it with the eslint of `viewer/page/web`.
 const [, { rules }] = require('../../../worlds/minecraft/node/eslint.config.js')
 
-const BROWSER = ['Blob', 'DecompressionStream', 'Response', 'TextEncoder', 'URL', 'URLSearchParams', 'addEventListener', 'atob', 'clearTimeout', 'crypto',
-  'document', 'fetch', 'location', 'performance', 'removeEventListener', 'scrollTo', 'setTimeout']
+const BROWSER = ['AbortSignal', 'Blob', 'DecompressionStream', 'Response', 'TextEncoder', 'URL', 'URLSearchParams', 'addEventListener', 'atob', 'clearTimeout', 'crypto',
+  'document', 'fetch', 'localStorage', 'location', 'performance', 'removeEventListener', 'scrollTo', 'sessionStorage', 'setTimeout']
 
 module.exports = [
   {

@@ -2,7 +2,7 @@
 
 /** Sessions of participants: their list, the order of all they see, and their data. Used with jsPsych and without. */
 ;(() => {
-  const ID_NAMES = ['participant', 'PROLIFIC_PID', 'workerId']
+  const ID_NAMES = ['participant', 'PROLIFIC_PID', 'workerId', 'id']
 
   /**
    * Decode the study that the folder contains.
@@ -69,6 +69,17 @@
   }
 
   /**
+   * Return the parameters of the address that are neither the id nor the list.
+   * @param {URLSearchParams} query Parameters of the address.
+   * @returns {object} `address` with their values by name; nothing if there are none.
+   */
+  function addressOf (query) {
+    const used = ID_NAMES.find(name => query.get(name)?.trim())
+    const others = [...query].filter(([name]) => name !== used && name !== 'list')
+    return others.length ? { address: Object.fromEntries(others) } : {}
+  }
+
+  /**
    * Return the number of a participant's list: as the address says, else by the number that is the id, else by the hash of the id.
    * @param {object} study The study.
    * @param {string} participant The participant's id.
@@ -121,7 +132,7 @@
     const random = randomOf(`${study.seed} ${participant}`)
     const items = shuffled(study.lists[list - 1], random).map(at => study.items[at])
     const trials = items.flatMap(item => shuffled(item.views, random).flatMap(view => trialsOfView(item, view, random)))
-    const properties = { study: study.study, participant, list, shown: study.shown, started: new Date().toISOString() }
+    const properties = { study: study.study, participant, list, shown: study.shown, started: new Date().toISOString(), ...addressOf(query) }
     return { properties, trials }
   }
 
