@@ -282,7 +282,7 @@ def _act(
     at = chance.choice(things or cells)
     item = {chance.choice(_ITEMS): 1}
     other = {"ann": "bob", "bob": "ann", "carl": "dora", "dora": "carl"}[who]
-    claim = bn.Claim.position(other, feet)
+    claim = bn.Claim.located("apple", at)
     acts: list[Callable[[], Act]] = [
         lambda: ("place_agent", who, feet),
         lambda: ("place_agent", who, feet),
