@@ -5,12 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 NOTEBOOK = Path(__file__).parents[3] / "docs" / "notebooks" / "training.ipynb"
 
 
-@pytest.mark.skip(reason="the weights are those of former instances: run `make notebooks`")
 def test_the_trained_policy_of_the_notebook_raises_the_lift() -> None:
     cells = json.loads(NOTEBOOK.read_text("utf-8"))["cells"]
     tagged: dict[str, list[Any]] = {"setup": [], "weights": []}
