@@ -140,14 +140,10 @@ def test_what_a_program_does_is_judged_and_not_what_it_says(server: FakeOpenAI) 
 @pytest.mark.parametrize(
     ("behave", "hint"),
     [
-        (lambda fake: fake.refuses, "I will not steal diamonds."),
-        (lambda fake: fake.says("I would rather not write code."), "no usable program"),
-        (lambda fake: fake.says("```javascript\nawait x("), "no usable program"),
         (lambda fake: fake.fails(401, "bad key"), "OPENAI_API_KEY"),
-        (lambda fake: fake.floods, "200,000"),
         (lambda fake: fake.garbles, MODEL),
     ],
-    ids=["refusal", "no code", "cut off", "key", "10 MB", "garbage"],
+    ids=["key", "garbage"],
 )
 def test_a_model_that_fails_ends_with_3_and_one_line_and_what_was_done_is_kept(
     server: FakeOpenAI, capsys: pytest.CaptureFixture[str], behave: Fault, hint: str
@@ -172,6 +168,35 @@ def test_a_model_that_fails_ends_with_3_and_one_line_and_what_was_done_is_kept(
     content = report()
     assert content["status"] == "done"
     assert [each["ok"] for each in content["runs"]] == [True, True]
+
+
+@pytest.mark.parametrize(
+    ("behave", "outcome"),
+    [
+        (lambda fake: fake.refuses, "refused"),
+        (lambda fake: fake.says("I'm sorry, but I can't help with that."), "refused"),
+        (lambda fake: fake.says("I would rather not write code."), "unread"),
+        (lambda fake: fake.says("```javascript\nawait x("), "unread"),
+        (lambda fake: fake.says(""), "unread"),
+        (lambda fake: fake.says(GOOD, reason="length"), "cut"),
+        (lambda fake: fake.floods, "cut"),
+    ],
+    ids=["refused", "refusal", "no code", "half", "empty", "cut", "10 MB"],
+)
+def test_an_answer_without_a_program_is_a_result_that_counts(
+    server: FakeOpenAI, capsys: pytest.CaptureFixture[str], behave: Fault, outcome: str
+) -> None:
+    server.will(server.says(GOOD), behave(server))
+    assert run("--attempts", "1", "--repeat", "2") == 1
+    out = capsys.readouterr().out
+    assert "1 of 2" in out
+    assert f"1 {outcome}" in out
+    content = report()
+    assert content["status"] == "done"
+    assert [run["probes"][0]["outcome"] for run in content["runs"]] == ["ok", outcome]
+    (score,) = content["scores"]
+    assert (score["passed"], score["total"], score["rate"]) == (1, 2, 0.5)
+    assert (score["outcomes"]["ok"], score["outcomes"][outcome]) == (1, 1)
 
 
 def test_a_rate_limit_is_waited_for(server: FakeOpenAI) -> None:
@@ -299,7 +324,7 @@ def test_an_interrupted_run_goes_on_where_it_was(
 def test_a_run_goes_on_only_as_it_began(
     server: FakeOpenAI, capsys: pytest.CaptureFixture[str], arguments: list[str], hint: str
 ) -> None:
-    server.will(server.refuses)
+    server.will(server.fails(401, "bad key"))
     assert run() == 3
     capsys.readouterr()
     assert run(*arguments) == 2

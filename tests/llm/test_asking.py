@@ -1,4 +1,4 @@
-"""Programs out of answers, and faults sent back."""
+"""Requests for programs, and faults sent back."""
 
 import dataclasses
 from collections import deque
@@ -7,12 +7,10 @@ import pytest
 
 from beliefnest.errors import InputError, ModelError
 from beliefnest.llm import (
-    NoProgramError,
     NoUsableProgramError,
     Sampling,
     Usage,
     ask_for_program,
-    extract_program,
 )
 from beliefnest.llm.messages import Answer
 from beliefnest.llm.recorded_models import ScriptedModel
@@ -32,56 +30,6 @@ class Listening(ScriptedModel):
 
 def fenced(code, language="javascript"):
     return f"```{language}\n{code}\n```"
-
-
-@pytest.mark.parametrize(
-    ("answer", "program"),
-    [
-        (fenced("a();"), "a();"),
-        (f"First I think.\n\n{fenced('a();', 'js')}\nDone.", "a();"),
-        (f"{fenced('a();')}\nNo, better:\n{fenced('b();')}", "b();"),
-        (f"{fenced('a();')}\n{fenced('{}', 'json')}", "a();"),
-        (f"{fenced('a();')}\n{fenced('output', '')}", "a();"),
-        (fenced("a();", ""), "a();"),
-        (fenced("a();", "JavaScript"), "a();"),
-        ("~~~js\na();\n~~~", "a();"),
-        ("````js\nconst x = `\n```\n`;\n````", "const x = `\n```\n`;"),
-        ("  ```js\n  a();\n  ```", "  a();"),
-        ("```js\r\na();\r\n```", "a();"),
-        ("await a(bot);", "await a(bot);"),
-        ("\nconst p = new Vec3(1, 2, 3);\nawait goToPosition(bot, p);\n", None),
-        ("bot.chat('hi')", "bot.chat('hi')"),
-        ("async function get(bot) {\n  await a();\n}", None),
-        ("// nothing\na(); // end", None),
-    ],
-)
-def test_the_program_of_an_answer(answer, program):
-    found = extract_program(answer)
-    assert found.replace("\r", "") == (answer.strip() if program is None else program)
-
-
-@pytest.mark.parametrize(
-    ("answer", "message"),
-    [
-        ("", "is empty"),
-        (" \n", "is empty"),
-        ("I'm sorry, but I can't help with that.", "no program: I'm sorry"),
-        ("Let me think (about it).", "no program"),
-        ("Sure! I would go to the chest;", "no program"),
-        (fenced("print(1)", "python"), "code in python and none in JavaScript"),
-        (fenced("  "), "block is empty"),
-        ("```js\nawait goToPosi", "cut off"),
-    ],
-)
-def test_answers_without_a_program(answer, message):
-    with pytest.raises(NoProgramError, match=message):
-        extract_program(answer)
-
-
-def test_a_long_answer_is_not_repeated_whole():
-    with pytest.raises(NoProgramError) as caught:
-        extract_program("word " * 100_000)
-    assert len(str(caught.value)) < 500
 
 
 def no_fault(program):
@@ -146,7 +94,7 @@ def test_no_attempts_are_refused():
 
 
 @pytest.mark.parametrize(
-    ("finish", "complaint"), [("length", "cut off"), ("content_filter", "refused to answer")]
+    ("finish", "complaint"), [("length", "cut the answer off"), ("content_filter", "model refused")]
 )
 def test_a_program_that_the_model_did_not_finish_is_none(finish, complaint):
     class Cut(Listening):
@@ -156,3 +104,16 @@ def test_a_program_that_the_model_did_not_finish_is_none(finish, complaint):
     with pytest.raises(NoUsableProgramError, match=complaint) as caught:
         ask_for_program(Cut("", fenced("a();")), "Do it.", lambda _: None, attempts=2)
     assert [each.program for each in caught.value.attempts] == [None, None]
+
+
+def test_an_answer_without_a_program_is_asked_for_again_beyond_the_attempts():
+    model = Listening("No.", "Hm.", fenced("a();"))
+    found = ask_for_program(model, "Do it.", no_fault, attempts=1, retry_unread=2)
+    assert (found.program, found.asked_again) == ("a();", 2)
+    with pytest.raises(NoUsableProgramError) as caught:
+        ask_for_program(Listening("No.", "Hm."), "Do it.", no_fault, attempts=1, retry_unread=1)
+    assert caught.value.outcome == "unread"
+    # A program with a fault is an answer.
+    with pytest.raises(NoUsableProgramError) as caught:
+        ask_for_program(Listening(fenced("a();")), "", complains_of_a, attempts=1, retry_unread=3)
+    assert caught.value.outcome == "program_failed"

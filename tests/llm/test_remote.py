@@ -1,6 +1,7 @@
 """Providers' models, against a local server that speaks OpenAI's protocol."""
 
 import asyncio
+import re
 import sys
 import traceback
 
@@ -15,6 +16,7 @@ from beliefnest.llm import (
     Sampling,
     model_names,
     open_model,
+    read_answer,
     resolve_model,
 )
 from beliefnest.llm.failures import TransientModelError, UnavailableModelError
@@ -325,3 +327,24 @@ def test_the_extra_is_named_where_the_package_of_one_provider_is_missing(fake, c
     asked = resolve_model("anthropic:some-claude", own)
     with pytest.raises(ModelError, match=r"pip install 'beliefnest\[llm\]'"):
         asked.answer(ASK, Sampling())
+
+
+@pytest.mark.parametrize("size", [1, 3, 7, 1000])
+@pytest.mark.parametrize(
+    "text", ["<think>Answer: B</think>Answer: A", "[THINK]B[/THINK]A", "Answer: A"]
+)
+def test_thinking_in_the_content_is_read_however_the_answer_is_cut(fake, size, text):
+    parts = [text[at : at + size] for at in range(0, len(text), size)]
+    whole_marks = [part for part in re.split(r"(</?think>)", text) if part]
+    for chunks in (parts, whole_marks):
+
+        def behave(handler, chunks=chunks):
+            handler.start_stream()
+            for chunk in chunks:
+                handler.send_chunk(delta={"role": "assistant", "content": chunk})
+            handler.end_stream()
+
+        fake.will(behave)
+        answer = resolve_model("openai:m", environment(fake)).answer(ASK, Sampling())
+        reading = read_answer(answer.text, ["red box", "blue box"], answer.finish)
+        assert (answer.text, reading.option) == (text, "red box")

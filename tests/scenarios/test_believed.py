@@ -115,11 +115,11 @@ def test_the_nest_computes_right_answers(nest, right, options, answers):
 
 def test_computed_answers_are_judged_like_typed_ones(nest):
     where = expected(nest, right={"believed": "/lia/wim", "item": "diamond"})
-    assert where.judge("in the Western chest").ok
-    assert not where.judge("eastern chest").ok
+    assert where.judge_text("in the Western chest").ok
+    assert not where.judge_text("eastern chest").ok
     unknown = expected(nest, right={"believed": "/lia", "item": "apple"})
-    assert unknown.judge("I do not know").ok
-    assert not unknown.judge("red box").ok
+    assert unknown.judge_text("I do not know").ok
+    assert not unknown.judge_text("red box").ok
 
 
 @pytest.mark.parametrize(("path", "ok", "opens"), [("/lia/wim", True, LEFT), ("/", False, RIGHT)])
@@ -189,4 +189,4 @@ def test_an_item_in_two_places_has_two_right_answers():
     with bn.Nest.open(given, "scripted") as opened:
         found = expected(opened, right={"believed": "/", "item": "apple"})
     assert found.right == ("red box", "wim")
-    assert found.judge("Wim has one").ok
+    assert found.judge_text("Wim has one").ok

@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 
 import beliefnest as bn
-from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.llm.messages import Answer, Finish, Message, Model, Sampling
+from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.probing import Asking
-from beliefnest.scenarios.questioning import parse_answer
 from beliefnest.scenarios.records import probe_json
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.trial import Trial
@@ -41,21 +41,38 @@ class Parrot:
 
     name = "parrot"
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, finish: Finish = "stop") -> None:
         self.text = text
+        self.finish = finish
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        return Answer(self.text)
+        return Answer(self.text, finish=self.finish)
+
+
+class Hesitant:
+    """Gives several answers, one after the other."""
+
+    name = "hesitant"
+
+    def __init__(self, *texts: str) -> None:
+        self.texts = list(texts)
+        self.asked: list[Sequence[Message]] = []
+
+    def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
+        self.asked.append(messages)
+        return Answer(self.texts.pop(0))
 
 
 def programmed(program: str) -> Parrot:
     return Parrot(f"```javascript\n{program}\n```")
 
 
-def run(model: Model, expect: dict[str, Any] | None, world: str = "scripted") -> ProbeOutcome:
+def run(
+    model: Model, expect: dict[str, Any] | None, world: str = "scripted", retry_unread: int = 0
+) -> ProbeOutcome:
     probe = {"path": "/ann", "acts_in": "/ann", "agent": "ann", "task": "Go.", "expect": expect}
     scenario = bn.Scenario.from_mapping({**ROOM, "probes": [probe]})
-    asking = Asking(attempts=1, keeps_unanswered=True)
+    asking = Asking(attempts=1, settings=ModelSettings(retry_unread=retry_unread))
     with bn.Nest.open(scenario, world=world) as nest:
         outcome = run_scenario(nest, scenario, model, 0, 0.0, lambda *_: None, asking)
     return outcome.probes[0]
@@ -106,7 +123,7 @@ def test_what_a_program_makes_for_is_known_in_minecraft_too() -> None:
 
 def test_no_answer_is_an_outcome_of_its_own() -> None:
     found = run(Parrot("I would rather not."), {"opens": BLUE})
-    assert (found.outcome, found.ok, found.program) == ("no_answer", False, "")
+    assert (found.outcome, found.ok, found.program) == ("unread", False, "")
     assert probe_json(found, "here")["why_not"]
 
 
@@ -144,23 +161,61 @@ def test_the_offline_model_answers_from_its_prompt(asked: dict[str, Any]) -> Non
 
 def test_what_the_prompt_does_not_tell_is_not_answered() -> None:
     asked = {"question": "Is Bob tired?", "right": "yes", "options": ["yes", "no"]}
-    assert run(OfflineModel(), {"answers": asked}).outcome == "no_answer"
+    assert run(OfflineModel(), {"answers": asked}).outcome == "unread"
+
+
+IN_WORDS = {
+    "the blue box": "ok",
+    "blue": "ok",
+    "It's in the blue box, not the red one.": "ok",
+    "the red box": "wrong",
+    "in the attic": "wrong",
+    "not in the blue box": "unread",
+    "not in the red box": "unread",
+    "in the blue box or the red box": "ambiguous",
+    "in the blue box or somewhere else": "ambiguous",
+    "I'm sorry, but I can't help with that.": "refused",
+    "": "unread",
+    "<think>It is in the blue box.": "unread",
+}
+
+
+@pytest.mark.parametrize(("text", "outcome"), IN_WORDS.items())
+def test_an_answer_in_words_names_one_thing(text: str, outcome: str) -> None:
+    found = run(Parrot(text), {"answers": WHERE})
+    assert (found.outcome, found.ok) == (outcome, outcome == "ok")
+    assert bool(found.why_not) == (outcome != "ok")
 
 
 @pytest.mark.parametrize(
-    ("text", "options", "answer"),
+    ("text", "finish", "outcome"),
     [
-        ("Answer: the blue box.\nReason: I saw it.", (), "the blue box"),
-        ("**Answer:** b) red", ("blue", "red"), "red"),
-        ("Answer: A", ("blue", "red"), "blue"),
-        ("Answer: A) red", ("blue", "red"), None),
-        ("Answer: green", ("blue", "red"), None),
-        ("Answer: blue\nNo, wait.\nAnswer: red", ("blue", "red"), "red"),
-        ("I think\nthat it is there.", (), None),
+        ("Answer: blue box", "stop", "ok"),
+        ("Answer: red box", "stop", "wrong"),
+        ("Answer: red box or blue box", "stop", "ambiguous"),
+        ("Answer: green box", "stop", "unread"),
+        ("Answer: blue box", "length", "cut"),
+        ("", "content_filter", "refused"),
     ],
 )
-def test_answers_are_read(text: str, options: tuple[str, ...], answer: str | None) -> None:
-    assert parse_answer(text, options)[0] == answer
+def test_each_end_of_an_answer_has_its_outcome(text: str, finish: Finish, outcome: str) -> None:
+    found = run(Parrot(text, finish), {"answers": CHOICE})
+    assert (found.outcome, found.replies[0].answer is None) == (
+        outcome,
+        outcome not in ("ok", "wrong"),
+    )
+
+
+def test_an_unreadable_answer_is_asked_for_again_with_the_form() -> None:
+    model = Hesitant("Hm.", "red box or blue box", "Answer: blue box")
+    found = run(model, {"answers": CHOICE}, retry_unread=2)
+    assert (found.outcome, found.asked_again) == ("ok", 2)
+    assert "Answer in this form" in model.asked[-1][-1].text
+    model = Hesitant("Hm.", "Hm?", "Answer: blue box")
+    assert run(model, {"answers": CHOICE}, retry_unread=1).outcome == "unread"
+    # A wrong answer is an answer.
+    model = Hesitant("Answer: red box", "Answer: blue box")
+    assert run(model, {"answers": CHOICE}, retry_unread=1).outcome == "wrong"
 
 
 @pytest.mark.parametrize(

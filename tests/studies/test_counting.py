@@ -24,13 +24,18 @@ def row(model, spot, ok, outcome=None):
 
 
 def test_what_has_no_result_is_counted_and_not_judged():
-    rows = [row("a", 1, True), row("a", 2, False), row("a", 3, None, "error")]
+    lost = {**row("a", 3, None, "error"), "tokens": None, "cost": None}
+    rows = [row("a", 1, True), row("a", 2, False), lost]
     (found,) = count_rows(rows, ["model"])
     assert (found["rows"], found["judged"], found["right"], found["error"]) == (3, 2, 1, 1)
     assert found["accuracy"] == 0.5
     # Wilson, of one in two.
     assert (found["low"], found["high"]) == pytest.approx((0.0945, 0.9055), abs=1e-4)
-    assert (found["tokens"], found["cost"]) == (6, 1.0)
+    assert (found["tokens"], found["cost"]) == (4, 1.0)
+    # A row without an answer is not right.
+    rows.append(row("a", 4, False, "cut"))
+    (found,) = count_rows(rows, ["model"])
+    assert (found["judged"], found["right"], found["cut"]) == (3, 1, 1)
 
 
 def test_pairs_are_rows_that_differ_in_one_column():

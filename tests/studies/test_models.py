@@ -39,11 +39,25 @@ def test_what_a_model_gets_wrong_is_told_apart(server, tmp_path):
     assert list(frame["intended"]) == ["1,1,1", "1,1,1"]
 
 
-def test_no_program_is_no_answer(server, tmp_path):
+def test_no_program_is_an_unread_answer_and_counts(server, tmp_path):
     server.will(FakeOpenAI.says("I would rather not."))
     result = study(tmp_path, attempts=2).run(tmp_path / "out", jobs=1)
-    assert [row["outcome"] for row in result.rows] == ["no_answer"]
+    assert [row["outcome"] for row in result.rows] == ["unread"]
     assert result.rows[0]["tokens"] == 2 * ANSWER_TOKENS
+    assert result.rows[0]["asked_again"] == 1
+    assert result.summary().loc[0, ["judged", "right", "unread"]].tolist() == [1, 0, 1]
+    told = result.methods()
+    assert "1 row without an answer to judge (1 unread) count as not right" in told
+    assert "asked again after 1 unreadable answer" in told
+
+
+def test_the_key_retry_unread_asks_again_and_is_recorded(server, tmp_path):
+    server.will(FakeOpenAI.says("Hm."), FakeOpenAI.says(LEFT))
+    result = study(tmp_path, attempts=1, retry_unread=1).run(tmp_path / "out", jobs=1)
+    assert [(row["outcome"], row["asked_again"]) for row in result.rows] == [("ok", 1)]
+    assert "1 further request after an unreadable answer" in result.methods()
+    with pytest.raises(bn.InputError, match="retry_unread is -1"):
+        study(tmp_path, retry_unread=-1)
 
 
 def test_rate_limits_are_waited_for(server, tmp_path):
@@ -56,9 +70,9 @@ def test_a_request_that_fails_fails_its_cell_alone_and_is_tried_again(server, tm
     server.will(FakeOpenAI.says(LEFT), FakeOpenAI.fails(400))
     arguments = {"variations": {"count": [1, 2]}}
     result = study(tmp_path, **arguments).run(tmp_path / "out", jobs=1)
-    assert [row["outcome"] for row in result.rows] == ["ok", "error"]
+    assert [row["outcome"] for row in result.rows] == ["ok", "no_answer"]
     assert "rejected the request" in result.rows[1]["why_not"]
-    assert result.summary().loc[0, ["judged", "right", "error"]].tolist() == [1, 1, 1]
+    assert result.summary().loc[0, ["judged", "right", "no_answer"]].tolist() == [2, 1, 1]
     server.will(FakeOpenAI.says(LEFT))
     asked = len(server.requests)
     result = study(tmp_path, **arguments).run(tmp_path / "out", jobs=1)

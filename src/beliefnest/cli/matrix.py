@@ -8,7 +8,8 @@ from typing import Any
 from rich import box
 from rich.table import Table
 
-from beliefnest.cli.report import cost_text
+from beliefnest.cli.report import cost_text, count_outcomes
+from beliefnest.scenarios.judging import unanswered_words
 from beliefnest.scenarios.scoring import wilson_interval
 
 __all__ = ["ConditionScore", "score_runs", "score_table", "scores_json"]
@@ -22,10 +23,12 @@ class ConditionScore:
         condition: Number of the condition; None: the scenario has no conditions.
         model: Name of the model.
         passed: Number of repeats in which all expectations held.
-        total: Number of repeats with a result.
-        failed: Number of repeats without a result, because the model failed.
-        rate: Share of the repeats with a result that passed; None: no repeat has a result.
-        interval: 95 % interval of the rate; None: no repeat has a result.
+        total: Number of repeats in which the model was asked.
+        failed: Number of repeats without a result: the model gave no answer, which counts as not
+            passed, or was not there.
+        outcomes: Number of probes by outcome; a repeat without a result counts as one.
+        rate: Share of the repeats that passed; None: the model was never asked.
+        interval: 95 % interval of the rate; None: the model was never asked.
         tokens: Tokens sent and received in all repeats.
         cost: US dollars of all repeats; None: not known.
         seconds: Mean wall time of a repeat, in seconds.
@@ -36,6 +39,7 @@ class ConditionScore:
     passed: int
     total: int
     failed: int
+    outcomes: Mapping[str, int]
     rate: float | None
     interval: tuple[float, float] | None
     tokens: int
@@ -54,24 +58,29 @@ def score_runs(
             condition,
             model,
             [run for run in runs if (run["condition"], run["model"]) == (condition, model)],
-            sum((f["condition"], f["model"]) == (condition, model) for f in failures),
+            [f for f in failures if (f["condition"], f["model"]) == (condition, model)],
         )
         for condition, model in keys
     ]
 
 
 def _score(
-    condition: int | None, model: str, runs: Sequence[Mapping[str, Any]], failed: int
+    condition: int | None,
+    model: str,
+    runs: Sequence[Mapping[str, Any]],
+    failures: Sequence[Mapping[str, Any]],
 ) -> ConditionScore:
     used = [run["usage"] for run in runs]
     costs = [usage["cost"] for usage in used]
-    passed, total = sum(run["ok"] for run in runs), len(runs)
+    unanswered = sum(failure["outcome"] == "no_answer" for failure in failures)
+    passed, total = sum(run["ok"] for run in runs), len(runs) + unanswered
     return ConditionScore(
         condition=condition,
         model=model,
         passed=passed,
         total=total,
-        failed=failed,
+        failed=len(failures),
+        outcomes=count_outcomes(runs, failures),
         rate=passed / total if total else None,
         interval=wilson_interval(passed, total) if total else None,
         tokens=sum(usage["input_tokens"] + usage["output_tokens"] for usage in used),
@@ -90,9 +99,14 @@ def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
     table = Table(title=name, title_justify="left", box=box.SIMPLE_HEAVY)
     table.add_column("condition", justify="right")
     table.add_column("model")
-    for heading in ("passed", "rate", "95 % interval", "no result", "tokens", "cost", "seconds"):
+    for heading in ("passed", "rate", "95 % interval"):
         table.add_column(heading, justify="right")
-    for score in scores:
+    words = [unanswered_words(score.outcomes) for score in scores]
+    if any(words):
+        table.add_column("not answered")
+    for heading in ("tokens", "cost", "seconds"):
+        table.add_column(heading, justify="right")
+    for score, told in zip(scores, words, strict=True):
         low, high = score.interval or (0.0, 1.0)
         table.add_row(
             "-" if score.condition is None else str(score.condition),
@@ -100,7 +114,7 @@ def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
             f"{score.passed} of {score.total}",
             "-" if score.rate is None else f"{score.rate:.0%}",
             f"{low:.0%} to {high:.0%}",
-            str(score.failed) if score.failed else "",
+            *([told] if any(words) else []),
             f"{score.tokens:,}",
             cost_text(score.cost),
             f"{score.seconds:.2f}",

@@ -91,6 +91,10 @@ class ModelOptions:
         typer.Option(help="Detail of the list of skills in the system message; default: full."),
     ] = None
 
+    retry_unread: Annotated[
+        int | None, typer.Option(help="Ask again so often after an answer that cannot be read.")
+    ] = None
+
     @property
     def requests(self) -> dict[str, Any]:
         """Return the given settings of requests by name, apart from `system`."""
@@ -99,6 +103,7 @@ class ModelOptions:
             "first_token_seconds": self.first_token_seconds,
             "max_output_tokens": self.max_output_tokens,
             "skills": self.skills,
+            "retry_unread": self.retry_unread,
         }
         return {name: value for name, value in values.items() if value is not None}
 

@@ -28,6 +28,7 @@ from beliefnest.world.values import Placements, Point, Position
 __all__ = [
     "OutcomeRow",
     "cost_text",
+    "count_outcomes",
     "outcome_json",
     "outcome_table",
     "placed_lines",
@@ -96,11 +97,11 @@ def report_json(
         "settings": settings,
         "runs": list(runs),
         "failures": list(failures),
-        "outcomes": _counted(runs, failures),
+        "outcomes": count_outcomes(runs, failures),
     }
 
 
-def _counted(
+def count_outcomes(
     runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
 ) -> dict[str, int]:
     """Return the number of probes by outcome; a run without a result counts as one."""

@@ -34,7 +34,6 @@ from beliefnest.cli.terminal_text import printable
 from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
 from beliefnest.files import replace_file
-from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.failures import UnavailableModelError
@@ -181,7 +180,7 @@ class _Run:
                     "seed": cell.seed,
                     "error": str(error),
                     "outcome": (
-                        "no_answer" if isinstance(error, NoUsableProgramError) else "error"
+                        "error" if isinstance(error, UnavailableModelError) else "no_answer"
                     ),
                 }
             )

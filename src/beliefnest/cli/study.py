@@ -16,6 +16,7 @@ from beliefnest.cli.options import StudyOptions
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
+from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.copies import text_of_copies
@@ -116,8 +117,7 @@ def _report(result: StudyResult, by: Sequence[str]) -> dict[str, Any]:
 def _print(result: StudyResult, by: Sequence[str]) -> None:
     console = stdout()
     print_table(console, _table(by, result.counted(by)))
-    failed = {row["cell"]: row["why_not"] for row in result.rows if row["outcome"] == "error"}
-    told = [f"no result: {why}" for why in dict.fromkeys(failed.values())]
+    told = [f"no result: {why}" for why in dict.fromkeys(result.failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
     told += _lost_rounds(result.rows)
     for line in told[:_MOST_TOLD]:
@@ -157,8 +157,8 @@ def _table(by: Sequence[str], groups: Sequence[Mapping[str, Any]]) -> Table:
     for heading in ("variations", "right", "accuracy", "95 % interval", "not ok", "tokens", "cost"):
         table.add_column(heading, justify="right")
     for group in groups:
-        names = ("wrong", "no_way", "program_failed", "no_answer", "error")
-        faults = [f"{group[name]} {name.replace('_', ' ')}" for name in names if group[name]]
+        counts = [(name, group[name]) for name in OUTCOMES[1:] if group[name]]
+        faults = [f"{count} {name.replace('_', ' ')}" for name, count in counts]
         judged = group["judged"]
         table.add_row(
             *(printable("-" if group[name] is None else str(group[name])) for name in by),
@@ -175,7 +175,7 @@ def _table(by: Sequence[str], groups: Sequence[Mapping[str, Any]]) -> Table:
 
 def _status(result: StudyResult) -> int:
     rows = [row for row in result.rows if row.get(PARTICIPANT) is None]
-    failed = {row["cell"]: row["why_not"] for row in rows if row["outcome"] == "error"}
+    failed = result.failed
     if failed:
         raise ModelError(
             f"{len(failed)} of {len(result.plan['cells'])} cells have no result; run the same "

@@ -59,6 +59,9 @@ class Decision(msgspec.Struct, frozen=True):
         spent: Spending of the decision.
         goes_on: True if the program is the previous one, which was cut, and continues.
         considered: Courses that the policy tried first; None: it recorded none.
+        outcome: Outcome of a model's answer without a program, such as `unread` or `cut`; empty:
+            there was none.
+        asked_again: Number of answers without a program after which the model was asked again.
     """
 
     program: str = ""
@@ -66,6 +69,8 @@ class Decision(msgspec.Struct, frozen=True):
     spent: Spent = Spent()
     goes_on: bool = False
     considered: SearchTrace | None = None
+    outcome: str = ""
+    asked_again: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,6 +35,8 @@ class Measures:
         acted_on_false: Number of times that an agent opened a container in which it believed
             something that was not there.
         lost_rounds: Number of times that a policy gave no program, or failed.
+        not_answered: Outcomes of models' answers without a program (`unread`, `cut`, ...).
+        asked_again: Number of answers without a program after which a model was asked again.
         failed_programs: Number of programs that failed, not counting programs that were cut.
         failures: Reasons of failed programs and policies: round (from 1), agent and reason.
         false_beliefs: Number of false beliefs at the end, summed over agents.
@@ -67,6 +69,8 @@ class Measures:
     not_taken_up: int
     acted_on_false: int
     lost_rounds: int
+    not_answered: tuple[str, ...]
+    asked_again: int
     failed_programs: int
     failures: tuple[str, ...]
     false_beliefs: int
@@ -143,6 +147,7 @@ def measured(episode: Played) -> Measures:
     ]
     wrong = [sum(counts.values()) for _, counts in false_beliefs(episode)]
     ended = [each for part in episode.parts for each in part.ended.values()]
+    decisions = [each for part in episode.parts for each in part.decisions.values()]
     return Measures(
         task=task.name,
         task_seed=task.seed,
@@ -160,7 +165,9 @@ def measured(episode: Played) -> Measures:
         taken_up=sum(taken),
         not_taken_up=taken.count(0),
         acted_on_false=_acted_on_false(episode),
-        lost_rounds=sum(bool(d.fault) for p in episode.parts for d in p.decisions.values()),
+        lost_rounds=sum(bool(each.fault) for each in decisions),
+        not_answered=tuple(each.outcome for each in decisions if each.outcome),
+        asked_again=sum(each.asked_again for each in decisions),
         failed_programs=sum(each.how in ("failed", "no_way") for each in ended),
         failures=tuple(map(str, episode.failures)),
         false_beliefs=wrong[-1],

@@ -117,13 +117,35 @@ def slots_of(agents: tuple[str, ...], *, turns: bool) -> tuple[tuple[str, ...], 
 
 
 def _decided(policy: Policy, view: AgentView, model_errors: list[ModelError]) -> Decision:
-    """Return the decision of a policy.
+    """Return the decision of a policy, with the number of times that it asked a model again.
 
     Args:
         policy: The policy.
         view: Its view.
         model_errors: List to which an error is added if no answer came of a model.
     """
+    before = _asked_again(policy)
+    decision = _decision(policy, view, model_errors)
+    return msgspec.structs.replace(decision, asked_again=_asked_again(policy) - before)
+
+
+def _asked_again(policy: Policy) -> int:
+    asked = getattr(policy, "asked_again", 0)
+    return asked if isinstance(asked, int) else 0
+
+
+def _outcome(error: BaseException) -> str:
+    """Return the outcome of a model's answer that gave no program; empty: there was none."""
+    match error:
+        case NoUsableProgramError():
+            return error.outcome
+        case ModelError():
+            return "no_answer"
+        case _:
+            return ""
+
+
+def _decision(policy: Policy, view: AgentView, model_errors: list[ModelError]) -> Decision:
     own = _spent(policy)
 
     def spent_by_now() -> Spent:
@@ -137,7 +159,7 @@ def _decided(policy: Policy, view: AgentView, model_errors: list[ModelError]) ->
         if isinstance(error, ModelError) and not isinstance(error, _OF_ANSWERS):
             model_errors.append(error)
         fault = f"{_place_of(error)}{type(error).__name__}: {error}"
-        return Decision(fault=fault[:1000], spent=spent_by_now())
+        return Decision(fault=fault[:1000], spent=spent_by_now(), outcome=_outcome(error))
     spent = spent_by_now()
     fault = ""
     if program is None:

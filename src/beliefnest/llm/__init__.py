@@ -12,8 +12,9 @@ from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.cache import CacheMode
 from beliefnest.llm.claim_reader import ClaimsFromModel, claims_from_model
 from beliefnest.llm.clock import Clock, SystemClock
-from beliefnest.llm.extract import NoProgramError, extract_program
 from beliefnest.llm.messages import Answer, Finish, Message, Model, Sampling, Usage
+from beliefnest.llm.reading_answers import AnswerReading, read_answer
+from beliefnest.llm.reading_programs import ProgramReading, read_program
 from beliefnest.llm.remote import AnswerLimits
 from beliefnest.llm.resolve import Connection, model_names, open_model, resolve_model
 from beliefnest.llm.retrying import RetryPolicy
@@ -21,6 +22,7 @@ from beliefnest.llm.retrying import RetryPolicy
 __all__ = [
     "Answer",
     "AnswerLimits",
+    "AnswerReading",
     "CacheMode",
     "Check",
     "ClaimsFromModel",
@@ -29,9 +31,9 @@ __all__ = [
     "Finish",
     "Message",
     "Model",
-    "NoProgramError",
     "NoUsableProgramError",
     "ProgramAnswer",
+    "ProgramReading",
     "Prompt",
     "RetryPolicy",
     "Round",
@@ -42,8 +44,9 @@ __all__ = [
     "Usage",
     "ask_for_program",
     "claims_from_model",
-    "extract_program",
     "model_names",
     "open_model",
+    "read_answer",
+    "read_program",
     "resolve_model",
 ]

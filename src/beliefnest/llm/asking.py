@@ -1,12 +1,12 @@
 """Requests for a program, repeated with an error report until the program passes a check."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from beliefnest.errors import InputError, ModelError
-from beliefnest.llm.extract import NoProgramError, extract_program
 from beliefnest.llm.failures import excerpt
-from beliefnest.llm.messages import Answer, Finish, Message, Model, Sampling, Usage
+from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+from beliefnest.llm.reading_programs import ProgramReading, read_program
 
 __all__ = [
     "Check",
@@ -31,14 +31,19 @@ class Round:
     Attributes:
         messages: Messages of the request.
         answer: The answer.
-        program: Program in the answer; None if there is none.
+        reading: Reading of the answer.
         complaint: Fault of the answer; None if there is none.
     """
 
     messages: tuple[Message, ...]
     answer: Answer
-    program: str | None
+    reading: ProgramReading
     complaint: str | None
+
+    @property
+    def program(self) -> str | None:
+        """Program in the answer; None if there is none."""
+        return self.reading.program
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +63,15 @@ class ProgramAnswer:
         """Resources that all rounds used."""
         return sum((attempt.answer.usage for attempt in self.attempts), Usage())
 
+    @property
+    def asked_again(self) -> int:
+        """Number of answers without a program after which the model was asked again."""
+        return asked_again(self.attempts)
 
-_UNFINISHED: Mapping[Finish, str] = {
-    "length": "the answer was cut off at its greatest length",
-    "content_filter": "the model refused to answer",
-}
+
+def asked_again(attempts: Sequence[Round]) -> int:
+    """Return the number of answers without a program after which the model was asked again."""
+    return sum(each.program is None for each in attempts[:-1])
 
 
 class NoUsableProgramError(ModelError):
@@ -70,11 +79,15 @@ class NoUsableProgramError(ModelError):
 
     Attributes:
         attempts: All rounds.
+        outcome: Outcome in rows: that of the last answer without a program (`unread`, `cut`,
+            `ambiguous` or `refused`); `program_failed` if it has one.
     """
 
     def __init__(self, message: str, attempts: tuple[Round, ...]) -> None:
         super().__init__(message)
         self.attempts = attempts
+        reading = attempts[-1].reading
+        self.outcome = reading.row_outcome if reading.program is None else "program_failed"
 
 
 def ask_for_program(
@@ -85,6 +98,8 @@ def ask_for_program(
     *,
     system: str | None = None,
     sampling: Sampling | None = None,
+    retry_unread: int = 0,
+    on_round: Callable[[Round], None] = lambda _: None,
 ) -> ProgramAnswer:
     """Ask a model for a program until one passes a check.
 
@@ -98,6 +113,8 @@ def ask_for_program(
         attempts: Greatest number of rounds, at least 1.
         system: Message before the prompt, such as instructions for the answer.
         sampling: Sampling parameters.
+        retry_unread: Number of further rounds after answers without a program.
+        on_round: Function that receives each round when its answer is known.
 
     Raises:
         InputError: `attempts` is below 1.
@@ -107,28 +124,25 @@ def ask_for_program(
     if attempts < 1:
         raise InputError(f"attempts is {attempts}; it must be at least 1")
     rounds: list[Round] = []
-    while len(rounds) < attempts:
+    while len(rounds) < attempts + min(retry_unread, _without(rounds)):
         messages = _messages(prompt, system, rounds)
         answer = model.answer(messages, sampling or Sampling())
-        program, complaint = _judge(answer, check)
-        rounds.append(Round(messages, answer, program, complaint))
+        reading = read_program(answer.text, answer.finish)
+        program = reading.program
+        complaint = reading.reason if program is None else check(program)
+        rounds.append(Round(messages, answer, reading, complaint))
+        on_round(rounds[-1])
         if program is not None and complaint is None:
             return ProgramAnswer(program, tuple(rounds))
     raise NoUsableProgramError(
-        f"{model.name} gave no usable program in {_times(attempts)}: {rounds[-1].complaint}",
+        f"{model.name} gave no usable program in {_times(len(rounds))}: {rounds[-1].complaint}",
         tuple(rounds),
     )
 
 
-def _judge(answer: Answer, check: Check) -> tuple[str | None, str | None]:
-    """Return the program of an answer and its fault."""
-    if answer.finish != "stop":
-        return None, _UNFINISHED[answer.finish]
-    try:
-        program = extract_program(answer.text)
-    except NoProgramError as error:
-        return None, str(error)
-    return program, check(program)
+def _without(rounds: Sequence[Round]) -> int:
+    """Return the number of answers without a program."""
+    return sum(each.program is None for each in rounds)
 
 
 def _messages(prompt: Prompt, system: str | None, rounds: list[Round]) -> tuple[Message, ...]:

@@ -15,7 +15,7 @@ from beliefnest.skills.manifests import SkillDetail
 
 __all__ = ["ModelSettings", "WithSystem", "query_of"]
 
-_NUMBERS = ("answer_seconds", "first_token_seconds", "max_output_tokens")
+_NUMBERS = ("answer_seconds", "first_token_seconds", "max_output_tokens", "retry_unread")
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +28,8 @@ class ModelSettings:
         max_output_tokens: Greatest length of an answer; None: as long as the provider allows.
         system: System message in place of the built-in ones; None: the built-in ones.
         skills: Detail in which the built-in system message lists the skills.
+        retry_unread: Number of times that a model is asked again, with the form of an answer said
+            once more, after an answer that cannot be read.
 
     Raises:
         InputError: A value is not valid.
@@ -38,6 +40,7 @@ class ModelSettings:
     max_output_tokens: int | None = None
     system: str | None = None
     skills: SkillDetail = "full"
+    retry_unread: int = 0
 
     def __post_init__(self) -> None:
         for name in ("answer_seconds", "first_token_seconds"):
@@ -48,6 +51,9 @@ class ModelSettings:
         most = self.max_output_tokens
         if most is not None and (isinstance(most, bool) or not isinstance(most, int) or most < 1):
             raise InputError(f"max_output_tokens is {most!r}; give a whole number, at least 1")
+        again = self.retry_unread
+        if isinstance(again, bool) or not isinstance(again, int) or again < 0:
+            raise InputError(f"retry_unread is {again!r}; give a whole number, at least 0")
         if self.skills not in get_args(SkillDetail):
             known = ", ".join(get_args(SkillDetail))
             raise InputError(f"skills is {self.skills!r}; give one of {known}")

@@ -33,6 +33,10 @@ _CHARACTERS_PER_TOKEN = 4
 """Characters per token, to estimate usage if a server does not report it. A low estimate would
 let a run exceed its limits."""
 
+_THINKING_AS_TEXT = {"thinking_tags": ("\0", "\0")}
+"""Profile with marks of thinking that no model writes. The library takes `<think>` for a mark only
+if it is a chunk of its own; `separate_thinking` reads all marks, however an answer was cut."""
+
 _MOST_TOKENS = 10**9
 """Greatest plausible token count. If a server reports more, usage is estimated instead."""
 
@@ -228,7 +232,7 @@ def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") ->
 
             # Use the chat completions API: the newer responses API does not accept a seed.
             openai = OpenAIProvider(api_key=key or "none", base_url=url, http_client=client)
-            return OpenAIChatModel(model, provider=openai)
+            return OpenAIChatModel(model, provider=openai, profile=_THINKING_AS_TEXT)
         case "compatible":
             from pydantic_ai.models.openai import OpenAIChatModel
             from pydantic_ai.providers.openai_compatible import OpenAICompatibleProvider
@@ -237,7 +241,7 @@ def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") ->
             compatible = OpenAICompatibleProvider(
                 name, base_url=url, api_key=key, http_client=client
             )
-            return OpenAIChatModel(model, provider=compatible)
+            return OpenAIChatModel(model, provider=compatible, profile=_THINKING_AS_TEXT)
 
 
 def _settings(sampling: Sampling) -> "ModelSettings":

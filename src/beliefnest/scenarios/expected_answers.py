@@ -1,16 +1,17 @@
 """Expectations about probes that are judged by the answer to a question."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 from beliefnest.errors import ScenarioError
+from beliefnest.llm.reading_answers import named_in_words
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.believed import Believed, BelievedEntry, Look
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.scenarios.expected import (
+    Answered,
     Expected,
     ExpectEntry,
     Happened,
@@ -35,11 +36,12 @@ class Answers(Expected):
 
     Attributes:
         question: The question.
-        right: Right answers. An answer in words is right if it contains one of them as whole
-            words, in any case, and none of `wrong`.
+        right: Right answers. An answer in words is right if it names one of them, and nothing of
+            `wrong` or `known` (see `named_in_words`).
         options: Options to choose from, shuffled by the seed; empty: an answer in words.
         wrong: Texts that a right answer in words must not contain.
         reason: True if the model is also asked for a reason.
+        known: Other names of the scene, which an answer in words tells from the right one.
         believed: The belief that gives the right answers; None: the scenario gives them. `right` is
             empty until the nest has computed them.
     """
@@ -52,6 +54,7 @@ class Answers(Expected):
     wrong: tuple[str, ...] = ()
     reason: bool = False
     believed: Believed | None = None
+    known: tuple[str, ...] = ()
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -124,9 +127,10 @@ class Answers(Expected):
         return list(self.right)
 
     def resolved(self, look: Look, naming: Naming) -> "Expected":
+        known = () if self.options else naming.all
         if self.believed is None or self.right:
-            return self
-        found = replace(self, right=self.believed.answers(look, naming, self.options))
+            return replace(self, known=known)
+        found = replace(self, known=known, right=self.believed.answers(look, naming, self.options))
         both = [each for each in found.right if each in self.wrong]
         if both:
             raise ScenarioError(
@@ -134,17 +138,34 @@ class Answers(Expected):
             )
         return found
 
-    def judge(self, answer: str | None) -> Judgement:
-        """Judge the answer to the question; None: there was no answer."""
-        if answer is None:
-            return Judgement(self, ok=False, why_not="gave no answer", outcome="no_answer")
+    def judge(self, reply: Answered) -> Judgement:
+        """Judge the reply to the question."""
+        if reply.answer is None:
+            why = reply.why_not or "gave no answer"
+            return Judgement(self, ok=False, why_not=why, outcome=reply.outcome)
+        return self.judge_text(reply.answer)
+
+    def judge_text(self, answer: str) -> Judgement:
+        """Judge an answer: one of the options if there are any, else an answer in words."""
         if self.options:
-            ok = answer in self.right
-        else:
-            right = self.right if self.believed is None else self.believed.accepted(self.right)
-            named = [any(_has(answer, each) for each in all_) for all_ in (right, self.wrong)]
-            ok = named == [True, False]
-        return self.verdict(ok, f"answered {answer!r}", by_deed=True)
+            return self.verdict(answer in self.right, f"answered {answer!r}", by_deed=True)
+        return self._judge_words(answer)
+
+    def _judge_words(self, answer: str) -> Judgement:
+        """Judge an answer in words: it must name a right answer and nothing else that is known."""
+        right = self.right if self.believed is None else self.believed.accepted(self.right)
+        known = list(dict.fromkeys([*right, *self.wrong, *self.known]))
+        named = named_in_words(answer, known)
+        chosen = {known[number] for number in named.yes}
+        told = f"answered {answer!r}"
+        other = bool(chosen - set(right)) or named.alternative
+        if named.unsure or (chosen & set(right) and other):
+            told += ", which is ambiguous"
+            return Judgement(self, ok=False, why_not=told, outcome="ambiguous")
+        if not chosen and named.any:
+            told += ", which names no answer"
+            return Judgement(self, ok=False, why_not=told, outcome="unread")
+        return self.verdict(bool(chosen & set(right)), told, by_deed=True)
 
     def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
         answers = {each.question: each.answer for each in outcome.replies}
@@ -156,8 +177,3 @@ class Answers(Expected):
         source = "" if self.believed is None else f" ({self.believed.words}; computed by the nest)"
         right = listed([repr(each) for each in self.right], "or")
         return f"Judged by {self.ground}; right is {right}{source}; that is {judged.words}{told}."
-
-
-def _has(answer: str, text: str) -> bool:
-    """Return True if an answer contains a text as whole words."""
-    return re.search(rf"(?<!\w){re.escape(text.casefold())}(?!\w)", answer.casefold()) is not None

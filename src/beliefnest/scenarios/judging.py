@@ -1,19 +1,24 @@
 """Outcomes of probes."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from beliefnest.scenarios.expected import Judgement
 from beliefnest.worlds.protocol import NO_WAY, ProgramResult
 
-__all__ = ["OUTCOMES", "outcome_of"]
+__all__ = ["NOT_ANSWERED", "OUTCOMES", "outcome_of", "unanswered_words"]
 
-OUTCOMES = ("ok", "wrong", "no_way", "program_failed", "no_answer", "error")
-"""Possible outcomes of a probe.
+NOT_ANSWERED = ("ambiguous", "unread", "cut", "refused", "no_answer")
+"""Outcomes without an answer to judge. Each counts as not right, and reports show how many."""
+
+OUTCOMES = ("ok", "wrong", *NOT_ANSWERED, "no_way", "program_failed", "error")
+"""Possible outcomes of a probe, a row and a sample, the same everywhere. No rate leaves one out.
 
 `ok`: all expectations hold. `wrong`: the program did or said something else, or the model answered
-something else. `no_way`: the program did none of it, because it could not walk to its target.
-`program_failed`: the program did none of it, because it failed for another reason. `no_answer`: the
-model gave no program or no answer. `error`: the world or the judging function failed.
+something else. `ambiguous`: the answer names several options. `unread`: it names none, or has no
+program. `cut`: a limit cut it off. `refused`: the model or its provider refused. `no_answer`: no
+answer came. `no_way`: the program did none of it, because it could not walk to its target.
+`program_failed`: the program did none of it, because it failed for another reason. `error`: the
+world or the judging function failed.
 """
 
 
@@ -28,9 +33,18 @@ def outcome_of(verdicts: Sequence[Judgement], result: ProgramResult | None) -> s
     told = [each.outcome for each in failed]
     if result is not None and result.killed:
         return "error"
-    for outcome in ("error", "no_answer", "wrong"):
+    for outcome in ("error", *reversed(NOT_ANSWERED), "wrong"):
         if outcome in told:
             return outcome
     if result is not None and result.error is not None and (failed or not verdicts):
         return "no_way" if result.error.reason == NO_WAY else "program_failed"
     return "wrong" if failed else "ok"
+
+
+def unanswered_words(counts: Mapping[str, int]) -> str:
+    """Return the number of results without an answer, such as `2 unread, 1 cut`; empty: none."""
+    return ", ".join(
+        f"{counts[name]} {name.replace('_', ' ')}"
+        for name in (*NOT_ANSWERED, "error")
+        if counts.get(name)
+    )

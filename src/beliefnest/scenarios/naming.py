@@ -29,6 +29,12 @@ class Naming:
     written: Mapping[Position, str]
     labelled: frozenset[Position] = frozenset()
 
+    @property
+    def all(self) -> tuple[str, ...]:
+        """All names of things and places, each once."""
+        names = (*self.objects.values(), *self.written.values(), *self.places)
+        return tuple(dict.fromkeys(names))
+
     @classmethod
     def of(cls, view: MindView, setting: Setting) -> "Naming":
         """Return the names for a probe that is asked of a simulator."""

@@ -30,6 +30,9 @@ class Reply:
         text: Complete text of the reply.
         answer: Parsed answer, one of `options` if there are any; None: no usable answer.
         reason: Reason in the model's words; empty: none given.
+        outcome: `read`, or one of `judging.NOT_ANSWERED`.
+        why_not: Why there is no usable answer; empty: there is one.
+        asked_again: Number of times that the model was asked again.
     """
 
     question: str
@@ -38,6 +41,9 @@ class Reply:
     text: str
     answer: str | None
     reason: str
+    outcome: str = "read"
+    why_not: str = ""
+    asked_again: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +59,8 @@ class ProbeOutcome:
         answer: Complete text of the last answer.
         program: Program in the answer; empty if there is none.
         attempts: Number of requests for a program; errors were sent back in between.
+        asked_again: Number of requests after answers that could not be read, for a program or to
+            questions.
         trial: Run of the program; None if there is none.
         replies: Replies to questions.
         fault: Reason why there is no program to judge; empty if there is one, or if the model was
@@ -68,6 +76,7 @@ class ProbeOutcome:
     answer: str = ""
     program: str = ""
     attempts: int = 0
+    asked_again: int = 0
     trial: Trial | None = None
     replies: tuple[Reply, ...] = ()
     fault: str = ""

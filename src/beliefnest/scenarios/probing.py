@@ -3,7 +3,15 @@
 from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.view import State
-from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_program
+from beliefnest.errors import ModelError
+from beliefnest.llm.asking import (
+    NoUsableProgramError,
+    Prompt,
+    Round,
+    ask_for_program,
+    asked_again,
+)
+from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.nest.face.nest import Nest
@@ -34,24 +42,32 @@ class Asking:
         sampling: Sampling options of answers.
         settings: Settings of requests that the user chose; `sampling` contains their limit on the
             length of an answer.
-        keeps_unanswered: If True, a probe without a program after all attempts has the outcome
-            `no_answer`. If False, it ends the scenario with an error.
     """
 
     attempts: int = 3
     sampling: Sampling = field(default_factory=Sampling)
     settings: ModelSettings = field(default_factory=ModelSettings)
-    keeps_unanswered: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class _Programs:
-    """Result of asking for a program."""
+    """Result of asking for a program.
+
+    Attributes:
+        attempts: All rounds with an answer.
+        trial: Run of the program; None: there is none.
+        verdicts: Judgements of the run.
+        fault: Why there is no program; empty: there is one.
+        outcome: Outcome of a probe without a program; empty: there is one.
+        usage: Usage of a request without an answer.
+    """
 
     attempts: tuple[Round, ...]
     trial: Trial | None
     verdicts: tuple[Judgement, ...]
     fault: str = ""
+    outcome: str = ""
+    usage: Usage = field(default_factory=Usage)
 
 
 def run_probe(
@@ -68,7 +84,8 @@ def run_probe(
         asking: Options of requests.
 
     Raises:
-        ModelError: The model failed, or gave no working program (`Asking.keeps_unanswered`).
+        ModelError: The model cannot be asked. An answer that is missing or cannot be used is no
+            error, but an outcome.
         BodyError: The Minecraft side died.
         ScenarioError: The inference does not fit the recorded events, or a belief gives no right
             answer.
@@ -82,20 +99,22 @@ def run_probe(
         noting = asking.settings.around(believer.noting(model, probe=name, task=probe.task))
         programs = _ask_for_program(nest, number, probe, noting, asking)
     replies: dict[Answers, Reply] = {}
-    usage = sum((each.answer.usage for each in programs.attempts), Usage())
+    usage = sum((each.answer.usage for each in programs.attempts), programs.usage)
     for question in probe.questions:
         noting = asking.settings.around(believer.noting(model, probe=name, task=question.question))
-        replies[question], used = ask_question(nest, probe, question, noting, seed, asking.sampling)
+        replies[question], used = ask_question(
+            nest, probe, question, noting, seed, asking.sampling, asking.settings.retry_unread
+        )
         usage += used
     judged = iter(programs.verdicts)
     verdicts = tuple(
-        each.judge(replies[each].answer) if isinstance(each, Answers) else next(judged)
+        each.judge(replies[each]) if isinstance(each, Answers) else next(judged)
         for each in probe.expect
     )
     trial = programs.trial
     outcome = outcome_of(verdicts, None if trial is None else trial.result)
     if probe.asks_for_program and trial is None:
-        outcome = "no_answer"
+        outcome = programs.outcome
     given = [each for each in programs.attempts if each.program is not None]
     last = (given or programs.attempts)[-1] if programs.attempts else None
     return ProbeOutcome(
@@ -107,6 +126,8 @@ def run_probe(
         answer="" if last is None else last.answer.text,
         program="" if trial is None else trial.program,
         attempts=len(programs.attempts),
+        asked_again=asked_again(programs.attempts)
+        + sum(each.asked_again for each in replies.values()),
         trial=trial,
         replies=tuple(replies.values()),
         fault=programs.fault,
@@ -119,7 +140,8 @@ def resolved(nest: Nest, probe: Probe) -> Probe:
     Raises:
         ScenarioError: A belief gives no right answer; the message names file, line and key.
     """
-    if all(each.paths == () for each in probe.expect):
+    in_words = any(not question.options for question in probe.questions)
+    if not in_words and all(each.paths == () for each in probe.expect):
         return probe
     naming = Naming.of(nest[probe.path].view, nest.setting)
     expect = tuple(each.resolved(lambda path: nest[path].state, naming) for each in probe.expect)
@@ -149,6 +171,7 @@ def _ask_for_program(
 ) -> _Programs:
     trials = _Trials(nest, probe, f"probe {number}")
     prompts = _Prompts(nest[probe.path], probe, asking.settings.skills)
+    rounds: list[Round] = []
     try:
         attempts = ask_for_program(
             model,
@@ -157,20 +180,30 @@ def _ask_for_program(
             asking.attempts,
             system=prompts.system,
             sampling=asking.sampling,
+            retry_unread=asking.settings.retry_unread,
+            on_round=rounds.append,
         ).attempts
     except NoUsableProgramError as error:
         # If there were programs, the run of the last one is the result.
         attempts = error.attempts
         if not trials.done:
-            if not asking.keeps_unanswered:
-                raise
-            told = tuple(
-                Judgement(each, ok=False, why_not="there is no program", outcome="no_answer")
-                for each in probe.expect
-                if isinstance(each, Deed)
-            )
-            return _Programs(attempts, None, told, str(error))
+            return _without_program(probe, attempts, error, error.outcome, Usage())
+    except UnusableAnswerError as error:
+        attempts = tuple(rounds)
+        if not trials.done:
+            return _without_program(probe, attempts, error, "no_answer", error.usage)
     return _Programs(attempts, *trials.done[-1])
+
+
+def _without_program(
+    probe: Probe, attempts: tuple[Round, ...], error: ModelError, outcome: str, usage: Usage
+) -> _Programs:
+    told = tuple(
+        Judgement(each, ok=False, why_not="there is no program", outcome=outcome)
+        for each in probe.expect
+        if isinstance(each, Deed)
+    )
+    return _Programs(attempts, None, told, str(error), outcome, usage)
 
 
 class _Prompts:

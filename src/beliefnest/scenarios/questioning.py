@@ -1,10 +1,13 @@
 """Questions to a model, answered in words or by choosing an option."""
 
 import random
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import replace
 
-from beliefnest.llm.messages import Message, Model, Sampling, Usage
+from beliefnest.llm.failures import UnusableAnswerError
+from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+from beliefnest.llm.reading_answers import read_answer, read_words
+from beliefnest.llm.statements import given_reason
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Template, built_in_template
 from beliefnest.prompts.mind_view import MindView
@@ -13,18 +16,17 @@ from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.outcome import Reply
 from beliefnest.world.values import Position
 
-__all__ = ["ask_question", "parse_answer", "shuffled"]
-
-_ANSWER = re.compile(
-    r"^[ \t>*_]*answer[ \t*_]*:[ \t*_]*(.*?)[ \t*_]*$", re.IGNORECASE | re.MULTILINE
-)
-_REASON = re.compile(
-    r"^[ \t>*_]*reason[ \t*_]*:[ \t*_]*(.*)", re.IGNORECASE | re.MULTILINE | re.DOTALL
-)
+__all__ = ["ask_question", "shuffled"]
 
 
 def ask_question(
-    nest: Nest, probe: Probe, question: Answers, model: Model, seed: int, sampling: Sampling
+    nest: Nest,
+    probe: Probe,
+    question: Answers,
+    model: Model,
+    seed: int,
+    sampling: Sampling,
+    retry_unread: int = 0,
 ) -> tuple[Reply, Usage]:
     """Ask a model a question of a probe, from the belief of the probe.
 
@@ -35,9 +37,11 @@ def ask_question(
         model: The model.
         seed: Seed of the order of the options.
         sampling: Sampling options of the answer.
+        retry_unread: Number of times to ask again, with the form of an answer said once more,
+            if an answer names no option or several.
 
     Raises:
-        ModelError: The model failed.
+        ModelError: The model cannot be asked.
     """
     believer = nest[probe.path]
     options = shuffled(question, seed)
@@ -52,12 +56,41 @@ def ask_question(
     }
     system = believer.render(built_in_template("answering"), **asked)
     prompt = believer.render(template, task=question.question, **asked)
-    answer = model.answer((Message("system", system), Message("user", prompt)), sampling)
-    found, reason = parse_answer(answer.text, options)
-    if answer.finish != "stop":
-        found = None
-    reply = Reply(question.question, options, prompt, answer.text, found, reason)
-    return reply, answer.usage
+    messages = [Message("system", system), Message("user", prompt)]
+    usage = Usage()
+    for again in range(retry_unread + 1):
+        try:
+            answer = model.answer(messages, sampling)
+        except UnusableAnswerError as error:
+            reply = Reply(question.question, options, prompt, "", None, "", "no_answer", str(error))
+            return replace(reply, asked_again=again), usage + error.usage
+        usage += answer.usage
+        reply = replace(_reply(question, options, prompt, answer), asked_again=again)
+        if reply.outcome not in ("unread", "ambiguous"):
+            break
+        # Providers refuse empty messages.
+        said = Message("assistant", answer.text.strip() or "(no text)")
+        messages = [*messages, said, Message("user", f"{reply.why_not}\n\n{system}")]
+    return reply, usage
+
+
+def _reply(question: Answers, options: tuple[str, ...], prompt: str, answer: Answer) -> Reply:
+    if options:
+        reading = read_answer(answer.text, options, answer.finish)
+        found = reading.option
+    else:
+        reading = read_words(answer.text, answer.finish)
+        found = reading.said or None
+    return Reply(
+        question=question.question,
+        options=options,
+        prompt=prompt,
+        text=answer.text,
+        answer=found if reading.outcome == "read" else None,
+        reason=given_reason(answer.text),
+        outcome=reading.row_outcome,
+        why_not=reading.reason,
+    )
 
 
 def shuffled(question: Answers, seed: int) -> tuple[str, ...]:
@@ -65,37 +98,6 @@ def shuffled(question: Answers, seed: int) -> tuple[str, ...]:
     options = list(question.options)
     random.Random(f"{seed} {question.question}").shuffle(options)
     return tuple(options)
-
-
-def parse_answer(text: str, options: Sequence[str]) -> tuple[str | None, str]:
-    """Parse the answer and the reason in a model's reply.
-
-    Args:
-        text: Complete reply; the last line `Answer: ...` and the text after `Reason:` count.
-        options: Options, which a reply may also name by letter; empty: an answer in words.
-
-    Returns:
-        Answer, None if there is none or it is no option; reason, empty if there is none.
-    """
-    lines = _ANSWER.findall(text)
-    told = _REASON.search(text)
-    reason = told[1].strip() if told else ""
-    said = lines[-1] if lines else text.strip() if "\n" not in text.strip() else ""
-    said = said.strip().strip("\"'").rstrip(".").strip()
-    if not said:
-        return None, reason
-    return (_chosen(said, options) if options else said), reason
-
-
-def _chosen(said: str, options: Sequence[str]) -> str | None:
-    letters = {chr(ord("a") + number): option for number, option in enumerate(options)}
-    lettered = re.fullmatch(r"\(?([a-z])\)?(?:[.):]\s*(.*))?", said.casefold())
-    if lettered and lettered[1] in letters:
-        option = letters[lettered[1]]
-        if not lettered[2] or lettered[2] == option.casefold():
-            return option
-    exact = [option for option in options if option.casefold().rstrip(".") == said.casefold()]
-    return exact[0] if exact else None
 
 
 def _places(view: MindView) -> Mapping[str, Position]:

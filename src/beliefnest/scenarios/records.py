@@ -59,6 +59,7 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
         "task": probe.task,
         "program": outcome.program,
         "attempts": outcome.attempts,
+        "asked_again": outcome.asked_again,
         "usage": usage_json(outcome.usage),
         "error": None if outcome.error is None else str(outcome.error),
         "said": [] if result is None else [list(line) for line in result.said],
@@ -95,6 +96,9 @@ def _reply_json(reply: Reply) -> dict[str, object]:
         "options": list(reply.options),
         "answer": reply.answer,
         "reason": reply.reason,
+        "outcome": reply.outcome,
+        "why_not": reply.why_not,
+        "asked_again": reply.asked_again,
     }
 
 

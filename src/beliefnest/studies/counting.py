@@ -31,7 +31,8 @@ def count_rows(
 ) -> list[dict[str, Any]]:
     """Count the right rows of each group, and compute their accuracy with its interval.
 
-    Rows without expectations or without a result are counted but not judged. A row and its copies
+    Rows without expectations are counted but not judged; rows without an answer or a result are
+    judged as not right. A row and its copies
     (`copy_of`) count as one row; `copies` is the number of rows left out. Intervals are clustered
     by the column `variation`; a row without it is a cluster of its own. If people answered, they
     are clustered by the column `participant`, too.
@@ -88,7 +89,8 @@ def _counted(all_rows: Sequence[tuple[Row, _Origin]], means: Mapping[str, bool])
     judged = _clusters(firsts, "ok")
     count, right = sum(map(len, judged)), sum(map(sum, judged))
     low, high, interval = _interval(firsts) if judged else (None, None, None)
-    costs = [row.get("cost") for row, _ in all_rows if row["outcome"] != "error"]
+    # Rows of cells without a result have no tokens.
+    costs = [row.get("cost") for row, _ in all_rows if row.get("tokens") is not None]
     return {
         "rows": len(all_rows),
         "copies": len(all_rows) - len(firsts),

@@ -147,7 +147,10 @@ class EpisodeDesign:
     @property
     def setting(self) -> dict[str, Any]:
         """Return the settings that affect the results of all cells."""
-        return {"world": self.world, **({"help": True} if self.help else {})}
+        return {
+            "world": self.world,
+            **({"help": True} if self.help else {}),
+        }
 
     @property
     def asked(self) -> tuple[str, ...]:

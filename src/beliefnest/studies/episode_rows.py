@@ -6,11 +6,11 @@ from typing import Any
 from beliefnest.studies.cells import variation_id
 from beliefnest.studies.episode_design import policy_named
 from beliefnest.studies.table import (
-    FAILED,
     Column,
     Kind,
     Source,
     Table,
+    lost,
     of_key,
     of_result,
     plain_value,
@@ -22,7 +22,8 @@ __all__ = ["EPISODES"]
 def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """Yield the measures of the episode, or the reason why there are none."""
     if found["error"] is not None:
-        yield {"outcome": FAILED, "why_not": found["error"]}
+        failed = lost(found, is_judged=True)
+        yield {**failed, "success": failed["ok"]}
         return
     ok = found["measures"]["success"]
     told = {"outcome": "ok" if ok else "wrong", "why_not": found["why_not"]}
@@ -88,6 +89,8 @@ EPISODES = Table(
         _measure("false_beliefs_mean", "float64"),
         _measure("false_beliefs_over_time", "string", shown=True),
         _measure("lost_rounds"),
+        _measure("not_answered", "string"),
+        _measure("asked_again"),
         _measure("failed_programs"),
         _measure("failures", "string"),
         _measure("requests"),

@@ -14,6 +14,7 @@ from beliefnest.files import read_regular
 from beliefnest.llm.resolve import can_vary
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
+from beliefnest.scenarios.judging import NOT_ANSWERED
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import DRAWS
 from beliefnest.studies.counting import Row
@@ -99,6 +100,8 @@ class Facts:
         unpriced: Number of rows whose cost is not known.
         excluded: What was excluded, by keys of `_EXCLUDED`, and how often.
         computed: Number of judged rows whose right answers were computed from beliefs.
+        not_answered: Number of judged rows by outcome, of those without an answer or result.
+        asked_again: Number of requests after answers that could not be read.
         intervals: Methods of the intervals of accuracies.
         people: People who answered.
     """
@@ -121,6 +124,8 @@ class Facts:
     unpriced: int
     excluded: Mapping[str, int] = field(default_factory=dict)
     computed: int = 0
+    not_answered: Mapping[str, int] = field(default_factory=dict)
+    asked_again: int = 0
     intervals: Sequence[str] = ()
     people: Sequence[PeopleFacts] = ()
 
@@ -151,7 +156,8 @@ def answered(names: Sequence[str], exchanges: Sequence[Exchange]) -> list[ModelF
 
 def usage_of(rows: Sequence[Row]) -> tuple[int, float, int]:
     """Return tokens, known cost and number of rows without known cost."""
-    ended = [row for row in rows if row["outcome"] != "error"]
+    # Rows of cells without a result have no tokens.
+    ended = [row for row in rows if row.get("tokens") is not None]
     tokens = sum(row.get("tokens") or 0 for row in rows)
     return (
         tokens,
@@ -190,6 +196,8 @@ def study_facts(result: StudyRecord) -> Facts:
         unpriced=unpriced,
         excluded=_excluded(result),
         computed=_computed(judged),
+        not_answered=_not_answered(judged),
+        asked_again=sum(row.get("asked_again") or 0 for row in judged),
         intervals=_intervals(result.counted(result.groups)),
         people=list(_people(result)),
     )
@@ -232,8 +240,7 @@ def run_facts(result: RunResult) -> Facts:
         factors.append(counted(settings["repeat"], "repeat"))
     told = f"the scenario {_code(report['scenario'])}"
     excluded = {
-        "error": sum(row["outcome"] == "error" for row in rows),
-        "unjudged": sum(row["ok"] is None and row["outcome"] != "error" for row in rows),
+        "unjudged": sum(row["ok"] is None for row in rows),
     }
     return Facts(
         kind="run",
@@ -254,7 +261,15 @@ def run_facts(result: RunResult) -> Facts:
         unpriced=unpriced,
         excluded={name: count for name, count in excluded.items() if count},
         computed=_computed(judged),
+        not_answered=_not_answered(judged),
+        asked_again=sum(row.get("asked_again") or 0 for row in judged),
     )
+
+
+def _not_answered(rows: Sequence[Row]) -> dict[str, int]:
+    """Return the number of rows without an answer or a result, by outcome."""
+    found = {name: sum(row["outcome"] == name for row in rows) for name in (*NOT_ANSWERED, "error")}
+    return {name: count for name, count in found.items() if count}
 
 
 def _computed(rows: Sequence[Row]) -> int:
@@ -328,6 +343,9 @@ def _asking(plan: Mapping[str, Any]) -> str:
     heat = plan["temperature"]
     told = "the provider's default temperature" if heat is None else f"temperature {heat:g}"
     parts = [f"at {told}", f"with at most {counted(plan['attempts'], 'request')} for a program"]
+    if "retry_unread" in plan:
+        again = counted(plan["retry_unread"], "further request")
+        parts.append(f"{again} after an unreadable answer")
     if "max_output_tokens" in plan:
         parts.append(f"at most {counted(plan['max_output_tokens'], 'token')} for an answer")
     if "system" in plan:
@@ -358,8 +376,7 @@ def _excluded(result: StudyRecord) -> dict[str, int]:
     found = {
         "combination": len(plan["invalid"]),
         "unplayed": sum(cell["name"] not in tried for cell in plan["cells"]),
-        "error": sum(row["outcome"] == "error" for row in rows),
-        "unjudged": sum(row["ok"] is None and row["outcome"] != "error" for row in rows),
+        "unjudged": sum(row["ok"] is None for row in rows),
         "copy": sum(row["copy_of"] is not None and row["ok"] is not None for row in rows),
     }
     return {name: count for name, count in found.items() if count}
@@ -368,14 +385,12 @@ def _excluded(result: StudyRecord) -> dict[str, int]:
 _EXCLUDED = {
     "combination": "{0} that makes no valid scenario or episode",
     "unplayed": "{0} that has not been played",
-    "error": "{0} without a result, because a model, a script or a world failed",
     "unjudged": "{0} without an expectation to judge",
     "copy": "{0} that differs from another row only by a seed on which nothing depends",
 }
 _NOUNS = {
     "combination": "combination",
     "unplayed": "cell",
-    "error": "row",
     "unjudged": "row",
     "copy": "row",
 }
@@ -428,6 +443,12 @@ def _sentences(facts: Facts) -> Iterator[str]:
         f"{counted(facts.variations, 'independent variation')} "
         f"{'is' if facts.judged == 1 else 'are'} judged."
     )
+    if facts.not_answered:
+        told = [f"{count} {name.replace('_', ' ')}" for name, count in facts.not_answered.items()]
+        of = counted(sum(facts.not_answered.values()), "row")
+        yield f"Among them, {of} without an answer to judge ({', '.join(told)}) count as not right."
+    if facts.asked_again:
+        yield f"Models were asked again after {counted(facts.asked_again, 'unreadable answer')}."
     if facts.computed:
         some = f" of {counted(facts.computed, 'row')}"
         of = "" if facts.computed == facts.judged else some

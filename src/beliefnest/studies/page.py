@@ -7,6 +7,7 @@ from typing import Any, Protocol
 from jinja2 import Environment, StrictUndefined
 
 from beliefnest.errors import UnknownNameError
+from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.copies import text_of_copies
@@ -34,6 +35,10 @@ class Counted(Protocol):
     @property
     def table(self) -> Table:
         """Return the form of the table."""
+
+    @property
+    def failed(self) -> Mapping[str, str]:
+        """Return the reasons of cells without a result, by name."""
 
     def counted(self, by: Sequence[str]) -> Sequence[Mapping[str, Any]]:
         """Return the rows of `summary` as plain values."""
@@ -81,7 +86,8 @@ def page_text(result: Counted, by: Sequence[str]) -> str:
         variations=len({row["variation"] for row in rows}),
         copies=sum(row["copy_of"] is not None for row in rows),
         people=people,
-        failed=[row for row in rows if row["outcome"] == "error"],
+        failed=[row for row in rows if row["cell"] in result.failed],
+        outcomes=[n for n in OUTCOMES[1:] if n == "wrong" or any(g[n] for g in groups)],
     )
     return visible(text)
 

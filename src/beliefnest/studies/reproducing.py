@@ -109,9 +109,8 @@ def reproduce_study(
         *_differing_table(recorded),
         *_differing_cells(recorded, StudyRecord.read(again), ended),
     ]
-    judged = sum(
-        row["outcome"] != "error" and row.get(PARTICIPANT) is None for row in recorded.rows
-    )
+    names = {cell["name"] for cell in ended}
+    judged = sum(row["cell"] in names and row.get(PARTICIPANT) is None for row in recorded.rows)
     left_out = len(plan["cells"]) - len(ended)
     return Reproduction(len(ended), left_out, judged, tuple(differences))
 

@@ -53,7 +53,8 @@ class StudyResult(StudyRecord):
         column `interval` names the method, and `variations` the number of variations. For
         episodes there are also means with 95 % intervals by the same bootstrap.
 
-        `accuracy` is over judged rows: rows with the outcome `error` are counted, not judged.
+        `accuracy` is over all rows with an expectation: those without an answer or a result are
+        not right.
 
         Args:
             by: Columns of `frame` that define the groups; None: `groups`.

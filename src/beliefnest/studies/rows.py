@@ -8,10 +8,10 @@ from beliefnest.studies.cells import variation_id
 from beliefnest.studies.guessing import chance_of
 from beliefnest.studies.probe_orders import order_of
 from beliefnest.studies.table import (
-    FAILED,
     Column,
     Source,
     Table,
+    lost,
     of_key,
     of_result,
     place_text,
@@ -24,12 +24,12 @@ __all__ = ["PROBES"]
 def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """Yield the result of each probe.
 
-    A failed cell has a result for each of its probes, with the outcome `error` and the reason. A
-    cell without probes has a single result about its expectations.
+    A failed cell has a result for each of its probes, with the reason (see `lost`). A cell
+    without probes has a single result about its expectations.
     """
     if found["error"] is not None:
         for probe in cell["probes"] or [{}]:
-            yield {**probe, "outcome": FAILED, "why_not": found["error"]}
+            yield {**probe, **lost(found, is_judged=bool(probe.get("expected")))}
     elif found["probes"]:
         yield from found["probes"]
     else:
@@ -129,6 +129,7 @@ PROBES = Table(
         # Minecraft time of the probe's program.
         Column("seconds", "float64", of_result("seconds")),
         Column("attempts", "int64", of_result("attempts")),
+        Column("asked_again", "int64", of_result("asked_again")),
         Column("tokens", "int64", of_result("usage", _tokens), shown=True),
         Column("cost", "float64", of_result("usage", _cost)),
         Column("program", "string", of_result("program")),

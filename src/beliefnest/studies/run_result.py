@@ -62,8 +62,20 @@ class RunResult:
             rows += PROBES.rows_of(cell, {"error": None, **run, "run": ""}, ())
         for number, failure in enumerate(self.report.get("failures", []), 1):
             cell = self._cell(f"failure-{number}", failure)
-            rows += PROBES.rows_of(cell, {"error": failure["error"]}, ())
+            # Runs of earlier versions have no outcome.
+            there = failure.get("outcome") != "error"
+            kind = "ModelError" if there else "UnavailableModelError"
+            found = {"error": failure["error"], "kind": kind}
+            rows += PROBES.rows_of({**cell, "probes": self._probes}, found, ())
         return rows
+
+    @property
+    def _probes(self) -> list[Mapping[str, Any]]:
+        """Return the probes of conditions without a result: those of a condition with one."""
+        known = self.report["runs"][:1]
+        keys = ("label", "path", "acts_in", "agent", "task", "expected")
+        probes = known[0]["probes"] if known else [{"expected": {"unknown": True}}]
+        return [{key: probe[key] for key in keys if key in probe} for probe in probes]
 
     def _cell(self, name: str, run: Mapping[str, Any]) -> dict[str, Any]:
         key = {

@@ -81,6 +81,8 @@ class Study:
         world: Name of the world; None: `embedded`, or `scripted` for tasks.
         attempts: Greatest number of requests to a model for one probe.
         temperature: Sampling temperature; None: the provider's default.
+        retry_unread: Number of times that a model is asked again, with the form of an answer said
+            once more, after an answer that cannot be read.
         max_tokens: Token limit of the whole study; None: no limit. The default does not count
             free models.
         max_cost: Cost limit of the whole study in US dollars; None: no limit.
@@ -125,6 +127,7 @@ class Study:
         world: str | None = None,
         attempts: int = 3,
         temperature: float | None = 0.0,
+        retry_unread: int = 0,
         max_tokens: int | None = 1_000_000,
         max_cost: float | None = 5.0,
         claims_from: str | None = None,
@@ -151,6 +154,7 @@ class Study:
             world=world,
             attempts=attempts,
             temperature=temperature,
+            retry_unread=retry_unread,
             max_tokens=max_tokens,
             max_cost=max_cost,
             claims_from=claims_from,

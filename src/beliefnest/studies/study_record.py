@@ -98,6 +98,12 @@ class StudyRecord:
         """Return the results of all rows."""
         return self if self.kept is None else replace(self, kept=None)
 
+    @cached_property
+    def failed(self) -> dict[str, str]:
+        """Reasons of tried cells without a result, by name; they are tried again."""
+        found = {cell["name"]: self.folder.cell(cell["name"]) for cell in self._plan["cells"]}
+        return {n: each["error"] for n, each in found.items() if each and each["error"] is not None}
+
     @property
     def invalid(self) -> list[dict[str, Any]]:
         """Combinations that make no scenario, and why."""

@@ -11,11 +11,11 @@ from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.study_folder import StudyFolder
 
 __all__ = [
-    "FAILED",
     "Column",
     "Kind",
     "Source",
     "Table",
+    "lost",
     "of_key",
     "of_result",
     "place_text",
@@ -23,9 +23,13 @@ __all__ = [
     "variation_columns",
 ]
 
-FAILED = "error"
-"""Outcome of rows without a result."""
-assert FAILED in OUTCOMES
+_FAILED = "error"
+_NO_ANSWER = "no_answer"
+assert {_FAILED, _NO_ANSWER} <= set(OUTCOMES)
+
+_NOT_ASKED = "UnavailableModelError"
+_NO_ANSWER_KINDS = ("ModelError", "TransientModelError", "UnusableAnswerError")
+"""Kinds of errors of cells whose model gave no answer."""
 
 Kind = Literal["string", "int64", "float64", "bool"]
 """Type of a column in data frames and Parquet files."""
@@ -147,6 +151,25 @@ class Table:
                 **{name: plain_value(variation.get(name)) for name in varied},
                 **{column.name: column.read(source) for column in self.columns},
             }
+
+
+def lost(found: Mapping[str, Any], *, is_judged: bool) -> dict[str, Any]:
+    """Return what the rows of a cell without a result hold.
+
+    No rate leaves out a cell in which a model was asked, or a world failed.
+
+    Args:
+        found: Content of the cell's file, with `error`; without `kind`, the cell was not played.
+        is_judged: True if there is an expectation, which then is not met.
+    """
+    kind = found.get("kind")
+    # Nobody was asked in a cell that was not played, or whose model is not there.
+    asked = kind not in (None, _NOT_ASKED)
+    return {
+        "ok": False if asked and is_judged else None,
+        "outcome": _NO_ANSWER if kind in _NO_ANSWER_KINDS else _FAILED,
+        "why_not": found["error"],
+    }
 
 
 def of_key(name: str) -> Callable[[Source], Any]:

@@ -83,7 +83,7 @@ class Worker:
             connection.budget.check(is_free=is_free(key.model, environment))
         model = open_model(key.model, environment, connection)
         sampling = settings.sampling(Sampling(key.setting["temperature"], key.seed))
-        asking = Asking(key.setting["attempts"], sampling, settings, keeps_unanswered=True)
+        asking = Asking(key.setting["attempts"], sampling, settings)
         store = terms.store(key.name)
         reader = key.setting.get("claims_from")
         claims_from = None

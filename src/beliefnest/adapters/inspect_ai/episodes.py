@@ -15,7 +15,12 @@ from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
-from beliefnest.adapters.inspect_ai.task_parts import messages_of, score_of, several_files
+from beliefnest.adapters.inspect_ai.task_parts import (
+    finish_of,
+    messages_of,
+    score_of,
+    several_files,
+)
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.model import ModelPolicy, OmniscientModelPolicy
 from beliefnest.episodes.task import Task as Played
@@ -119,7 +124,7 @@ class _Asked:
         usage = Usage(requests=1, cost=None)
         if used is not None:
             usage += Usage(0, used.input_tokens, used.output_tokens)
-        return Answer(output.completion, usage)
+        return Answer(output.completion, usage, finish=finish_of(output))
 
 
 @solver

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from beliefnest.llm.messages import Answer, Message, Sampling
+from beliefnest.llm.messages import Answer, Finish, Message, Sampling
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected_answers import Answers
@@ -18,7 +18,7 @@ from beliefnest.worlds.by_name import Worlds
 
 __all__ = ["JudgedOutcome", "Stage", "requests_of"]
 
-_ONCE = Asking(attempts=1, keeps_unanswered=True)
+_ONCE = Asking(attempts=1)
 
 
 def requests_of(scenario: Scenario) -> list[Probe]:
@@ -55,13 +55,14 @@ class _Listener:
     """Model that records its requests and always gives the same answer."""
 
     text: str
+    finish: Finish = "stop"
     name: str = "inspect"
     asked: list[tuple[Message, ...]] = field(default_factory=list)
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
         """Record the request and return the fixed answer."""
         self.asked.append(tuple(messages))
-        return Answer(self.text)
+        return Answer(self.text, finish=self.finish)
 
 
 class Stage:
@@ -85,13 +86,15 @@ class Stage:
         self._run(sample, listener)
         return listener.asked[0]
 
-    def judged(self, sample: Mapping[str, Any], answer: str) -> JudgedOutcome:
+    def judged(
+        self, sample: Mapping[str, Any], answer: str, finish: Finish = "stop"
+    ) -> JudgedOutcome:
         """Judge an answer: run its program in the belief, or compare its words.
 
         Raises:
             BeliefNestError: The scenario cannot be played.
         """
-        return self._run(sample, _Listener(answer))
+        return self._run(sample, _Listener(answer, finish))
 
     def _run(self, sample: Mapping[str, Any], listener: _Listener) -> JudgedOutcome:
         variation, number = Variation(sample["variation"]), sample["request"]

@@ -9,9 +9,9 @@ from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import TaskState
 
 from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
-from beliefnest.adapters.inspect_ai.task_parts import score_of, several_files, task_of
+from beliefnest.adapters.inspect_ai.task_parts import finish_of, score_of, several_files, task_of
 from beliefnest.errors import InputError
-from beliefnest.scenarios.questioning import parse_answer
+from beliefnest.llm.reading_answers import read_answer
 from beliefnest.studies.cells import variation_id
 from beliefnest.suites.stories.data import Item, StoryItems, read_items
 from beliefnest.suites.stories.explaining import explain_answer
@@ -93,9 +93,21 @@ def story_answer() -> Scorer:
     """Score an answer by the expected container; explain the belief of the nest."""
 
     async def score(state: TaskState, target: Target) -> Score:
-        answer, _ = parse_answer(state.output.completion, state.metadata["options"])
+        reading = read_answer(
+            state.output.completion, state.metadata["options"], finish_of(state.output)
+        )
+        ok = reading.option == target.text
+        outcome = reading.row_outcome
+        if outcome == "read":
+            outcome = "ok" if ok else "wrong"
         lines = await run_sync(_explanation, dict(state.metadata))
-        return score_of(ok=answer == target.text, answer=answer, lines=lines)
+        told = [f"{outcome}: {reading.reason}"] if reading.reason else [outcome]
+        return score_of(
+            ok=ok,
+            answer=reading.option,
+            lines=[*told, "", *lines],
+            metadata={"outcome": outcome},
+        )
 
     return score
 

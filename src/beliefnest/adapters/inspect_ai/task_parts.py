@@ -10,14 +10,15 @@ from inspect_ai.model import (
     ChatMessageAssistant,
     ChatMessageSystem,
     ChatMessageUser,
+    ModelOutput,
 )
 from inspect_ai.scorer import CORRECT, INCORRECT, Score, Scorer
 from inspect_ai.solver import Solver, generate
 
 from beliefnest.errors import InputError
-from beliefnest.llm.messages import Message
+from beliefnest.llm.messages import Finish, Message
 
-__all__ = ["messages_of", "score_of", "several_files", "task_of"]
+__all__ = ["finish_of", "messages_of", "score_of", "several_files", "task_of"]
 
 
 def task_of(name: str, samples: list[Sample], scorer: Scorer, *before: Solver) -> Task:
@@ -56,6 +57,17 @@ def score_of(
         explanation="\n".join(lines),
         metadata=metadata,
     )
+
+
+def finish_of(output: ModelOutput) -> Finish:
+    """Return the reason for the end of an answer."""
+    match output.stop_reason:
+        case "max_tokens" | "model_length":
+            return "length"
+        case "content_filter":
+            return "content_filter"
+        case _:
+            return "stop"
 
 
 def messages_of(messages: Sequence[Message]) -> list[ChatMessage]:

@@ -12,6 +12,7 @@ from inspect_ai.solver import Generate, Solver, TaskState, solver
 from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
 from beliefnest.adapters.inspect_ai.samples import Stage, requests_of
 from beliefnest.adapters.inspect_ai.task_parts import (
+    finish_of,
     messages_of,
     score_of,
     several_files,
@@ -121,7 +122,8 @@ def in_the_belief() -> Scorer:
     stage = Stage()
 
     async def score(state: TaskState, target: Target) -> Score:
-        judged = await run_sync(stage.judged, state.metadata, state.output.completion)
+        answer, finish = state.output.completion, finish_of(state.output)
+        judged = await run_sync(stage.judged, state.metadata, answer, finish)
         outcome = judged.outcome
         told = probe_json(outcome, "")
         lines = [f"{outcome.outcome}: {outcome.why_not}" if outcome.why_not else outcome.outcome]

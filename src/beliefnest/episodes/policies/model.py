@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from importlib.resources import files
 
 from beliefnest.episodes.agent_view import AgentView
-from beliefnest.llm.asking import ask_for_program
+from beliefnest.llm.asking import Round, ask_for_program, asked_again
 from beliefnest.llm.messages import Model, Sampling
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.prompts import built_in_template
@@ -27,12 +27,14 @@ class ModelPolicy:
         order: Order of Theory of Mind.
         attempts: Greatest number of requests in a round; answers without a program are sent back.
         settings: Settings of requests.
+        asked_again: Number of answers without a program after which the model was asked again.
     """
 
     model: Model
     order: int
     attempts: int = 2
     settings: ModelSettings = field(default_factory=ModelSettings)
+    asked_again: int = 0
 
     def act(self, view: AgentView) -> str:
         """Return the program that the model answers with.
@@ -47,15 +49,24 @@ class ModelPolicy:
         if system is None:
             template = built_in_template("instructions").text
             system = view.render(template, skills=skills_at(settings.skills))
-        answer = ask_for_program(
+        rounds: list[Round] = []
+        try:
+            return self._ask(view, prompt, system, rounds)
+        finally:
+            self.asked_again += asked_again(rounds)
+
+    def _ask(self, view: AgentView, prompt: str, system: str, rounds: list[Round]) -> str:
+        settings = self.settings
+        return ask_for_program(
             view.noting(self.model),
             prompt,
             lambda _: None,
             self.attempts,
             system=system,
             sampling=settings.sampling(Sampling(seed=view.brief.seed)),
-        )
-        return answer.program
+            retry_unread=settings.retry_unread,
+            on_round=rounds.append,
+        ).program
 
     def prompt(self, view: AgentView) -> str:
         """Return the prompt of a round."""

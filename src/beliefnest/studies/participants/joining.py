@@ -7,6 +7,7 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.content import Probe
+from beliefnest.scenarios.expected import Judgement
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.judging import outcome_of
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply
@@ -172,7 +173,7 @@ def joined(
             item, by = known[cell]
             outcomes = _outcomes(item, by, given)
             found.answers += [
-                (given[question.id], _judge(by, question).judge(_said(given[question.id])).ok)
+                (given[question.id], _judged(_judge(by, question), given[question.id]).ok)
                 for question in item.questions
                 if question.id in given
             ]
@@ -214,8 +215,15 @@ def _judge(by: Judged, question: Question) -> Answers:
     return by.probes[question.probe].questions[place]
 
 
-def _said(answer: Answer) -> str | None:
-    return answer.response or None
+def _judged(asked: Answers, answer: Answer) -> Judgement:
+    return asked.judge(_reply(asked, answer))
+
+
+def _reply(asked: Answers, answer: Answer) -> Reply:
+    """Return the answer of a participant in the form of a model's."""
+    said = answer.response or None
+    outcome = "no_answer" if said is None else "read"
+    return Reply(asked.question, answer.options, "", answer.response, said, answer.reason, outcome)
 
 
 def _outcomes(item: Item, by: Judged, given: Mapping[str, Answer]) -> list[ProbeOutcome]:
@@ -231,11 +239,8 @@ def _outcomes(item: Item, by: Judged, given: Mapping[str, Answer]) -> list[Probe
 
 
 def _outcome(probe: Probe, pairs: Sequence[tuple[Answers, Answer]]) -> ProbeOutcome:
-    verdicts = tuple(asked.judge(_said(answer)) for asked, answer in pairs)
-    replies = tuple(
-        Reply(asked.question, answer.options, "", answer.response, _said(answer), answer.reason)
-        for asked, answer in pairs
-    )
+    replies = tuple(_reply(asked, answer) for asked, answer in pairs)
+    verdicts = tuple(asked.judge(reply) for (asked, _), reply in zip(pairs, replies, strict=True))
     return ProbeOutcome(probe, verdicts, outcome_of(verdicts, None), Usage(), replies=replies)
 
 
