@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from beliefnest.errors import InputError
-from beliefnest.llm.failures import UnavailableModelError, UnusableAnswerError
+from beliefnest.llm.failures import LimitReachedError, UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
 __all__ = ["MeteredModel", "RunLimits", "RunSpending", "tokens_of_free"]
@@ -60,13 +60,13 @@ class RunSpending:
         tokens, cost = self.limits.tokens, self.limits.cost
         used = self.spent.tokens - (self.free if tokens == _TOKENS else 0)
         if tokens is not None and used >= tokens:
-            raise UnavailableModelError(
+            raise LimitReachedError(
                 f"the run has used {used:,} tokens and may use {tokens:,}; "
                 "raise the limit to go on: --max-tokens, or max_tokens of a study"
             )
         paid = self.spent.cost or 0.0
         if cost is not None and (paid > cost or (paid == cost and not is_free)):
-            raise UnavailableModelError(
+            raise LimitReachedError(
                 f"the run has cost {paid:.2f} US dollars and may cost {cost:.2f}; "
                 "raise the limit to go on: --max-cost, or max_cost of a study"
             )

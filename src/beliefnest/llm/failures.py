@@ -4,7 +4,13 @@ from beliefnest.errors import ModelError
 from beliefnest.llm.messages import Usage
 from beliefnest.world.texts import on_one_line
 
-__all__ = ["TransientModelError", "UnavailableModelError", "UnusableAnswerError", "excerpt"]
+__all__ = [
+    "LimitReachedError",
+    "TransientModelError",
+    "UnavailableModelError",
+    "UnusableAnswerError",
+    "excerpt",
+]
 
 _LONGEST_EXCERPT = 300
 
@@ -26,6 +32,10 @@ class UnavailableModelError(ModelError):
 
     Whoever asks many questions stops at the first of these.
     """
+
+
+class LimitReachedError(ModelError):
+    """A limit of the whole run is reached, so that no model is asked any more."""
 
 
 class UnusableAnswerError(ModelError):

@@ -27,7 +27,8 @@ _FAILED = "error"
 _NO_ANSWER = "no_answer"
 assert {_FAILED, _NO_ANSWER} <= set(OUTCOMES)
 
-_NOT_ASKED = "UnavailableModelError"
+_NOT_ASKED = ("UnavailableModelError", "LimitReachedError")
+"""Kinds of errors of cells whose model was not asked."""
 _NO_ANSWER_KINDS = ("ModelError", "TransientModelError", "UnusableAnswerError")
 """Kinds of errors of cells whose model gave no answer."""
 
@@ -164,7 +165,7 @@ def lost(found: Mapping[str, Any], *, is_judged: bool) -> dict[str, Any]:
     """
     kind = found.get("kind")
     # Nobody was asked in a cell that was not played, or whose model is not there.
-    asked = kind not in (None, _NOT_ASKED)
+    asked = kind is not None and kind not in _NOT_ASKED
     return {
         "ok": False if asked and is_judged else None,
         "outcome": _NO_ANSWER if kind in _NO_ANSWER_KINDS else _FAILED,
