@@ -11,7 +11,7 @@ from beliefnest.cli.folder import stores_in
 from beliefnest.cli.terminal_text import say
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.replay import ReplayedTimeline, replay
-from beliefnest.nest.past.setting_codec import decode_start
+from beliefnest.nest.past.recording import read_start
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
 from beliefnest.world.words import counted
@@ -50,7 +50,7 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
 def _replayed(store: Path, worlds: Worlds) -> Iterator[ReplayedTimeline]:
     with SqliteJournal.read(store) as journal, journal.unchanging():
         run = journal.records.run()
-        setting, name = decode_start(run.setting)
+        setting, name = read_start(journal)
         programs = journal.records.programs()
         if name == "scripted" and not programs:
             raise InputError(

@@ -93,8 +93,8 @@ class Bounds:
                 claim.check(self.box, self.agents)
             if "block" in detail:
                 self.registry.state_id(detail["block"])
-        except BeliefNestError as fault:
-            raise StoreError(f"the entry of tick {tick} cannot be: {fault}") from fault
+        except BeliefNestError as error:
+            raise StoreError(f"the entry of tick {tick} cannot be: {error}") from error
         place: Position | None = detail.get("position")
         fault = None
         if place is not None and event.kind in AT_CONTAINERS:

@@ -24,9 +24,10 @@ from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, Timelin
 from beliefnest.timeline.run_records import Records, RunJournal
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
 
-__all__ = ["Recording", "read_recording"]
+__all__ = ["Recording", "read_recording", "read_start"]
 
 
 class Recording(Barred):
@@ -188,6 +189,18 @@ class Recording(Barred):
             self.journal.close()
 
 
+def read_start(journal: SqliteJournal) -> tuple[Setting, str]:
+    """Return the setting of a run file, and the name of its world; bound what is read after it.
+
+    Raises:
+        StoreError: The file cannot be read, or the run was stopped before it had begun.
+    """
+    setting, world = decode_start(journal.records.run().setting)
+    agents = frozenset({*setting.snapshot.agents, *setting.absent})
+    journal.keep_within(Bounds(setting.snapshot.box, agents, Registry.load()))
+    return setting, world
+
+
 def read_recording(
     journal: SqliteJournal, renderer: Renderer | None = None
 ) -> tuple[Recording, str]:
@@ -200,11 +213,8 @@ def read_recording(
     Raises:
         StoreError: The file cannot be read, or the run was stopped before it had begun.
     """
-    run = journal.records.run()
-    setting, world = decode_start(run.setting)
-    recording = Recording(setting, journal, run.seed, renderer, world)
-    context = recording.context
-    journal.keep_within(Bounds(context.box, frozenset(context.agents), context.registry))
+    setting, world = read_start(journal)
+    recording = Recording(setting, journal, journal.records.run().seed, renderer, world)
     recording.selected = {
         path: journal.info(TimelineKey(path, branch)).key
         for path, branch in journal.records.selected().items()

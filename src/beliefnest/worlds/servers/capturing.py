@@ -111,8 +111,8 @@ def capture_file(data: bytes, corner: Position, unknown: Unknown = "refuse") -> 
     told = _asked(channel, "read_place", bytes=data, cut=node_messages.CUT)
     try:
         place = msgspec.convert(told, _Place)
-    except msgspec.ValidationError as fault:
-        raise InputError(f"the file is damaged: {shortened(str(fault))}") from None
+    except msgspec.ValidationError as error:
+        raise InputError(f"the file is damaged: {shortened(str(error))}") from None
     high = tuple(low + side - 1 for low, side in zip(corner, place.shape, strict=True))
     box = Box(corner, (high[0], high[1], high[2]))
     if fault := box_fault(box):
