@@ -97,7 +97,7 @@ def _value(  # noqa: PLR0911
         case ast.Name(id=name):
             if name not in values:
                 raise InputError(
-                    f"{quoted(text)} names {quoted(name)}; there are {', '.join(values)}"
+                    f"{quoted(text)} names {quoted(name)}; declared: {', '.join(values) or 'none'}"
                 )
             return values[name]
         case ast.List(elts=parts) | ast.Tuple(elts=parts):

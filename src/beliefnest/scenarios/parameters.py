@@ -2,13 +2,15 @@
 
 `${name}`, or `${expression of names}`, may be in any value or key of a scenario file. If it is the
 complete value, the parameter's value of any type replaces it. Inside a text, the value is written
-out, lists with commas, so that `new Vec3(${spot})` is a position.
+out, lists with commas, so that `new Vec3(${spot})` is a position. The value of a parameter may name
+other parameters in the same way.
 """
 
 import json
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -171,14 +173,54 @@ def with_parameters(
     declared = declared_in(document, condition)
     check_declared(document, declared, given)
     if not declared:
+        # A `${...}` that names nothing is refused here too; it would be shown to people.
+        _Filling(document, {}).node(document.root, ())
         return document
-    values = {name: given.get(name, entry.default) for name, entry in declared.items()}
+    values = _resolved(
+        document, {name: given.get(name, entry.default) for name, entry in declared.items()}
+    )
     broken = broken_constraint(document, values, condition)
     if broken is not None:
         chosen = ", ".join(f"{name} {json.dumps(value)}" for name, value in values.items())
         raise document.fault(("constraints",), f"{quoted(broken)} does not hold for {chosen}")
     root = _Filling(document, values).node(_without_declarations(document.root), ())
     return replace(document, root=root)
+
+
+def _resolved(document: Document, values: Mapping[str, object]) -> dict[str, object]:
+    """Return the values of parameters after replacement of `${...}` in them.
+
+    Raises:
+        ScenarioError: A parameter's value contains itself, by way of others or not.
+    """
+    resolved: dict[str, object] = {}
+
+    def resolve(name: str, within: tuple[str, ...]) -> None:
+        if name in resolved:
+            return
+        if name in within:
+            chain = " in ".join(map(quoted, (name, *reversed(within[within.index(name) :]))))
+            raise document.fault(("parameters", name), f"contains itself: {chain}")
+        value = wrapped(values[name])
+        for inner in sorted(_names_within(value) & values.keys()):
+            resolve(inner, (*within, name))
+        filling = _Filling(document, resolved, in_value=True)
+        resolved[name] = plain(filling.node(value, ("parameters", name)))
+
+    for name in values:
+        resolve(name, ())
+    return {name: resolved[name] for name in values}
+
+
+def _names_within(node: YamlNode) -> frozenset[str]:
+    """Return the names in all `${...}` of a value."""
+    found: set[str] = set()
+    texts = [part.value for part in (node, *_parts(node)) if isinstance(part.value, str)]
+    for text in texts:
+        for hole in _HOLE.finditer(text):
+            with suppress(InputError):
+                found |= names_in(hole[1])
+    return frozenset(found)
 
 
 def _check_instances(document: Document, condition: int | None) -> None:
@@ -208,11 +250,20 @@ def _without_declarations(root: YamlNode) -> YamlNode:
 
 
 class _Filling:
-    """Filler that replaces `${...}` by values."""
+    """Filler that replaces `${...}` by values.
 
-    def __init__(self, document: Document, values: Mapping[str, object]) -> None:
+    Args:
+        document: The document, for messages.
+        values: Values by name.
+        in_value: True: a `${...}` that names no parameter stays, as in a program.
+    """
+
+    def __init__(
+        self, document: Document, values: Mapping[str, object], *, in_value: bool = False
+    ) -> None:
         self._document = document
         self._values = values
+        self._in_value = in_value
         self._count = self._characters = 0
 
     def node(self, node: YamlNode, path: KeyPath) -> YamlNode:
@@ -251,6 +302,9 @@ class _Filling:
         if found is None:
             return node
         value = _on_line(wrapped(found[0]), node.line)
+        for part in (value, *_parts(value)):
+            if isinstance(part.value, str):
+                self._check_whole(part.value, path)
         for part in _parts(value):
             self._check_size(part, path)
         return value
@@ -263,11 +317,26 @@ class _Filling:
             found = self._found(hole, path)
             return hole[0] if found is None else _written(found[0])
 
-        return _HOLE.sub(written, text)
+        filled = _HOLE.sub(written, text)
+        self._check_whole(filled, path)
+        return filled
+
+    def _check_whole(self, text: str, path: KeyPath) -> None:
+        """Refuse a text that would be shown with a `${...}` of a parameter's value in it."""
+        if self._is_program(path) or (left := _HOLE.search(text)) is None:
+            return
+        raise self._document.fault(
+            path,
+            f"would hold {quoted(left[0])} from a parameter's value; name a declared parameter",
+        )
+
+    def _is_program(self, path: KeyPath) -> bool:
+        """Return True if a `${...}` there may belong to JavaScript."""
+        return self._in_value or any(key in _PROGRAMS for key in path)
 
     def _found(self, hole: re.Match[str], path: KeyPath) -> tuple[object] | None:
         """Return the value of a hole in a tuple; None: it belongs to JavaScript."""
-        own = any(key in _PROGRAMS for key in path)
+        own = self._is_program(path)
         try:
             names = names_in(hole[1])
         except InputError:
