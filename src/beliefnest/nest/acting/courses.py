@@ -307,7 +307,7 @@ class Course:
 
     @property
     def _ground(self) -> Ground:
-        return self.plan.grounds.of(self.world.box, self.world.terrain).ground
+        return self.plan.grounds.of(self.world.box, self.world.terrain)
 
     def _walk(self, walker: Walker, now: int) -> None:
         if walker.is_over or (now - self.start) % walker.strategy.step_ticks:
