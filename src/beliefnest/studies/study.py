@@ -33,6 +33,7 @@ from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
 from beliefnest.studies.inputs import Inputs
 from beliefnest.studies.jobs import OnStudyProgress, StudyProgress, run_cells
+from beliefnest.studies.list_balance import with_balanced_lists
 from beliefnest.studies.participants.playing import OnItem
 from beliefnest.studies.participants.running import (
     Page,
@@ -217,7 +218,10 @@ class Study:
         if self._plan is None:
             design = self._design
             if isinstance(design, Design):
-                self._plan = _told_apart(plan_cells(design, self._documents), self._table)
+                plan = plan_cells(design, self._documents)
+                if design.design == "latin-square":
+                    plan = with_balanced_lists(plan)
+                self._plan = _told_apart(plan, self._table)
             else:
                 self._plan = _told_apart(plan_episodes(design), self._table)
         return self._plan
