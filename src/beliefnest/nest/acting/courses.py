@@ -17,15 +17,19 @@ from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import InputError, WorldError
 from beliefnest.minds.walking import Act, Changes, Draw, Open, Step, Strategy, Walker
 from beliefnest.nest.past.percepts import Deed, Percept, deed_of
-from beliefnest.world.event_kinds import AT_CONTAINERS
+from beliefnest.timeline.journal import Edit, Entry
+from beliefnest.world.event_kinds import AT_CONTAINERS, EventKind
 from beliefnest.world.frames import Frame, Snapshot
+from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import plain_state
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Items, Point, Position
 from beliefnest.worlds.protocol import Fault, RunRules
+from beliefnest.worlds.scripted.circuit import may_be_of_power
 from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.ground_cache import Grounds
+from beliefnest.worlds.scripted.powered import switches_in
 from beliefnest.worlds.scripted.programs import RunningPrograms
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -33,6 +37,17 @@ __all__ = ["Candidate", "Course", "CoursePlan", "Glimpse", "PolicyProgram", "See
 
 PolicyProgram = Callable[["Course", str], str]
 """Function that returns the next program of an agent in a course; empty: nothing more."""
+
+_AT_BLOCKS = frozenset(
+    {
+        EventKind.MINE_BLOCK,
+        EventKind.PLACE_BLOCK,
+        EventKind.USE_DOOR,
+        EventKind.USE_LEVER,
+        EventKind.PRESS_BUTTON,
+    }
+)
+"""Kinds of deeds that move blocks."""
 
 Seeds = tuple[tuple[int, str], ...]
 """Seeds, each with the tick from which it is used."""
@@ -139,7 +154,7 @@ class Course:
         seeds: Seeds with their first ticks.
 
     Attributes:
-        frames: Frames so far, without quiet ticks.
+        entries: What has happened so far, without quiet ticks.
         touched: Containers whose contents changed.
         contradiction: Perceived action of another agent that is impossible here; None: none.
         faults: Reasons of failed programs, by agent.
@@ -158,7 +173,7 @@ class Course:
     ) -> None:
         self.plan, self.drawn, self.candidates, self.draws = plan, drawn, candidates, draws
         self.seeds = seeds
-        self.frames: list[Frame] = []
+        self.entries: list[Entry] = []
         self.touched: frozenset[Position] = frozenset()
         self.contradiction: str | None = None
         self.shared_from = 0
@@ -201,7 +216,7 @@ class Course:
         other = Course.__new__(Course)
         other.__dict__.update(self.__dict__)
         other.seeds = seeds
-        other.frames, other.faults = list(self.frames), dict(self.faults)
+        other.entries, other.faults = list(self.entries), dict(self.faults)
         other._changed_blocks, other._moved = dict(self._changed_blocks), dict(self._moved)
         other._walkers = [walker.again() for walker in self._walkers]
         other._programs = {}
@@ -240,6 +255,8 @@ class Course:
                 programs.act()
         if self._programs:
             self._settle()
+        for edit in () if done is None else done.edits:
+            self._edit(edit)
         return self._glimpse()
 
     def glimpse(self) -> Glimpse:
@@ -368,18 +385,59 @@ class Course:
             state = self.world.agent(name)
             if (state.position, state.yaw, state.pitch) != (feet, yaw, pitch):
                 self.world.place_agent(name, feet, yaw=yaw, pitch=pitch)
+        used = {place for event in now.events for place in _moved_by(event)}
+        # Out of sight, an agent in question may have made any change.
+        is_all_seen = now.agents.keys() >= set(self.plan.agents)
         for event in now.events:
-            if event.actor is not None and event.actor not in self.plan.agents:
-                self._do_event(event)
+            if event.actor in self.plan.agents:
+                continue
+            if event.kind is EventKind.BLOCK_UPDATE:
+                if _place(event.detail) in used or not (event.actor or is_all_seen):
+                    continue
+                if event.actor is None and self._is_of_circuit(event):
+                    continue
+            elif event.actor is None:
+                continue
+            self._do_event(event)
+
+    def _is_of_circuit(self, event: PerceivedEvent) -> bool:
+        """Return True if a change is one that power makes; the course's own circuits make it."""
+        world, registry = self.world, Registry.load()
+        if not switches_in(world.box, world.terrain):
+            return False
+        before = world.terrain[world.box.index(_place(event.detail))]
+        return may_be_of_power(registry, before, registry.state_id(event.detail["block"]))
 
     def _do_event(self, event: PerceivedEvent) -> None:
-        name = event.actor or ""
-        if name not in self.world.agents:
+        name = event.actor
+        if name is not None and name not in self.world.agents:
             return
         try:
             self.world.repeat(name, event.kind, event.detail)
         except WorldError as fault:
-            self.contradiction = f"{name} was seen to {event.kind}, but {fault}"
+            self.contradiction = f"{name or 'somebody'} was seen to {event.kind}, but {fault}"
+
+    def _edit(self, edit: Edit) -> None:
+        """Change the world as it was changed by hand."""
+        world = self.world
+        box, blocks = world.box, world.terrain.draft()
+        held = {place: dict(items) for place, items in world.containers.items()}
+        for place, block in edit.blocks.items():
+            state = max(AIR, plain_state(block))
+            blocks[box.index(place)] = self._changed_blocks[box.index(place)] = state
+            if Registry.load().is_container(Registry.load().name(state)):
+                held.setdefault(place, {})
+            else:
+                held.pop(place, None)
+        held |= {place: dict(items) for place, items in edit.containers.items()}
+        for place in held.keys() | world.containers.keys():
+            before, after = world.containers.get(place, {}), held.get(place, {})
+            for item in before.keys() | after.keys():
+                self._note_moved(place, item, after.get(item, 0) - before.get(item, 0))
+        self.touched = self.touched | edit.containers.keys()
+        world.set_state(replace(world.snapshot(), blocks=blocks.terrain(), containers=held))
+        self.entries.append(edit)
+        self._note_changes()
 
     # Record of what happened
 
@@ -387,7 +445,7 @@ class Course:
         self._latest = frame
         if frame.is_empty:
             return
-        self.frames.append(frame)
+        self.entries.append(frame)
         if not (frame.blocks or frame.containers):
             return
         box = self.world.box
@@ -397,9 +455,14 @@ class Course:
             if sign := event.kind.traits.stores:
                 place = _place(event.detail)
                 for item, count in event.detail["items"].items():
-                    key = (place, item)
-                    self._moved[key] = self._moved.get(key, 0) + sign * count
+                    self._note_moved(place, item, sign * count)
         self.touched = self.touched | frame.containers.keys()
+        self._note_changes()
+
+    def _note_moved(self, place: Position, item: str, count: int) -> None:
+        self._moved[place, item] = self._moved.get((place, item), 0) + count
+
+    def _note_changes(self) -> None:
         self._changes = Changes(
             tuple(sorted(self._changed_blocks.items())),
             tuple(sorted((*key, count) for key, count in self._moved.items() if count)),
@@ -418,6 +481,14 @@ class Course:
         is_new = frame is None or not frame.is_empty
         containers = dict(world.containers)
         return Glimpse(world.now, world.terrain, world.agents, containers, deeds, is_new)
+
+
+def _moved_by(event: PerceivedEvent) -> tuple[Position, ...]:
+    """Return the places of blocks that a deed moves: that of its block, and of a door's half."""
+    if event.kind not in _AT_BLOCKS:
+        return ()
+    x, y, z = _place(event.detail)
+    return (x, y, z), (x, y + 1, z)
 
 
 def _place(detail: Mapping[str, Any]) -> Position:

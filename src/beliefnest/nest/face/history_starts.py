@@ -69,7 +69,7 @@ class Starts:
             entries.append(Frame(tick, agents=agents))
         if blocks or contents:
             entries.append(Edit(tick, self.path, blocks, contents))
-        return [*entries, *course.frames]
+        return [*entries, *course.entries]
 
     def _edits(
         self, drawn: tuple[int, ...]

@@ -1,7 +1,7 @@
 """Course of an agent as an observer perceived it, read from one node and its timeline."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent
@@ -118,6 +118,9 @@ class Reading:
         paths = [question.path]
         if recording.context.options.testimony != "none":
             paths.append(self._agent_path)
+        told: tuple[int, ...] = ()
+        if start and self.moments and self.moments[0].tick == tick:
+            told = self._begin_again()
         self._forest = recording.history.walk(key, paths)
         recording.history.advance(key, self._forest, start)
         self._key, self._position = key, start
@@ -125,6 +128,26 @@ class Reading:
         first = recording.journal.entries_until(key, tick - 1) if start else 0
         before = recording.journal.events_until(key, first) if start else 0
         self._take(tick, claims, before)
+        if told:
+            self.moments[0] = replace(self.moments[0], claims=told + self.moments[0].claims)
+
+    def _begin_again(self) -> tuple[int, ...]:
+        """Drop what was read of the first tick: a branch begins there, and was edited there.
+
+        Returns:
+            The claims that the agent took up in that tick before the edit, as in `Moment`.
+        """
+        told = tuple(mask for moment in self.moments for mask in moment.claims)
+        question, context = self.question, self.recording.context
+        self._overlay = Overlay(
+            question.alternatives,
+            context.registry,
+            context.box,
+            self.recording.agents,
+            question.agent,
+        )
+        self.moments, self._agrees = [], -1
+        return told
 
     @property
     def _agent_path(self) -> BeliefPath:

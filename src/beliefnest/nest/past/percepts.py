@@ -8,7 +8,7 @@ percept before still holds.
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import ForkPoint
+from beliefnest.timeline.journal import Edit, ForkPoint
 from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
@@ -46,6 +46,7 @@ class Percept:
         items: Names and cells of the dropped items that it saw, with their numbers.
         deeds: Actions at containers that it saw in this very tick.
         events: All events that it perceived in this very tick.
+        edits: Changes of the node by hand after this very tick.
     """
 
     tick: int
@@ -58,11 +59,13 @@ class Percept:
     items: Mapping[tuple[str, Position], int]
     deeds: tuple[Deed, ...]
     events: tuple[PerceivedEvent, ...]
+    edits: tuple[Edit, ...] = ()
 
     def is_new_after(self, before: "Percept") -> bool:
         """Return True if it differs from the percept before, or has events."""
         return bool(
             self.events
+            or self.edits
             or self.present != before.present
             or self.known != before.known
             or not np.array_equal(self.cells, before.cells)
@@ -70,6 +73,15 @@ class Percept:
             or self.contents != before.contents
             or self.agents != before.agents
             or self.items != before.items
+        )
+
+    def following(self, before: "Percept") -> "Percept":
+        """Return the percept with what happened earlier in the same tick."""
+        return replace(
+            self,
+            deeds=tuple(sorted((*before.deeds, *self.deeds))),
+            events=before.events + self.events,
+            edits=before.edits + self.edits,
         )
 
 
@@ -92,7 +104,10 @@ def percepts_of(
     """
     found: list[tuple[Percept, Terrain]] = []
     for percept, blocks in _read(recording, path, start, until):
-        if not found or percept.is_new_after(found[-1][0]):
+        if found and found[-1][0].tick == percept.tick:
+            # A branch begins at this tick, and was edited there.
+            found[-1] = (percept.following(found[-1][0]), blocks)
+        elif not found or percept.is_new_after(found[-1][0]):
             found.append((percept, blocks))
     return found
 
@@ -112,13 +127,16 @@ def _read(
             before = journal.entries_until(key, start.tick - 1)
             yield _percept(forest, path, start.tick, journal.events_until(key, before))
         entries = list(journal.entries(key, begin, stretch.entries))
+        edits: list[Edit] = []
         for offset, entry in enumerate(entries):
             history.advance(key, forest, begin + offset + 1)
+            if isinstance(entry, Edit):
+                edits.append(entry)
             following = entries[offset + 1] if offset + 1 < len(entries) else None
             if following is None or following.tick > entry.tick:
                 percept, blocks = _percept(forest, path, entry.tick, events)
-                yield percept, blocks
-                events = forest.count_of_events
+                yield replace(percept, edits=tuple(edits)), blocks
+                events, edits = forest.count_of_events, []
                 then = entry.tick + 1
                 last = stretch.tick if following is None else following.tick - 1
                 if percept.events and then <= last:

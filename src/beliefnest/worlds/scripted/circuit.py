@@ -10,7 +10,7 @@ from beliefnest.world.circuits import Circuits
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["FACES", "Circuit"]
+__all__ = ["FACES", "Circuit", "may_be_of_power"]
 
 Step = tuple[int, int, int]
 
@@ -236,3 +236,13 @@ def _level(place: Position) -> list[Position]:
 
 def _plus(place: Position, step: Step) -> Position:
     return (place[0] + step[0], place[1] + step[1], place[2] + step[2])
+
+
+def may_be_of_power(registry: Registry, before: int, after: int) -> bool:
+    """Return True if power, or the lack of it, may have turned one block state into another."""
+    facts = Circuits.load()
+    return (
+        after in (facts.powered.get(before), facts.unpowered.get(before))
+        or before in facts.plates
+        or {registry.name(before), registry.name(after)} == {_WIRE}
+    )

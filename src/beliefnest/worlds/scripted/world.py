@@ -7,12 +7,12 @@ nothing.
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from copy import copy
 from typing import Any
 
 from beliefnest.errors import InputError, WorldError
-from beliefnest.world.claims import Claim, with_claims
+from beliefnest.world.claims import Claim, claims_from_plain, with_claims
 from beliefnest.world.doors import used_door
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.handling import (
@@ -28,7 +28,7 @@ from beliefnest.world.limits import (
     container_slots,
     snapshot_fault,
 )
-from beliefnest.world.registry import AIR
+from beliefnest.world.registry import AIR, parse_state
 from beliefnest.world.signs import plain_state, text_of
 from beliefnest.world.values import (
     AgentState,
@@ -385,16 +385,25 @@ class ScriptedWorld(PoweredState):
             ):
                 pending.events.append(Event(kind, name, {"other": partner, "items": moved}))
 
-    def repeat(self, name: str, kind: EventKind, detail: Mapping[str, Any]) -> None:
+    def repeat(self, name: str | None, kind: EventKind, detail: Mapping[str, Any]) -> None:
         """Let an agent do again what it was seen to do; ignore kinds of events that are no calls.
 
         Args:
-            name: Name of the agent.
+            name: Name of the agent; None: nobody was seen to change a block.
             kind: Kind of the event.
             detail: Fields of `EventDetail` that were perceived.
         """
-        if kind in _REPEATED:
+        if kind is EventKind.BLOCK_UPDATE:
+            self._repeat_change(name, detail)
+        elif name is not None and kind in _REPEATED:
             _REPEATED[kind](self, name, detail)
+
+    def _repeat_change(self, name: str | None, detail: Mapping[str, Any]) -> None:
+        if name is not None and "text" in detail:
+            claims = claims_from_plain(detail.get("claims", ()))
+            self.write_sign(name, detail["position"], detail["text"], claims)
+        else:
+            self.set_block(detail["position"], detail["block"], name)
 
     def _transfer(self, name: str, position: Position, items: Items, kind: EventKind) -> None:
         with self._act() as pending:
@@ -472,10 +481,27 @@ class ScriptedWorld(PoweredState):
 
 
 def _repeat_speech(world: ScriptedWorld, name: str, detail: Mapping[str, Any]) -> None:
+    claims = claims_from_plain(detail.get("claims", ()))
     if detail.get("to") is None:
-        world.say(name, detail["text"])
+        world.say(name, detail["text"], claims)
     else:
-        world.whisper(name, detail["to"], detail["text"])
+        world.whisper(name, detail["to"], detail["text"], claims)
+
+
+def _repeat_mining(world: ScriptedWorld, name: str, detail: Mapping[str, Any]) -> None:
+    try:
+        world.mine(name, detail["position"])
+    except WorldError:
+        # Who saw it need not know the tool that it takes; the block is gone all the same.
+        world.set_block(detail["position"], "air", name)
+
+
+def _repeat_placing(world: ScriptedWorld, name: str, detail: Mapping[str, Any]) -> None:
+    item, _ = parse_state(detail["block"])
+    # Who saw it need not know that the agent had it; the block is there all the same.
+    with suppress(WorldError):
+        world.put(name, item, detail["position"])
+    world.set_block(detail["position"], detail["block"], name)
 
 
 _REPEATED: Mapping[EventKind, Callable[[ScriptedWorld, str, Mapping[str, Any]], None]] = {
@@ -487,8 +513,8 @@ _REPEATED: Mapping[EventKind, Callable[[ScriptedWorld, str, Mapping[str, Any]], 
     EventKind.USE_DOOR: lambda w, name, d: w.use_door(name, d["position"], open=d["open"]),
     EventKind.USE_LEVER: lambda w, name, d: w.use_lever(name, d["position"], powered=d["powered"]),
     EventKind.PRESS_BUTTON: lambda w, name, d: w.press_button(name, d["position"]),
-    EventKind.MINE_BLOCK: lambda w, name, d: w.set_block(d["position"], "air", name),
-    EventKind.PLACE_BLOCK: lambda w, name, d: w.set_block(d["position"], d["block"], name),
+    EventKind.MINE_BLOCK: _repeat_mining,
+    EventKind.PLACE_BLOCK: _repeat_placing,
     EventKind.CHAT: _repeat_speech,
     EventKind.GIVE_ITEM_TO_OTHER: lambda w, name, d: w.give(name, d["other"], d["items"]),
 }
