@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from datetime import date
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -110,7 +111,7 @@ def _played(names: Sequence[str], options: PlayOptions) -> list[dict[str, Any]]:
     for name in names:
         task = Task.load(name)
         trained = trained_rule(
-            lambda seed, name=name: Task.load(name, seed),
+            partial(Task.load, name),
             range(_TRAINED, _TRAINED + min(_TRAINING, options.seeds)),
         )
         policies = tuple(dict.fromkeys((*rules_of(task), trained)))

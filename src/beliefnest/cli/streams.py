@@ -8,7 +8,10 @@ import io
 import os
 import sys
 import warnings
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
+
+if TYPE_CHECKING:  # There is no such module when the program runs.
+    from _typeshed import ReadableBuffer
 
 __all__ = ["open_streams", "print_warnings_as_lines"]
 
@@ -19,7 +22,7 @@ _ERRORS = 2
 class _LossyFile(io.FileIO):
     """Standard stream that drops everything once its reader is gone."""
 
-    def write(self, content: bytes, /) -> int:  # type: ignore[override] # any buffer is accepted
+    def write(self, content: "ReadableBuffer", /) -> int:
         try:
             return super().write(content)
         except BrokenPipeError:

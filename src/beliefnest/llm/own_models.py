@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.metadata import entry_points
+from typing import cast
 
 from beliefnest.errors import BeliefNestError, InputError, ModelError
 from beliefnest.importing import imported_object, is_importable, is_object_name
@@ -86,5 +87,4 @@ def own_model(name: str) -> OwnModel:
             f"{name!r} makes no model: {type(made).__name__} has no method "
             "answer(messages, sampling), which returns an Answer"
         )
-    model: Model = made
-    return OwnModel(name, model)
+    return OwnModel(name, cast(Model, made))

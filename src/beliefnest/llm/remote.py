@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # Extras, imported when a provider is asked.
     import httpx2
     from pydantic_ai.messages import ModelMessage, ModelResponse
     from pydantic_ai.models import Model as ChatModel
+    from pydantic_ai.profiles import ModelProfile
     from pydantic_ai.settings import ModelSettings
 
 __all__ = ["AnswerLimits", "RemoteModel"]
@@ -33,7 +34,7 @@ _CHARACTERS_PER_TOKEN = 4
 """Characters per token, to estimate usage if a server does not report it. A low estimate would
 let a run exceed its limits."""
 
-_THINKING_AS_TEXT = {"thinking_tags": ("\0", "\0")}
+_THINKING_AS_TEXT: "ModelProfile" = {"thinking_tags": ("\0", "\0")}
 """Profile with marks of thinking that no model writes. The library takes `<think>` for a mark only
 if it is a chunk of its own; `separate_thinking` reads all marks, however an answer was cut."""
 

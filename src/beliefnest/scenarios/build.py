@@ -277,6 +277,7 @@ class _Builder:
         blocks = self._believed_blocks((*path, "blocks"), entry.blocks)
         for index, sign in enumerate(entry.signs):
             blocks[sign.at] = self._believed_sign((*path, "signs", index), sign, blocks)
+        place: KeyPath
         for index, container in enumerate(entry.containers):
             place = (*path, "containers", index)
             self.checks.container((*place, "at"), container.at)

@@ -101,7 +101,7 @@ def _draw_chance(
         colors="#333333",
         linestyles="dashed",
         linewidths=1,
-        label="chance" if in_legend else None,
+        label="chance" if in_legend else "",
     )
     drawn.set_gid("chance")
     if not in_legend:

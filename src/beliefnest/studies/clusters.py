@@ -48,16 +48,17 @@ def mean_interval(
     return (float(low), float(high)) if low < high else (None, None)
 
 
-def rate_interval(clusters: Sequence[Sequence[bool]]) -> tuple[float, float, str]:
-    """Compute the 95 % interval of the share of True, and name the method.
+def rate_interval(clusters: Sequence[Sequence[float]]) -> tuple[float, float, str]:
+    """Compute the 95 % interval of a rate, and name the method.
 
     Args:
-        clusters: Values by cluster, at least one cluster with at least one value in each.
+        clusters: Values from 0 to 1 by cluster, at least one cluster with at least one value in
+            each. True is 1.
 
     Returns:
-        Lowest share, highest share, and the method, `wilson` or `bootstrap`. The method is
+        Lowest rate, highest rate, and the method, `wilson` or `bootstrap`. The method is
         Wilson's interval if each cluster has one value, else the cluster bootstrap. If all
-        clusters have the same share, or there are fewer than `FEWEST`, a bootstrap says nothing;
+        clusters have the same mean, or there are fewer than `FEWEST`, a bootstrap says nothing;
         the method then is Wilson's interval for as many values as there are clusters.
     """
     if len(clusters) >= FEWEST and any(len(values) > 1 for values in clusters):

@@ -88,8 +88,9 @@ def gee(right: Array, design: Array, groups: Any, family: Family) -> Fit:
     """
     api = statsmodels()
     sizes = np.bincount(groups)
-    exchangeable = api.cov_struct.Exchangeable() if sizes.max() > 1 else None
-    for structure in filter(None, (exchangeable, api.cov_struct.Independence())):
+    structures = {"exchangeable": api.cov_struct.Exchangeable()} if sizes.max() > 1 else {}
+    structures["independence"] = api.cov_struct.Independence()
+    for name, structure in structures.items():
         chosen = api.families.Binomial() if family == "binomial" else api.families.Gaussian()
         model = api.GEE(right, design, groups=groups, family=chosen, cov_struct=structure)
         try:
@@ -98,11 +99,10 @@ def gee(right: Array, design: Array, groups: Any, family: Family) -> Fit:
                 result = model.fit(cov_type="bias_reduced", maxiter=200)
         except _ERRORS:
             continue
-        shared = float(structure.dep_params or 0.0) if structure is exchangeable else 0.0
+        shared = float(structure.dep_params or 0.0) if name == "exchangeable" else 0.0
         # Eigenvalues of the largest working correlation matrix.
         least = min(1 - shared, 1 + (int(sizes.max()) - 1) * shared)
         if result.converged and least > 1e-3 and _bounded(result.params, family):
-            name = "exchangeable" if structure is exchangeable else "independence"
             # Rounding can make a variance of 0 negative.
             errors = np.sqrt(np.maximum(np.diag(result.cov_robust_bc), 0.0))
             told = f"{name} working correlation"
@@ -148,7 +148,7 @@ def _linear_mixed(right: Array, design: Array, groups: Any) -> Fit:
         weights = ratio / (1 + sizes * ratio)
         matrix = design.T @ design - (sums.T * weights) @ sums
         vector = design.T @ right - (sums.T * weights) @ totals
-        found = np.linalg.solve(matrix, vector)
+        found = np.asarray(np.linalg.solve(matrix, vector), dtype=np.float64)
         rest = max(float(right @ right - weights @ totals**2 - vector @ found), 0.0)
         variance = rest / (count - terms)
         deviance = (
@@ -253,8 +253,11 @@ def firth(right: Array, design: Array, groups: Any) -> Fit:
     _, alike = np.unique(np.column_stack([groups, codes]), axis=0, return_inverse=True)
 
     def penalised(weights: Array) -> "_Penalised":
-        totals = np.bincount(codes, weights, len(patterns))
-        return _Penalised(patterns, totals, np.bincount(codes, weights * right, len(patterns)))
+        totals, rights = (
+            np.bincount(codes, each, len(patterns)).astype(np.float64)
+            for each in (weights, weights * right)
+        )
+        return _Penalised(patterns, totals, rights)
 
     plain = penalised(np.ones(len(right)))
     chances = plain.chances(plain.fitted())[codes]

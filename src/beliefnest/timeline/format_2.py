@@ -45,12 +45,12 @@ def convert_2(database: Database) -> None:
         )
     database.execute(f"DELETE FROM {hidden}")
     for number, *row in database.rows("SELECT id, path, branch, body, seal FROM program"):
-        form = tuple[str, str, bytes]
-        *place, body = checked(tuple(row), database.path, f"program {quoted(number)}", form)
-        body = codec.encode(_typed(body, database.path))
+        what = f"program {quoted(number)}"
+        path, branch, old = checked(tuple(row), database.path, what, tuple[str, str, bytes])
+        body = codec.encode(_typed(old, database.path))
         database.execute(
             "UPDATE program SET body = ?, seal = ? WHERE id = ?",
-            (body, checksum(*place, body), number),
+            (body, checksum(path, branch, body), number),
         )
 
 

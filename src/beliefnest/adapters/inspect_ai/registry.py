@@ -3,6 +3,7 @@
 import os
 import threading
 from contextlib import nullcontext
+from dataclasses import replace
 from typing import Any
 
 from anyio.to_thread import run_sync
@@ -207,8 +208,10 @@ class BeliefNestAPI(ModelAPI):
 
 
 def _sampling(config: GenerateConfig) -> Sampling:
-    given = {"temperature": config.temperature, "seed": config.seed}
-    return Sampling(**{name: value for name, value in given.items() if value is not None})
+    sampling = Sampling(seed=config.seed)
+    if config.temperature is None:
+        return sampling
+    return replace(sampling, temperature=config.temperature)
 
 
 def _output(model: str, answer: Answer) -> ModelOutput:

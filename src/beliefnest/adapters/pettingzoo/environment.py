@@ -412,8 +412,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         rewards = {agent: self._reward(agent) for agent in self.agents}
         ended, cut = self._ends()
         if isinstance(self._acting, TaskActing):
-            for told in infos.values():
-                told["success"] = self._acting.success
+            for info in infos.values():
+                info["success"] = self._acting.success
         terminations = dict.fromkeys(self.agents, ended)
         truncations = dict.fromkeys(self.agents, cut)
         if ended or cut:

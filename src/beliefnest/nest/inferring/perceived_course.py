@@ -301,7 +301,10 @@ class Reading:
         """Return the cell of an agent; during a jump or over an edge, its previous cell."""
         x, y, z = block_at(pose[0])
         # Feet on a low block are in its place, below the cell in which the agent stands.
-        for cell in ((x, y, z), (x, y - 1, z), *([(x, y + 1, z)] if on_ground else ())):
+        near: list[Position] = [(x, y, z), (x, y - 1, z)]
+        if on_ground:
+            near.append((x, y + 1, z))
+        for cell in near:
             if scene.can_stand(cell):
                 return cell
         at = (x, y, z)

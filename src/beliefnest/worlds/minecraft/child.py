@@ -153,9 +153,9 @@ def _limit(pid: int, limits: ProcessLimits) -> None:
     memory = limits.memory * _MEGABYTE
     with contextlib.suppress(ProcessLookupError):
         # An ordinary user may not raise a hard limit that the shell has set.
-        lower = tuple(
+        soft, hard = (
             memory if most == resource.RLIM_INFINITY else min(memory, most)
             for most in resource.prlimit(pid, resource.RLIMIT_DATA)
         )
-        resource.prlimit(pid, resource.RLIMIT_DATA, lower)
+        resource.prlimit(pid, resource.RLIMIT_DATA, (soft, hard))
         resource.prlimit(pid, resource.RLIMIT_CORE, (0, 0))
