@@ -121,3 +121,30 @@ def imaginations(world: Played, path: str) -> object:
         except bn.InputError as error:
             return str(error)
         return imagined.by_candidate("bob"), imagined.log_evidence, imagined.effective_size
+
+
+@door(every=10)
+def courses(world: Played, path: str) -> object:
+    """Return courses of Bob that are drawn, and what evidence changed."""
+    model = bn.MindModel("bob", _GOALS, {"garden": [1.0, 9.0], "yard": 5.0}, _DOUBT, step_ticks=2)
+    since = world.nest.tick // 2
+    own = world.nest[path]
+    try:
+        inferred = own.infer(model, smooth=True)
+    except bn.InputError as error:
+        return str(error)
+    drawn = [] if inferred.impossible else inferred.sample_paths(4, seed=world.seed)
+    told = [(path.hypothesis, path.cells) for path in drawn]
+    found = (told, inferred.impossible, inferred.explain(), inferred.marginal("cell"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ImaginationWarning)
+        try:
+            imagined = own.imagine(since, actors={"bob": {"walks": model}}, n=3, seed=world.seed)
+        except bn.InputError as error:
+            return found, str(error)
+    walks = [
+        (dict(history.hypotheses["bob"]), dict(history.at(tick).state.agents))
+        for history in imagined
+        for tick in range(since, history.tick + 1)
+    ]
+    return found, walks, imagined.impossible, imagined.log_evidence

@@ -33,7 +33,7 @@ class SampledPath:
 
     Attributes:
         hypothesis: Values of the factors that explain it, with their probability.
-        cells: Cell of the agent by tick.
+        cells: Cell of the agent by tick, at every tick from the first to the last with evidence.
     """
 
     hypothesis: Mapping[str, Any]

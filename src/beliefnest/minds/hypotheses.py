@@ -4,7 +4,7 @@ Weights are logarithms of probabilities; -inf means impossible.
 """
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -143,6 +143,17 @@ class Layer:
     tick: int
     edges: list[Edge]
     before: Mapping[State, Floats]
+
+    def sources(self, target: State) -> Sequence[tuple[State, Action | None]]:
+        """Return the states from which a state was reached, with the actions; call it at the end."""
+        return self._by_target.get(target, ())
+
+    @cached_property
+    def _by_target(self) -> Mapping[State, Sequence[tuple[State, Action | None]]]:
+        found: dict[State, list[tuple[State, Action | None]]] = {}
+        for source, target, action in self.edges:
+            found.setdefault(target, []).append((source, action))
+        return found
 
 
 class Sums:

@@ -3,6 +3,7 @@
 Works on the layers that a `Tracker` keeps (forward filtering, backward smoothing and sampling).
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -40,7 +41,10 @@ def smoothed_steps(tracker: Tracker) -> list[Step]:
 def sampled_cells(
     tracker: Tracker, actual: int, hypothesis: tuple[int, int, int], random: np.random.Generator
 ) -> dict[int, Position]:
-    """Draw the cell of the agent at each tick with an action, given all evidence.
+    """Draw the cell of the agent at each tick of its course, given all evidence.
+
+    Random numbers are used only where several states are possible. A tick at which nothing of the
+    course was perceived has one way back, so it changes no draw.
 
     Args:
         tracker: A filter with layers.
@@ -49,28 +53,33 @@ def sampled_cells(
         random: Random generator.
 
     Returns:
-        Cell by tick, from the first tick of the course.
+        Cell by tick, from the first tick of the course to the last with evidence.
     """
     state = _drawn(
         {each: float(weight[hypothesis]) for each, weight in tracker.states[actual].items()}, random
     )
-    cells = {tracker.steps[-1].tick: state[0]}
+    cells: dict[int, Position] = {}
+    left = tracker.steps[-1].tick
     for layer in reversed(tracker.trail[actual]):
-        cells.setdefault(layer.tick, state[0])
-        sources: dict[State, float] = {}
+        for tick in range(layer.tick, left + 1):
+            cells[tick] = state[0]
+        left = min(left, layer.tick - 1)
         parts: dict[State, list[float]] = {}
-        for source, target, action in layer.edges:
-            if target == state:
-                chance = _chance(tracker.hypotheses, action)
-                inside = 0.0 if chance is None else float(_at(chance, hypothesis))
-                parts.setdefault(source, []).append(
-                    float(layer.before[source][hypothesis]) + inside
-                )
-        for source, logs in parts.items():
-            sources[source] = float(log_sum(np.array(logs)))
-        state = _drawn(sources, random)
-    cells.setdefault(tracker.steps[0].tick, state[0])
+        for source, action in layer.sources(state):
+            chance = _chance(tracker.hypotheses, action)
+            inside = 0.0 if chance is None else float(_at(chance, hypothesis))
+            parts.setdefault(source, []).append(float(layer.before[source][hypothesis]) + inside)
+        state = _drawn(
+            {source: _log_sum_of(logs) for source, logs in parts.items()},
+            random,
+        )
+    for tick in range(tracker.steps[0].tick, left + 1):
+        cells[tick] = state[0]
     return dict(sorted(cells.items()))
+
+
+def _log_sum_of(logs: Sequence[float]) -> float:
+    return logs[0] if len(logs) == 1 else float(log_sum(np.array(logs)))
 
 
 def _smoothed(
@@ -115,7 +124,10 @@ def _at(chance: Floats, hypothesis: tuple[int, int, int]) -> float:
 
 
 def _drawn(logs: Mapping[State, float], random: np.random.Generator) -> State:
-    states = sorted(logs)
+    possible = [state for state, log in logs.items() if log > -math.inf]
+    if len(possible) == 1:
+        return possible[0]
+    states = sorted(possible)
     weights = np.array([logs[state] for state in states])
     shares = np.exp(weights - log_sum(weights))
     return states[int(random.choice(len(states), p=shares / shares.sum()))]
