@@ -145,7 +145,7 @@ class Layer:
     before: Mapping[State, Floats]
 
     def sources(self, target: State) -> Sequence[tuple[State, Action | None]]:
-        """Return the states from which a state was reached, with the actions; call it at the end."""
+        """Return the states that lead to a state, with the actions; call it at the end."""
         return self._by_target.get(target, ())
 
     @cached_property
