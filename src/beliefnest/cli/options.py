@@ -331,7 +331,7 @@ class ExportOptions:
 class SuiteOptions:
     """Options of `beliefnest suite`."""
 
-    name: Annotated[str, typer.Argument(help="Name of the suite: hi-tom, stories, food-trucks.")]
+    name: Annotated[str, typer.Argument(help="Suite: hi-tom, tomi, stories, food-trucks.")]
     data: Annotated[Path, typer.Option(help="File of stories and questions, or of films.")]
     world: Annotated[str, typer.Option(help="World in which the stories play.")] = "scripted"
     rows: Annotated[str | None, typer.Option(help="Rows to answer, as in 1-20,35.")] = None
@@ -340,6 +340,9 @@ class SuiteOptions:
     claims_from: Annotated[
         str | None, typer.Option(help="Model that extracts claims from utterances.")
     ] = None
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Stop at the first line that cannot be read.")
+    ] = False
     out: Annotated[Path | None, typer.Option(help="Folder for the figure and tables of films.")] = (
         None
     )

@@ -17,7 +17,7 @@ from beliefnest.cli.films import run_films
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.suites import FILMS, SUITES
-from beliefnest.suites.stories.data import StoryItems, read_items
+from beliefnest.suites.stories.data import StoryItems, Unread, read_items
 from beliefnest.suites.stories.own import read_own
 from beliefnest.suites.stories.suite import (
     JudgedAnswer,
@@ -26,12 +26,16 @@ from beliefnest.suites.stories.suite import (
     score,
     scores_by_order,
 )
+from beliefnest.suites.stories.tomi import read_tomi
+from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
 
 if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
     from beliefnest.llm.claim_reader import ClaimsFromModel
 
 __all__ = ["run_suite"]
+
+_READERS = {"hi-tom": read_items, "tomi": read_tomi, "stories": read_own}
 
 _ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
 
@@ -43,7 +47,7 @@ def run_suite(options: SuiteOptions) -> int:
     """Play the stories, answer the questions, and print the scores.
 
     Returns:
-        Exit status: 0 if every answer is right, else 1.
+        Exit status: 0 if everything was read and every answer is right, else 1.
 
     Raises:
         BeliefNestError: The input is wrong, or a world failed.
@@ -59,24 +63,27 @@ def run_suite(options: SuiteOptions) -> int:
         return run_films(options, rows)
     if options.out is not None:
         raise InputError(f"--out is for films; the suite {options.name} writes no files")
-    read = read_items if options.name == "hi-tom" else read_own
-    stories = read(options.data, rows)[: options.limit]
+    found = _READERS[options.name](options.data, rows)
+    stories = (found.whole() if options.strict else found.stories)[: options.limit]
     if not stories:
+        found.whole()
         raise InputError(f"{options.data} holds no rows; there is nothing to ask")
     started = time.perf_counter()
     judged = _answer(stories, options)
-    report = _report(options, len(stories), judged, time.perf_counter() - started)
+    report = _report(options, stories, found.unread, judged, time.perf_counter() - started)
     if options.json:
         sys.stdout.write(json.dumps(report, indent=2) + "\n")
     else:
-        _print(options, stories, judged)
-    return 0 if all(each.ok for each in judged) else 1
+        _print(options, stories, found.unread, judged)
+    return 0 if all(each.ok for each in judged) and not found.unread else 1
 
 
 def _check_films(options: SuiteOptions) -> None:
     """Raise InputError if an option is not for films."""
     if options.world != "scripted":
         raise InputError(f"--world is {options.world}; films are acted out in the scripted world")
+    if options.strict:
+        raise InputError("--strict is for stories; a file of films is always read whole")
     if options.claims_from is not None:
         raise InputError("--claims-from is for stories; nobody says anything in films")
 
@@ -133,16 +140,23 @@ def _telling(judged: Sequence[JudgedAnswer], *, tells: bool) -> list[JudgedAnswe
 
 
 def _report(
-    options: SuiteOptions, stories: int, judged: Sequence[JudgedAnswer], seconds: float
+    options: SuiteOptions,
+    stories: Sequence[StoryItems],
+    unread: Sequence[Unread],
+    judged: Sequence[JudgedAnswer],
+    seconds: float,
 ) -> dict[str, object]:
     return {
         "suite": options.name,
         "data": str(options.data),
         "world": options.world,
         "seed": options.seed,
-        "stories": stories,
+        "stories": len(stories),
         "seconds": round(seconds, 3),
-        "ok": all(each.ok for each in judged),
+        "ok": all(each.ok for each in judged) and not unread,
+        "unread_items": sum(each.questions for each in unread),
+        "not_read": [{"faults": list(each.lines), "questions": each.questions} for each in unread],
+        "notes": _notes(stories),
         "all": _score_json(score(judged)),
         "orders": _scores_json(scores_by_order(judged)),
         "without_claims": _scores_json(scores_by_order(_telling(judged, tells=False))),
@@ -153,6 +167,15 @@ def _report(
         "wrong_in_data": [each.item.row for each in judged if each.data_fault is not None],
         "misses": [_miss_json(each) for each in judged if not each.ok],
     }
+
+
+def _notes(stories: Sequence[StoryItems]) -> list[str]:
+    """Return remarks on lines of the stories, with the first row of the story."""
+    return [
+        f"row {asked.items[0].row if asked.items else 0}: {note}"
+        for asked in stories
+        for note in asked.story.notes
+    ]
 
 
 def _scores_json(scores: Mapping[int, Score]) -> dict[str, object]:
@@ -178,7 +201,10 @@ def _miss_json(judged: JudgedAnswer) -> dict[str, object]:
 
 
 def _print(
-    options: SuiteOptions, stories: Sequence[StoryItems], judged: Sequence[JudgedAnswer]
+    options: SuiteOptions,
+    stories: Sequence[StoryItems],
+    not_read: Sequence[Unread],
+    judged: Sequence[JudgedAnswer],
 ) -> None:
     title = f"{options.name}: {len(stories)} stories in the {options.world} world"
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAVY)
@@ -195,6 +221,13 @@ def _print(
     table.add_row("all", "all", *_cells(score(judged)), *_cells(total))
     console = stdout()
     print_table(console, table)
+    if not_read:
+        count = counted(sum(each.questions for each in not_read), "question")
+        console.print(f"not read and not counted: {count}")
+    for line in (line for each in not_read for line in each.lines):
+        console.print(f"    {line}", markup=False, highlight=False, soft_wrap=True)
+    for note in _notes(stories):
+        console.print(note, markup=False, highlight=False, soft_wrap=True)
     unread = {each.item.row: each.unread for each in judged if each.unread is not None}
     for row, error in [*unread.items()][:1]:
         console.print(

@@ -5,5 +5,5 @@ __all__ = ["FILMS", "SUITES"]
 FILMS = "food-trucks"
 """Name of the suite of films."""
 
-SUITES = ("hi-tom", "stories", FILMS)
+SUITES = ("hi-tom", "tomi", "stories", FILMS)
 """Names of the suites."""

@@ -91,7 +91,10 @@ def test_the_published_form_is_taken_as_it_is(tmp_path, capsys) -> None:
         (LEAVING + claim, "Where does Ann really think the pear is?", "red_box", 1, "VP", True),
         (LEAVING + claim, "Where does Dot really think the pear is?", "tin", 1, "CoTP", True),
     )
-    assert [[item.row for item in story.items] for story in read_items(path)] == [[1, 2], [3, 4]]
+    assert [[item.row for item in story.items] for story in read_items(path).whole()] == [
+        [1, 2],
+        [3, 4],
+    ]
     status = run_command_line(["suite", "hi-tom", "--data", str(path), "--json"])
     report = json.loads(capsys.readouterr().out)
     assert status == 1
@@ -130,7 +133,7 @@ def test_an_answer_that_contradicts_its_story_is_found(answer: str, what: str | 
 def test_rows_wrong_in_the_data_are_told_apart(tmp_path) -> None:
     text = "Where does Ann think Bob thinks the pear is?"
     path = published(tmp_path, (LEAVING, text, "jar", 2, "CoTP", False))
-    ((judged,),) = (answer_story(each) for each in read_items(path))
+    ((judged,),) = (answer_story(each) for each in read_items(path).whole())
     assert not judged.ok
     assert judged.data_fault is not None
 

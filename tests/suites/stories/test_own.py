@@ -72,7 +72,9 @@ def file(tmp_path):
 @pytest.mark.parametrize("world", ["scripted", "embedded"])
 def test_own_stories_are_answered_as_they_say(file, world: str) -> None:
     judged = [
-        each for story in read_own(file(TOLD, LOOKING)) for each in answer_story(story, world)
+        each
+        for story in read_own(file(TOLD, LOOKING)).whole()
+        for each in answer_story(story, world)
     ]
     assert [each.explanation for each in judged if not each.ok] == []
     assert len(judged) == 9
@@ -107,13 +109,13 @@ def test_the_command_lists_what_is_answered_otherwise(file, capsys) -> None:
 )
 def test_what_is_wrong_is_said_with_the_line(file, change, what: str) -> None:
     with pytest.raises(bn.InputError, match=what):
-        read_own(file({**TOLD, **change}))
+        read_own(file({**TOLD, **change})).whole()
 
 
 def test_a_door_that_is_open_already_is_a_fault(file) -> None:
     events = ["Sally entered the den.", "Sally opened the door of the den."]
     with pytest.raises(bn.InputError, match=r"event 2: .*is open already"):
-        read_own(file({"events": events, "questions": []}))
+        read_own(file({"events": events, "questions": []})).whole()
 
 
 SIGNS = {
@@ -143,7 +145,7 @@ LONG = f'Anne wrote "{"x" * 46}" on the sign of the den.'
 def test_what_is_written_on_a_sign_is_known_to_who_saw_it(tmp_path, world):
     file = tmp_path / "stories.jsonl"
     file.write_text(json.dumps(SIGNS))
-    (told,) = read_own(file)
+    (told,) = read_own(file).whole()
     asked = [item.question for item in told.items]
     with PlayedStory.play(told.story, world, asked=asked) as played:
         for item in told.items:
@@ -157,7 +159,10 @@ def test_what_is_written_on_a_sign_is_known_to_who_saw_it(tmp_path, world):
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
-        ({"events": ['Anne wrote "x" on the sign of the den.']}, "Anne is in no room"),
+        (
+            {"events": ["Anne exited the den.", 'Anne wrote "x" on the sign of the den.']},
+            "Anne is in no room",
+        ),
         ({"questions": [{"sign": "attic", "answer": "x"}]}, "nobody writes on a sign of the attic"),
         (
             {"questions": [{"sign": "den", "answer": "x"}]},
@@ -182,7 +187,7 @@ def test_what_cannot_be_on_a_sign_is_named(tmp_path, change, fault):
     file = tmp_path / "stories.jsonl"
     file.write_text(json.dumps(SIGNS | change))
     with pytest.raises(bn.InputError, match=fault):
-        read_own(file)
+        read_own(file).whole()
 
 
 def test_what_a_sentence_writes_on_a_sign_stays_as_it_is(tmp_path):
@@ -190,7 +195,7 @@ def test_what_a_sentence_writes_on_a_sign_stays_as_it_is(tmp_path):
     events = [*SIGNS["events"][:2], 'Anne wrote "a  b\nc" on the  sign of the den.']
     asked = {"sign": "den", "believers": ["Sally"], "answer": "a  b\nc"}
     file.write_text(json.dumps({"events": events, "questions": [asked]}))
-    (told,) = read_own(file)
+    (told,) = read_own(file).whole()
     assert all(judged.ok for judged in answer_story(told, "scripted", 0))
 
 
@@ -208,7 +213,7 @@ def test_a_model_may_read_what_is_told(file, tmp_path, world, capsys):
         "questions": [{"believers": ["Sally"], "thing": "pear", "answer": "jar"}],
     }
     path = file(story)
-    (told,) = read_own(path)
+    (told,) = read_own(path).whole()
     plan = lay_out(told.story)
     place = next(at for where, at in plan.places.items() if where.container == "jar")
     claim = {"kind": "located", "item": plan.items["pear"], "place": place}
@@ -224,3 +229,51 @@ def test_a_model_may_read_what_is_told(file, tmp_path, world, capsys):
         (asked,) = played.nest.prompts()
         assert f"{plan.items['pear']} (called pear)" in asked.messages[1][1]
         assert f"[{', '.join(map(str, place))}]: jar of the den" in asked.messages[1][1]
+
+
+HANDS = {
+    "events": [
+        "Sally put the pear in the box.",
+        "Sally left.",
+        "Anne took it out of the box.",
+        {"event": "put", "agent": "Anne", "thing": "it", "container": "jar"},
+        "Anne told Sally that the pear is in the jar.",
+    ],
+    "questions": [
+        {"question": "Where does Sally think the pear is?", "answer": "box"},
+        {"question": "Where does Anne think Sally thinks the pear is?", "answer": "box"},
+        {"question": "Where is the pear really?", "answer": "jar"},
+    ],
+}
+
+
+@pytest.mark.parametrize("world", ["scripted", "embedded"])
+def test_agents_act_without_an_entry_and_things_pass_through_hands(file, world: str) -> None:
+    (story,) = read_own(file(HANDS)).whole()
+    assert [each.explanation for each in answer_story(story, world) if not each.ok] == []
+
+
+def test_who_cannot_hear_what_is_told_is_said(file, capsys) -> None:
+    assert run_command_line(["suite", "stories", "--data", str(file(HANDS)), "--json"]) == 0
+    (note,) = json.loads(capsys.readouterr().out)["notes"]
+    assert note.startswith("row 1: event 5: ")
+    assert note.endswith("Sally is not there; nobody hears it")
+
+
+def test_the_rest_of_a_file_is_answered(file, capsys) -> None:
+    bad = {**HANDS, "events": [*HANDS["events"], "Anne juggled.", "Anne sang."]}
+    odd = {**HANDS, "questions": [*HANDS["questions"], {"question": "Who?", "answer": None}]}
+    path = file(bad, HANDS, odd)
+    path.write_text(path.read_text() + "{\n")
+    assert run_command_line(["suite", "stories", "--data", str(path), "--json"]) == 1
+    report = json.loads(capsys.readouterr().out)
+    faults = [each["faults"] for each in report["not_read"]]
+    assert [[fault[: fault.index(": ")] for fault in each] for each in faults] == [
+        [f"{path}, line 1"] * 2,
+        [f"{path}, line 3"],
+        [f"{path}, line 4"],
+    ]
+    assert ["event 6" in faults[0][0], "event 7" in faults[0][1]] == [True, True]
+    assert (report["unread_items"], report["all"]["right"]) == (5, 6)
+    assert run_command_line(["suite", "stories", "--data", str(path), "--strict"]) == 2
+    assert f"{path}, line 1: event 6: 'Anne juggled.'" in capsys.readouterr().err

@@ -39,15 +39,16 @@ def changed(number, **values):
 
 
 def test_rows_of_one_story_are_put_together(file):
-    stories = read_items(file(ROWS))
+    stories = read_items(file(ROWS)).whole()
     assert [[item.row for item in each.items] for each in stories] == [[1, 2, 3, 4], [5]]
 
 
 @pytest.mark.parametrize(
     ("rows", "what"),
     [
-        ("[", "rows.json: "),
+        ("[", "rows.json, line 1: "),
         ('{"story": "x"}', "array"),
+        ('[\n{"story": "x",}]', "rows.json, line 2: "),
         ([{"story": SHARED_SECRET, "question": "Where is the lantern really?"}], "answer"),
         (changed(4, story=COMING_BACK.replace("entered", "stormed")), "row 5: line 1: "),
         (changed(3, question="Who has the lantern?"), "row 4: 'Who has the lantern"),
@@ -57,17 +58,17 @@ def test_rows_of_one_story_are_put_together(file):
 )
 def test_a_wrong_file_is_refused_with_the_row_and_the_line(file, rows, what):
     with pytest.raises(bn.InputError, match=what):
-        read_items(file(rows))
+        read_items(file(rows)).whole()
 
 
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(bn.InputError, match=r"none\.json cannot be read"):
-        read_items(tmp_path / "none.json")
+        read_items(tmp_path / "none.json").whole()
 
 
 def test_scores_count_right_answers_by_order(file):
     rows = changed(2, answer="tin_box")
-    judged = [each for asked in read_items(file(rows)) for each in answer_story(asked)]
+    judged = [each for asked in read_items(file(rows)).whole() for each in answer_story(asked)]
     assert [each.ok for each in judged] == [True, True, False, True, True]
     assert score(judged) == Score(5, 4)
     assert scores_by_order(judged) == {
@@ -80,14 +81,14 @@ def test_scores_count_right_answers_by_order(file):
 
 
 def test_what_the_first_believer_changes_is_told_apart(file):
-    judged = [each for asked in read_items(file(ROWS)) for each in answer_story(asked)]
+    judged = [each for asked in read_items(file(ROWS)).whole() for each in answer_story(asked)]
     # Really the lantern is in the grey_trunk, and the apple in the basket; Tom alone, and
     # Ida of Nora, believe what is asked for with one believer more.
     assert [each.needs_first for each in judged] == [False, True, False, False, True]
 
 
 def test_a_miss_is_explained_by_what_each_simulator_holds_and_since_when(file):
-    (asked, _) = read_items(file(changed(2, answer="tin_box")))
+    (asked, _) = read_items(file(changed(2, answer="tin_box"))).whole()
     (miss,) = (each for each in answer_story(asked) if not each.ok)
     text = "\n".join(miss.explanation)
     assert "expected the tin_box" in text
@@ -146,13 +147,13 @@ def test_wrong_input_ends_with_2(file, capsys, arguments, what):
 def test_an_unknown_suite_ends_with_2(file, capsys):
     status = run_command_line(["suite", "lo-tom", "--data", str(file(ROWS))])
     assert status == 2
-    assert "there are hi-tom, stories" in capsys.readouterr().err
+    assert "there are hi-tom, tomi, stories" in capsys.readouterr().err
 
 
 def test_the_sample_of_hi_tom_is_answered_right_at_every_order():
     if not SAMPLE.is_file():
         pytest.skip(f"{SAMPLE} is not on this machine")
-    judged = [each for asked in read_items(SAMPLE) for each in answer_story(asked)]
+    judged = [each for asked in read_items(SAMPLE).whole() for each in answer_story(asked)]
     scores = scores_by_order(judged)
     assert set(scores) == {0, 1, 2, 3, 4}
     assert all(found.accuracy == 1 for found in scores.values()), [

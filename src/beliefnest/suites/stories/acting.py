@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from beliefnest.suites.stories.floor_plan import FloorPlan, feet
 from beliefnest.suites.stories.grammar import UseDoor, Write
-from beliefnest.suites.stories.story import Act, Come, Go, Look, Move, Tell
+from beliefnest.suites.stories.story import Act, Come, Go, Look, Move, Place, Put, Take, Tell
 from beliefnest.world.claims import Claim
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
@@ -13,7 +13,7 @@ from beliefnest.worlds.scripted.world import ScriptedWorld
 __all__ = ["programs_of", "tell"]
 
 
-def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
+def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:  # noqa: PLR0912  # one case an act
     """Do one act in one tick."""
     with world.tick():
         match act:
@@ -27,6 +27,10 @@ def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:
                 item = {plan.items[thing]: 1}
                 world.withdraw(agent, plan.places[source], item)
                 world.deposit(agent, plan.places[target], item)
+            case Take(agent, thing, source):
+                world.withdraw(agent, plan.places[source], {plan.items[thing]: 1})
+            case Put(agent, thing, target):
+                world.deposit(agent, plan.places[target], {plan.items[thing]: 1})
             case UseDoor(agent, room, opens):
                 world.use_door(agent, plan.doors[room], open=opens)
             case Write(agent, room, text):
@@ -48,20 +52,24 @@ def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
             return {agent: _walk(plan.stands[room, agent], act.shuts) for agent in agents}
         case Go(agents):
             return {agent: _walk(plan.apart[agent], act.shuts) for agent in agents}
-        case Move() | UseDoor() | Write() | Look() | Tell():
+        case Move() | Take() | Put() | UseDoor() | Write() | Look() | Tell():
             return {act.agent: _program(act, plan)}
         case _:
             return {}
 
 
-def _program(act: Move | UseDoor | Write | Look | Tell, plan: FloorPlan) -> str:
+def _program(  # noqa: PLR0911  # one case an act
+    act: Move | Take | Put | UseDoor | Write | Look | Tell, plan: FloorPlan
+) -> str:
     """Return the program of one agent, which ends at the agent's stand, out of the others' way."""
     match act:
         case Move(agent, thing, source, target):
-            items = f"{{{plan.items[thing]}: 1}}"
-            taking = f"await getItemFromChest(bot, {_vec3(plan.places[source])}, {items})\n"
-            putting = f"await depositItemIntoChest(bot, {_vec3(plan.places[target])}, {items})\n"
+            taking, putting = _taking(thing, source, plan), _putting(thing, target, plan)
             return taking + putting + _walk(plan.stands[source.room, agent])
+        case Take(agent, thing, source):
+            return _taking(thing, source, plan) + _walk(plan.stands[source.room, agent])
+        case Put(agent, thing, target):
+            return _putting(thing, target, plan) + _walk(plan.stands[target.room, agent])
         case UseDoor(agent, room, opens):
             skill = "openDoor" if opens else "closeDoor"
             return f"await {skill}(bot, {_vec3(plan.doors[room])})\n" + _walk(
@@ -79,6 +87,16 @@ def _program(act: Move | UseDoor | Write | Look | Tell, plan: FloorPlan) -> str:
             )
         case Tell():
             return _telling(act, plan)
+
+
+def _taking(thing: str, source: Place, plan: FloorPlan) -> str:
+    items = f"{{{plan.items[thing]}: 1}}"
+    return f"await getItemFromChest(bot, {_vec3(plan.places[source])}, {items})\n"
+
+
+def _putting(thing: str, target: Place, plan: FloorPlan) -> str:
+    items = f"{{{plan.items[thing]}: 1}}"
+    return f"await depositItemIntoChest(bot, {_vec3(plan.places[target])}, {items})\n"
 
 
 def _claims(told: Tell, plan: FloorPlan) -> list[Claim]:

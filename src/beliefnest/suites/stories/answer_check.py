@@ -8,7 +8,7 @@ question are in that room together, each also knows that the others know the pla
 from collections.abc import Iterator
 
 from beliefnest.suites.stories.questions import Question
-from beliefnest.suites.stories.story import Come, Go, Move, Place, Story
+from beliefnest.suites.stories.story import Come, Go, Hand, Move, Place, Story, Take
 
 __all__ = ["data_fault"]
 
@@ -21,12 +21,15 @@ def data_fault(story: Story, question: Question, expected: str | None) -> str | 
         question: The question.
         expected: Name of the container in the expected answer.
     """
-    if story.tells or question.at_beginning or question.thing not in story.things:
-        return None
     thing = question.thing
+    if story.tells or question.at_beginning or thing not in story.things:
+        return None
+    start = story.things[thing]
+    if isinstance(start, Hand) or any(isinstance(act, Take) for act in story.acts):
+        return None
     last: tuple[int, Place] | None = None
     shown = False
-    for number, rooms, place in _states(story, thing):
+    for number, rooms, place in _states(story, thing, start):
         if all(rooms.get(name) == place.room for name in question.believers):
             if last is None or last[1] != place:
                 last = (number, place)
@@ -44,10 +47,11 @@ def data_fault(story: Story, question: Question, expected: str | None) -> str | 
     )
 
 
-def _states(story: Story, thing: str) -> Iterator[tuple[int, dict[str, str | None], Place]]:
+def _states(
+    story: Story, thing: str, place: Place
+) -> Iterator[tuple[int, dict[str, str | None], Place]]:
     """Yield after every line: its index, the room of each agent, and the place of the thing."""
-    rooms: dict[str, str | None] = {}
-    place = story.things[thing]
+    rooms: dict[str, str | None] = dict(story.present)
     for number, act in enumerate(story.acts):
         match act:
             case Come(agents, room):

@@ -1,8 +1,7 @@
 """Files of stories with questions and expected answers."""
 
 import re
-from collections.abc import Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,11 +9,12 @@ import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
+from beliefnest.suites.stories.grammar import parse_all
 from beliefnest.suites.stories.played_story import Knowing, check_question
 from beliefnest.suites.stories.questions import Question, parse_question
-from beliefnest.suites.stories.story import Story, read_story
+from beliefnest.suites.stories.story import Story, story_of
 
-__all__ = ["Item", "StoryItems", "read_items"]
+__all__ = ["Item", "ReadStories", "StoryItems", "Unread", "line_of", "read_items"]
 
 
 class _Row(msgspec.Struct):
@@ -29,7 +29,7 @@ class _Row(msgspec.Struct):
 class _Published(msgspec.Struct):
     """Published file: an object with the rows under a key."""
 
-    data: list[_Row]
+    data: list[msgspec.Raw]
 
 
 _EVERYTHING = Knowing()
@@ -65,8 +65,48 @@ class StoryItems:
     knowing: Knowing = _EVERYTHING
 
 
-def read_items(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItems, ...]:
-    """Return the stories of a Hi-ToM file; rows of the same story are grouped.
+@dataclass(frozen=True, slots=True)
+class Unread:
+    """Part of a file that could not be read.
+
+    Attributes:
+        where: File, and the row or line in it.
+        faults: Reasons, each with the line or event of the story if it is about one.
+        questions: Number of questions that are left out; 1 if that is unknown.
+        joint: Text between `where` and a fault.
+    """
+
+    where: str
+    faults: tuple[str, ...]
+    questions: int = 1
+    joint: str = ": "
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Return each fault with its place."""
+        return tuple(f"{self.where}{self.joint}{fault}" for fault in self.faults)
+
+
+@dataclass(frozen=True, slots=True)
+class ReadStories:
+    """Stories of a file, and the parts of it that could not be read."""
+
+    stories: tuple[StoryItems, ...]
+    unread: tuple[Unread, ...]
+
+    def whole(self) -> tuple[StoryItems, ...]:
+        """Return the stories if everything was read.
+
+        Raises:
+            InputError: A part could not be read; the message names it.
+        """
+        for each in self.unread:
+            raise InputError(each.lines[0])
+        return self.stories
+
+
+def read_items(path: Path, rows: Collection[int] | None = None) -> ReadStories:
+    """Read a Hi-ToM file; rows of the same story are grouped.
 
     Args:
         path: JSON file: an array of rows with `story`, `question`, `answer` and optionally
@@ -74,37 +114,63 @@ def read_items(path: Path, rows: Collection[int] | None = None) -> tuple[StoryIt
         rows: Numbers of the rows to read, from 1; None: all.
 
     Raises:
-        InputError: The file or a row does not exist, the file has another form, or a story or
-            question cannot be parsed. The message names the row and the line of the story.
+        InputError: The file does not exist, is no array of rows, or lacks a row of `rows`.
     """
     try:
         text = read_regular(path)
         if text.lstrip()[:1] == b"{":
             every = decode_json(text, _Published).data
         else:
-            every = decode_json(text, list[_Row])
+            every = decode_json(text, list[msgspec.Raw])
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}; give a JSON file") from None
     except msgspec.DecodeError as error:
         raise InputError(
-            f"{path}: {error}; give an array of rows with 'story', 'question' and 'answer', or an "
-            "object with that array under 'data'"
+            f"{path}{line_of(text, error)}: {error}; give an array of rows with 'story', "
+            "'question' and 'answer', or an object with that array under 'data'"
         ) from None
     if rows is not None and not set(rows) <= set(range(1, len(every) + 1)):
         missing = min(set(rows) - set(range(1, len(every) + 1)))
         raise InputError(f"{path} has no row {missing}; it has rows 1 to {len(every)}")
     stories: dict[str, Story] = {}
     items: dict[str, list[Item]] = {}
-    for number, row in enumerate(every, 1):
+    unread: list[Unread] = []
+    for number, raw in enumerate(every, 1):
         if rows is not None and number not in rows:
             continue
-        with _named(f"{path}, row {number}"):
+        where = f"{path}, row {number}"
+        try:
+            row = decode_json(bytes(raw), _Row)
             told = _told_in(row.story)
             if told not in stories:
-                stories[told] = read_story(told)
+                lines, faults = parse_all(told)
+                if faults:
+                    unread.append(Unread(where, tuple(map(str, faults))))
+                    continue
+                stories[told] = story_of(lines)
             item = _item(number, row, stories[told])
+        except (InputError, msgspec.DecodeError) as error:
+            unread.append(Unread(where, (str(error),)))
+            continue
         items.setdefault(told, []).append(item)
-    return tuple(StoryItems(story, tuple(items[told])) for told, story in stories.items())
+    found = tuple(StoryItems(story, tuple(items[t])) for t, story in stories.items() if t in items)
+    return ReadStories(found, tuple(unread))
+
+
+_BYTE = re.compile(r"\(byte (\d+)\)")
+
+
+def line_of(text: bytes, error: msgspec.DecodeError) -> str:
+    """Return the line of a text at which a decoder failed, such as `, line 3`."""
+    found = _BYTE.search(str(error))
+    if found is not None:
+        at = min(int(found[1]), len(text))
+    elif "truncated" in str(error):
+        at = len(text.rstrip())
+    else:
+        at = 0
+    line = text.count(b"\n", 0, at) + 1
+    return f", line {line}"
 
 
 _NUMBERED = re.compile(r"\s*\d+\W*\s")
@@ -126,11 +192,3 @@ def _item(number: int, row: _Row, story: Story) -> Item:
             f"{row.question_order}"
         )
     return Item(number, question, row.answer)
-
-
-@contextmanager
-def _named(where: str) -> Iterator[None]:
-    try:
-        yield
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from None

@@ -3,7 +3,7 @@
 from beliefnest.belief.grounds import Basis
 from beliefnest.suites.stories.played_story import PlayedStory, StoryAnswer
 from beliefnest.suites.stories.questions import Question
-from beliefnest.suites.stories.story import Place
+from beliefnest.suites.stories.story import Hand, Place
 from beliefnest.world.signs import sign_words
 
 __all__ = ["explain_answer"]
@@ -59,9 +59,10 @@ def _perceptions(
     played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None
 ) -> list[str]:
     """Return the nest's explanations of the answered and the expected container."""
-    room = played.story.things[question.thing].room
-    wanted = None if expected is None else Place(room, expected)
-    found = (answer.place, wanted)
+    first = played.story.things[question.thing]
+    rooms = played.story.rooms if isinstance(first, Hand) else (first.room,)
+    wanted = [] if expected is None else [Place(room, expected) for room in rooms]
+    found = (answer.place, *wanted)
     places = dict.fromkeys(p for p in found if p is not None and p in played.plan.places)
     simulator = played.asked(question)
     lines = []

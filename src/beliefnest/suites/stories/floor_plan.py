@@ -30,7 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beliefnest.errors import InputError
-from beliefnest.suites.stories.story import WAITING_ROOM, Place, Story
+from beliefnest.suites.stories.story import WAITING_ROOM, Hand, Place, Story
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
@@ -127,10 +127,18 @@ def lay_out(story: Story) -> FloorPlan:
         grid[position] = registry.state_id(_SIGN)
     items = item_names(tuple(story.things), registry)
     contents: dict[Position, Items] = {position: {} for position in places.values()}
+    held: dict[str, dict[str, int]] = {}
     for thing, place in story.things.items():
-        contents[places[place]] = {**contents[places[place]], items[thing]: 1}
+        if isinstance(place, Hand):
+            held.setdefault(place.agent, {})[items[thing]] = 1
+        else:
+            contents[places[place]] = {**contents[places[place]], items[thing]: 1}
     apart = apart or cells
-    agents = {name: AgentState(feet(block)) for name, block in apart.items()}
+    begins = apart | {agent: stands[room, agent] for agent, room in story.present.items()}
+    agents = {
+        name: AgentState(feet(block), inventory=held.get(name, {}))
+        for name, block in begins.items()
+    }
     snapshot = Snapshot(0, box, Terrain.of(grid), contents, agents)
     return FloorPlan(snapshot, places, apart, stands, items, doors, signs)
 

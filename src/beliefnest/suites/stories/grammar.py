@@ -2,7 +2,7 @@
 
 Sources: Le et al. 2019 (ToMi), He et al. 2023 (Hi-ToM). A line may begin with its number.
 A name is one word, or several words joined by `_` or blanks. A line of stars ends a chapter
-and has no other meaning.
+and has no other meaning. A sentence of another form is reported, never guessed.
 """
 
 import re
@@ -15,6 +15,7 @@ import msgspec
 from beliefnest.errors import InputError
 
 __all__ = [
+    "IT",
     "Agent",
     "Entered",
     "Exited",
@@ -22,13 +23,18 @@ __all__ = [
     "Located",
     "Moved",
     "Opened",
+    "Placed",
+    "Present",
+    "Returned",
     "Sentence",
     "Stayed",
+    "Taken",
     "Told",
     "UseDoor",
     "Wait",
     "Whispered",
     "Write",
+    "parse_all",
     "parse_line",
     "parse_lines",
 ]
@@ -50,10 +56,23 @@ class Entered(_Sentence, frozen=True, tag="enter"):
 
 
 class Exited(_Sentence, frozen=True, tag="leave"):
-    """Agents leave a room together."""
+    """Agents leave a room together; None: the room in which they are."""
 
     agents: _Agents
-    room: _Name
+    room: _Name | None = None
+
+
+class Returned(_Sentence, frozen=True):
+    """Agents enter the room again that they left last."""
+
+    agents: _Agents
+
+
+class Present(_Sentence, frozen=True):
+    """Names are in a place: agents in a room, or a thing in a container."""
+
+    names: _Agents
+    place: _Name
 
 
 class Stayed(_Sentence, frozen=True):
@@ -71,11 +90,38 @@ class Located(_Sentence, frozen=True, tag="is"):
 
 
 class Moved(_Sentence, frozen=True, tag="move"):
-    """An agent takes a thing out of its container and puts it into another."""
+    """An agent takes a thing out of its container and puts it into another.
+
+    Attributes:
+        agent: The agent.
+        thing: The thing.
+        container: Container that holds the thing afterwards.
+        source: Container that holds the thing before; None: the line does not say it.
+    """
 
     agent: Agent
     thing: _Name
     container: _Name
+    source: _Name | None = None
+
+
+class Placed(_Sentence, frozen=True, tag="put"):
+    """An agent puts a thing into a container: as `Moved`, or out of its hands.
+
+    If no earlier line says where the thing was, the agent had it from the beginning.
+    """
+
+    agent: Agent
+    thing: _Name
+    container: _Name
+
+
+class Taken(_Sentence, frozen=True, tag="take"):
+    """An agent takes a thing out of its container, and keeps it in its hands."""
+
+    agent: Agent
+    thing: _Name
+    source: _Name | None = None
 
 
 class UseDoor(_Sentence, frozen=True, tag="door"):
@@ -109,12 +155,14 @@ class Told(_Sentence, frozen=True, tag="tell"):
         thing: The thing.
         container: The container.
         is_there: True if the speaker says that the thing is there, False if that it is not.
+        hearer: Agent to whom it is said. Everybody there hears it, and nobody who is elsewhere.
     """
 
     agent: Agent
     thing: _Name
     container: _Name
     is_there: bool = True
+    hearer: Agent | None = None
 
 
 class Whispered(_Sentence, frozen=True, tag="whisper"):
@@ -128,11 +176,31 @@ class Whispered(_Sentence, frozen=True, tag="whisper"):
 
 
 class Wait(_Sentence, frozen=True, tag="wait"):
-    """Nothing is done: a remark that changes neither the world nor any belief about it."""
+    """Nothing is done: a remark that changes neither the world nor any belief about it.
+
+    Attributes:
+        about: Name in the remark; None: it names nothing.
+    """
+
+    about: _Name | None = None
 
 
 Sentence = (
-    Entered | Exited | Stayed | Located | Moved | UseDoor | Write | Opened | Told | Whispered | Wait
+    Entered
+    | Exited
+    | Returned
+    | Present
+    | Stayed
+    | Located
+    | Moved
+    | Placed
+    | Taken
+    | UseDoor
+    | Write
+    | Opened
+    | Told
+    | Whispered
+    | Wait
 )
 
 
@@ -162,19 +230,69 @@ class Line:
         return InputError(f"{self.place}: {self.text!r}: {what}")
 
 
+IT = "it"
+"""Thing that was named last."""
+
 _AGENT = r"[A-Za-z0-9_]{1,16}"
 _AND = r"(?:,\s*(?:and\s+)?|\s+and\s+)"
 _AGENTS = rf"(?P<agents>{_AGENT}(?:{_AND}{_AGENT})*)"
-_NAME = r"[A-Za-z0-9][\w'-]*(?: [\w'-]+)*?"
+_WORD = (
+    r"(?!(?:the|an?|in|into|inside|to|from|out|on|onto|up|and|with|for|that|is|are|was|were)\b)"
+    r"[\w'-]+"
+)
+"""Word of a name. A name with a word of the grammar in it is another sentence."""
+
+_NAME = rf"(?=[A-Za-z0-9]){_WORD}(?: {_WORD})*?"
 _NUMBER = re.compile(r"^\d+[.:)]?\s+")
 _SPACE = re.compile(r'(?P<text>"[^"]*")|\s+')
 _JOINT = re.compile(_AND)
 _A = r"(?:the|a|an|his|her|their)"
+_THE = rf"(?:{_A} )?"
 _ALL = r"(?:(?:both|all|together)\s+)?"
+_THING = rf"{_THE}(?P<thing>{_NAME})"
+_CONTAINER = rf"{_THE}(?P<container>{_NAME})"
+_INTO = r"(?:back )?(?:in|into|inside)"
+_TO = r"(?:back )?(?:into|inside|to)"
+_FROM = rf"(?:from|out of) {_THE}(?P<source>{_NAME})"
+_WALK = r"(?:came|comes|goes|ran|runs|stepped|steps|walked|walks|went)"
+_PUTS = r"(?:drops|dropped|hid|hides|laid|left|leaves|placed|places|put|puts|stored|stores)"
+_CARRIES = (
+    r"(?:brings|brought|carried|carries|moved|moves|returned|returns|shifted|shifts|takes|took|"
+    r"transferred|transfers)"
+)
+_TAKES = r"(?:fetched|fetches|grabbed|grabs|removed|removes|takes|took)"
 _CLAIM = (
     rf"(?:that )?(?:the )?(?P<thing>{_NAME}) (?P<link>is|is not) in (?:the )?"
     rf"(?P<container>{_NAME})(?: now)?"
 )
+_NOBODY = frozenset(
+    (
+        "he",
+        "she",
+        "it",
+        "they",
+        "him",
+        "her",
+        "them",
+        "his",
+        "their",
+        "we",
+        "you",
+        "i",
+        "this",
+        "that",
+        "there",
+        "here",
+        "someone",
+        "somebody",
+        "everyone",
+        "everybody",
+        "nobody",
+        "both",
+        "all",
+    )
+)
+"""Words that name nobody and nothing."""
 
 
 def _agents(match: re.Match[str]) -> tuple[str, ...]:
@@ -182,40 +300,85 @@ def _agents(match: re.Match[str]) -> tuple[str, ...]:
 
 
 def _told(match: re.Match[str]) -> Told:
-    return Told(match["agent"], match["thing"], match["container"], match["link"] == "is")
+    is_there = match["link"] == "is"
+    return Told(match["agent"], match["thing"], match["container"], is_there, match["to"])
 
 
 def _whispered(match: re.Match[str]) -> Whispered:
-    told = _told(match)
-    return Whispered(told.agent, match["hearer"], told.thing, told.container, told.is_there)
+    is_there = match["link"] == "is"
+    hearer = match["hearer"]
+    return Whispered(match["agent"], hearer, match["thing"], match["container"], is_there)
 
 
-def _remark(_: re.Match[str]) -> Wait:
-    return Wait()
+def _moved(match: re.Match[str]) -> Moved:
+    return Moved(match["agent"], match["thing"], match["container"], match["source"])
+
+
+def _taken(match: re.Match[str]) -> Taken:
+    return Taken(match["agent"], match["thing"], match["source"])
+
+
+def _exited(match: re.Match[str]) -> Exited:
+    room = match.groupdict().get("room")
+    return Exited(_agents(match), None if room == "room" else room)
+
+
+def _remark(match: re.Match[str]) -> Wait:
+    return Wait(match.groupdict().get("about"))
 
 
 _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
     (
-        rf"{_AGENTS} {_ALL}(?:re-?)?entered (?:the )?(?P<room>{_NAME})",
+        rf"{_AGENTS} {_ALL}(?:(?:re-?)?enter(?:ed|s)|{_WALK} (?:back )?(?:in|to|into|inside)|"
+        rf"return(?:ed|s) to|arrive[ds] in) {_THE}(?P<room>{_NAME})",
         lambda match: Entered(_agents(match), match["room"]),
     ),
     (
-        rf"{_AGENTS} {_ALL}(?:exited|left) (?:the )?(?P<room>{_NAME})",
-        lambda match: Exited(_agents(match), match["room"]),
+        rf"{_AGENTS} {_ALL}(?:(?:re-?)enter(?:ed|s)|return(?:ed|s)|(?:came|comes|goes|went) back)"
+        r"(?: in| inside)?",
+        lambda match: Returned(_agents(match)),
+    ),
+    (
+        rf"{_AGENTS} {_ALL}(?:left|leaves|exited|exits|departed|departs|"
+        rf"{_WALK} (?:out|away|off|outside))",
+        _exited,
+    ),
+    (
+        rf"{_AGENTS} {_ALL}(?:exit(?:ed|s)|left|leaves|{_WALK} out of) {_THE}(?P<room>{_NAME})",
+        _exited,
     ),
     (
         rf"{_AGENTS} made no movements and stayed in (?:the )?(?P<room>{_NAME})"
         r"(?: for \d+ minutes?)?",
         lambda match: Stayed(_agents(match), match["room"]),
     ),
+    (rf"(?P<agent>{_AGENT}) {_CARRIES} {_THING}(?: {_FROM})? {_TO} {_CONTAINER}", _moved),
     (
-        rf"(?P<agent>{_AGENT}) moved (?:the )?(?P<thing>{_NAME}) (?:in)?to (?:the )?"
-        rf"(?P<container>{_NAME})",
-        lambda match: Moved(match["agent"], match["thing"], match["container"]),
+        rf"(?P<agent>{_AGENT}) (?:{_TAKES}|picked up|picks up) {_THING}(?: {_FROM})? and {_PUTS} "
+        rf"it {_INTO} {_CONTAINER}",
+        _moved,
     ),
     (
-        rf"[Tt]he (?P<thing>{_NAME}) (?:is|was) in (?:the )?(?P<place>{_NAME})",
+        rf"(?P<agent>{_AGENT}) {_PUTS} {_THING} {_INTO} {_CONTAINER}",
+        lambda match: Placed(match["agent"], match["thing"], match["container"]),
+    ),
+    (rf"(?P<agent>{_AGENT}) (?:{_TAKES}|picked up|picks up) {_THING}(?: {_FROM})?", _taken),
+    (rf"(?P<agent>{_AGENT}) (?:picked|picks|takes|took) {_THING} (?:up|out)(?: {_FROM})?", _taken),
+    (
+        rf"(?:The|the|An?|an?) (?P<thing>{_NAME}) (?:is|are|was|were) in {_THE}(?P<place>{_NAME})",
         lambda match: Located(match["thing"], match["place"]),
+    ),
+    (
+        rf"There (?:is|was) an? (?P<thing>{_NAME}) in {_THE}(?P<place>{_NAME})",
+        lambda match: Located(match["thing"], match["place"]),
+    ),
+    (
+        rf"It (?:is|was) in {_THE}(?P<place>{_NAME})",
+        lambda match: Located(IT, match["place"]),
+    ),
+    (
+        rf"{_AGENTS} {_ALL}(?:is|are|was|were) {_ALL}in {_THE}(?P<place>{_NAME})",
+        lambda match: Present(_agents(match), match["place"]),
     ),
     (
         rf"(?P<agent>{_AGENT}) (?P<how>opened|shut|closed) the door of (?:the )?(?P<room>{_NAME})",
@@ -227,7 +390,7 @@ _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
         lambda match: Write(match["agent"], match["room"], match["text"]),
     ),
     (
-        rf"(?P<agent>{_AGENT}) (?:opened|looked into) (?:the )?(?P<container>{_NAME})",
+        rf"(?P<agent>{_AGENT}) (?:opens|opened|look(?:ed|s) (?:in|into|inside)) {_CONTAINER}",
         lambda match: Opened(match["agent"], match["container"]),
     ),
     (
@@ -235,15 +398,31 @@ _FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
         _whispered,
     ),
     (
-        rf"(?P<agent>{_AGENT}) (?:publicly claimed|said|told {_AGENT}) {_CLAIM}",
+        rf"(?P<agent>{_AGENT}) (?:publicly claimed|said|told (?P<to>{_AGENT})) {_CLAIM}",
         _told,
     ),
-    (rf"{_AGENTS} (?:dis)?likes? (?:{_A} )?{_NAME}", _remark),
-    (rf"{_AGENTS} (?:hate|love)s? (?:{_A} )?{_NAME}", _remark),
-    (rf"{_AGENTS} (?:saw|lost) {_A} {_NAME}", _remark),
+    (rf"{_AGENTS} (?:dis)?likes? {_THE}(?P<about>{_NAME})", _remark),
+    (rf"{_AGENTS} (?:hate|love)s? {_THE}(?P<about>{_NAME})", _remark),
+    (rf"{_AGENTS} (?:saw|lost) {_A} (?P<about>{_NAME})", _remark),
     (r"(?:The )?[Pp]hone rang", _remark),
 )
 _KINDS = tuple((re.compile(form), make) for form, make in _FORMS)
+
+
+def parse_all(text: str) -> tuple[tuple[Line, ...], tuple[InputError, ...]]:
+    """Return the sentences of a story, and an error for each line that is no known sentence.
+
+    Lines that are blank or have only stars are left out.
+    """
+    lines: list[Line] = []
+    faults: list[InputError] = []
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip(" *"):
+            try:
+                lines.append(parse_line(number, line))
+            except InputError as error:
+                faults.append(error)
+    return tuple(lines), tuple(faults)
 
 
 def parse_lines(text: str) -> tuple[Line, ...]:
@@ -252,11 +431,10 @@ def parse_lines(text: str) -> tuple[Line, ...]:
     Raises:
         InputError: A line is no known sentence; the message gives its number.
     """
-    return tuple(
-        parse_line(number, line)
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip(" *")
-    )
+    lines, faults = parse_all(text)
+    if faults:
+        raise faults[0]
+    return lines
 
 
 def parse_line(number: int, text: str, unit: str = "line") -> Line:
@@ -276,11 +454,21 @@ def _parse(line: str, place: str) -> Sentence:
     for form, make in _KINDS:
         match = form.fullmatch(words)
         if match is not None:
+            _check_names(match, place, line)
             return make(match)
     raise InputError(
-        f"{place}: {line!r} is no sentence of a story; write that someone entered, exited "
-        "or stayed in a room, moved a thing to a container, opened a container, opened or shut "
+        f"{place}: {line!r} is no sentence of a story; write that someone entered, left, returned "
+        "to or stayed in a room, moved, took or put a thing, opened a container, opened or shut "
         'the door of a room, wrote "..." on the sign of a room, said or whispered to someone that '
-        "a thing is in a container, likes "
-        "or dislikes something, or that a thing is in a container"
+        "a thing is in a container, likes or dislikes something, or that a thing is in a container"
     )
+
+
+def _check_names(match: re.Match[str], place: str, line: str) -> None:
+    """Refuse words in place of names; only a thing may be `it`."""
+    for kind, found in match.groupdict().items():
+        if kind in ("about", "how", "link", "text") or found is None:
+            continue
+        for name in _JOINT.split(found) if kind == "agents" else (found,):
+            if name.lower() in _NOBODY and (kind, name) != ("thing", IT):
+                raise InputError(f"{place}: {line!r}: {name!r} is no name; write the name")

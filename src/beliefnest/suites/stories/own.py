@@ -8,7 +8,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.perception.options import ContainerMode, Testimony
-from beliefnest.suites.stories.data import Item, StoryItems
+from beliefnest.suites.stories.data import Item, ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.faults import form_fault
 from beliefnest.suites.stories.grammar import (
     Agent,
@@ -18,6 +18,8 @@ from beliefnest.suites.stories.grammar import (
     Located,
     Moved,
     Opened,
+    Placed,
+    Taken,
     Told,
     UseDoor,
     Wait,
@@ -31,7 +33,20 @@ from beliefnest.suites.stories.story import Story, story_of
 
 __all__ = ["read_own"]
 
-_Event = Entered | Exited | Located | Moved | Opened | UseDoor | Write | Told | Whispered | Wait
+_Event = (
+    Entered
+    | Exited
+    | Located
+    | Moved
+    | Placed
+    | Taken
+    | Opened
+    | UseDoor
+    | Write
+    | Told
+    | Whispered
+    | Wait
+)
 
 
 class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -57,16 +72,18 @@ class _OwnStory(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     sincere: bool = False
 
 
-def read_own(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItems, ...]:
-    """Return the stories of a JSONL file, one story per line.
+def read_own(path: Path, rows: Collection[int] | None = None) -> ReadStories:
+    """Read a JSONL file, one story per line.
+
+    A story with an event that cannot be read is left out as a whole; of the questions, those that
+    cannot be read.
 
     Args:
         path: The file.
         rows: Numbers of the lines to read, from 1; None: all.
 
     Raises:
-        InputError: The file or a line does not exist, a line has another form, or a story or
-            question cannot be parsed. The message names the line and the event.
+        InputError: The file does not exist, or lacks a line of `rows`.
     """
     try:
         lines = read_regular(path).splitlines()
@@ -75,29 +92,56 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> tuple[StoryItem
     missing = sorted(set(rows or ()) - set(range(1, len(lines) + 1)))
     if missing:
         raise InputError(f"{path} has no line {missing[0]}; it has lines 1 to {len(lines)}")
-    stories = []
+    stories: list[StoryItems] = []
+    unread: list[Unread] = []
     for number, line in enumerate(lines, 1):
         if not line.strip() or (rows is not None and number not in rows):
             continue
+        where = f"{path}, line {number}"
         try:
-            stories.append(_story(number, decode_json(line, _OwnStory)))
+            told = decode_json(line, _OwnStory)
         except msgspec.DecodeError as error:
-            words = form_fault(error, _OwnStory, _Event)
-            raise InputError(f"{path}, line {number}: {words}") from None
+            unread.append(Unread(where, (form_fault(error, _OwnStory, _Event),)))
+            continue
+        story, faults = _story(number, told)
+        if story is not None:
+            stories.append(story)
+            unread += [Unread(where, (fault,)) for fault in faults]
+        else:
+            unread.append(Unread(where, faults, max(1, len(told.questions))))
+    return ReadStories(tuple(stories), tuple(unread))
+
+
+def _story(number: int, told: _OwnStory) -> tuple[StoryItems | None, tuple[str, ...]]:
+    """Return a story, whose events are its lines, and what cannot be read of its questions.
+
+    None: the events cannot be read, for the reasons beside it.
+    """
+    lines: list[Line] = []
+    faults: list[str] = []
+    for at, event in enumerate(told.events, 1):
+        try:
+            lines.append(_line(at, event))
         except InputError as error:
-            raise InputError(f"{path}, line {number}: {error}") from None
-    return tuple(stories)
-
-
-def _story(number: int, told: _OwnStory) -> StoryItems:
-    """Return a story; its events are its lines."""
-    story = story_of([_line(at, event) for at, event in enumerate(told.events, 1)])
-    items = [Item(number, _question(asked), asked.answer) for asked in told.questions]
-    for item in items:
-        check_question(story, item.question)
-        _check_answer(story, item)
+            faults.append(str(error))
+    if faults:
+        return None, tuple(faults)
+    try:
+        story = story_of(lines)
+    except InputError as error:
+        return None, (str(error),)
+    items: list[Item] = []
+    for asked in told.questions:
+        try:
+            item = Item(number, _question(asked), asked.answer)
+            check_question(story, item.question)
+            _check_answer(story, item)
+        except InputError as error:
+            faults.append(str(error))
+        else:
+            items.append(item)
     knowing = Knowing(told.containers, told.testimony, told.sincere)
-    return StoryItems(story, tuple(items), knowing)
+    return StoryItems(story, tuple(items), knowing), tuple(faults)
 
 
 def _line(number: int, event: str | _Event) -> Line:

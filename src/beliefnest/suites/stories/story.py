@@ -4,18 +4,26 @@ This module tracks only reality, as far as the acts need it: an agent must be in
 thing is taken out of the container it is in. It knows nothing of beliefs.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.suites.stories.grammar import (
+    IT,
     Entered,
     Exited,
     Line,
     Located,
     Moved,
     Opened,
+    Placed,
+    Present,
+    Returned,
+    Sentence,
     Stayed,
+    Taken,
     Told,
     UseDoor,
     Wait,
@@ -24,16 +32,20 @@ from beliefnest.suites.stories.grammar import (
     parse_lines,
 )
 from beliefnest.world.signs import sign_fault
+from beliefnest.world.words import listed
 
 __all__ = [
     "WAITING_ROOM",
     "Act",
     "Come",
     "Go",
+    "Hand",
     "Look",
     "Move",
     "Place",
+    "Put",
     "Story",
+    "Take",
     "Tell",
     "read_story",
     "story_of",
@@ -44,12 +56,23 @@ WAITING_ROOM = "waiting_room"
 see each other either. In other stories, all agents that are in no room meet there."""
 
 
+_ROOM = "room"
+"""Room of a story that names none."""
+
+
 @dataclass(frozen=True, slots=True, order=True)
 class Place:
     """Container in a room; other rooms may have containers of the same name."""
 
     room: str
     container: str
+
+
+@dataclass(frozen=True, slots=True)
+class Hand:
+    """Hands of an agent."""
+
+    agent: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +105,24 @@ class Move:
     agent: str
     thing: str
     source: Place
+    target: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """An agent takes a thing out of a place into its hands."""
+
+    agent: str
+    thing: str
+    source: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Put:
+    """An agent puts a thing out of its hands into a place."""
+
+    agent: str
+    thing: str
     target: Place
 
 
@@ -120,7 +161,7 @@ class Tell:
         return f"The {self.thing} {link} in the {self.place.container}."
 
 
-Act = Come | Go | Move | Look | UseDoor | Write | Tell | Wait
+Act = Come | Go | Move | Take | Put | Look | UseDoor | Write | Tell | Wait
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,10 +173,12 @@ class Story:
         acts: Act of each line.
         rooms: Names of the rooms, without the waiting room.
         places: The containers.
-        agents: Names of the agents; all are in no room at first.
-        things: First place of each thing.
+        agents: Names of the agents; those that are not `present` are in no room at first.
+        things: First place of each thing, or the hands that have it.
         doors: Rooms with a door, which is open at first.
         signs: Rooms with a sign, which is empty at first.
+        present: Rooms of agents that are in a room from the beginning, by agent.
+        notes: Remarks on lines for reports: who cannot hear what is said.
     """
 
     lines: tuple[Line, ...]
@@ -143,9 +186,11 @@ class Story:
     rooms: tuple[str, ...]
     places: tuple[Place, ...]
     agents: tuple[str, ...]
-    things: dict[str, Place]
+    things: dict[str, Place | Hand]
     doors: tuple[str, ...] = ()
     signs: tuple[str, ...] = ()
+    present: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     @property
     def tells(self) -> bool:
@@ -172,11 +217,12 @@ def story_of(lines: Sequence[Line]) -> Story:
     """
     if not lines:
         raise InputError("the story is empty; give it one sentence a line")
+    written, lines = lines, tuple(_named(lines))
     rooms = _rooms(lines)
     reader = _Reader(lines, rooms, _stated_rooms(lines, rooms))
     acts = tuple(reader.act(number) for number in range(len(lines)))
     return Story(
-        lines=tuple(lines),
+        lines=tuple(written),
         acts=acts,
         rooms=rooms,
         places=tuple(reader.places),
@@ -184,19 +230,113 @@ def story_of(lines: Sequence[Line]) -> Story:
         things=reader.first,
         doors=tuple(reader.is_open),
         signs=tuple(dict.fromkeys(act.room for act in acts if isinstance(act, Write))),
+        present=reader.present,
+        notes=tuple(reader.notes()),
     )
+
+
+def _named(lines: Sequence[Line]) -> Iterator[Line]:
+    """Yield the lines with the names of things in place of `it`, and with known kinds of names.
+
+    `it` is the thing that was named last. A remark about a name that is no thing of the story
+    leaves open what `it` is.
+
+    Raises:
+        InputError: `it` stands for nothing, or for one of several things.
+    """
+    agents = {name for line in lines for name in _actors(line.sentence)}
+    used = Located | Moved | Placed | Taken
+    things = {line.sentence.thing for line in lines if isinstance(line.sentence, used)}
+    holders = {line.sentence.place for line in lines if isinstance(line.sentence, Located)}
+    holders |= {s.container for line in lines if isinstance(s := line.sentence, Moved | Placed)}
+    last: str | None = None
+    doubt: str | None = None
+    for line in lines:
+        sentence = line.sentence
+        if isinstance(sentence, Present):
+            sentence = _placed(line, sentence, agents, lines)
+        if isinstance(sentence, used | Told | Whispered):
+            if sentence.thing == IT:
+                if last is None:
+                    raise line.fault("no earlier line names a thing that 'it' could be")
+                if doubt is not None:
+                    raise line.fault(f"'it' may be the {last} or the {doubt}; name the thing")
+                sentence = _with_thing(sentence, last)
+            if not (isinstance(sentence, Located) and sentence.thing in holders):
+                last, doubt = sentence.thing, None
+        if isinstance(sentence, Wait) and sentence.about is not None:
+            if sentence.about in things - holders:
+                last, doubt = sentence.about, None
+            elif sentence.about not in holders | agents:
+                doubt = sentence.about
+        yield replace(line, sentence=sentence)
+
+
+def _with_thing(sentence: Sentence, thing: str) -> Sentence:
+    return msgspec.structs.replace(sentence, thing=thing)
+
+
+def _actors(sentence: Sentence) -> tuple[str, ...]:
+    """Return the agents that do something in a sentence."""
+    match sentence:
+        case Entered() | Exited() | Returned() | Stayed():
+            return sentence.agents
+        case Moved() | Placed() | Taken() | UseDoor() | Write() | Opened() | Told() | Whispered():
+            return (sentence.agent,)
+        case _:
+            return ()
+
+
+def _placed(
+    line: Line, sentence: Present, agents: set[str], lines: Sequence[Line]
+) -> Present | Located:
+    """Return what `X is in the Y` says: that agents are in a room, or where a thing is."""
+    named = Entered | Exited | Stayed | UseDoor | Write
+    rooms = {each.sentence.room for each in lines if isinstance(each.sentence, named)}
+    rooms |= {
+        each.sentence.place
+        for each in lines
+        if isinstance(each.sentence, Present) and agents & set(each.sentence.names)
+    }
+    if agents & set(sentence.names) or sentence.place in rooms:
+        return sentence
+    if len(sentence.names) == 1:
+        return Located(sentence.names[0], sentence.place)
+    raise line.fault("write one sentence for each thing")
 
 
 def _rooms(lines: Sequence[Line]) -> tuple[str, ...]:
     """Return the names of rooms: places that agents enter, and places of containers."""
     sentences = [line.sentence for line in lines]
-    named = Entered | Exited | Stayed | UseDoor | Write
-    visited = [s.room for s in sentences if isinstance(s, named)]
+    visited = [room for s in sentences for room in _visited(s)]
     located = [s for s in sentences if isinstance(s, Located)]
     holders = {s.place for s in located if s.place not in visited}
-    holders |= {s.container for s in sentences if isinstance(s, Moved)}
+    holders |= {s.container for s in sentences if isinstance(s, Moved | Placed)}
+    holders |= {s.source for s in sentences if isinstance(s, Moved | Taken) and s.source}
+    for line in lines:
+        both = holders.intersection(visited, _visited(line.sentence))
+        if both:
+            raise line.fault(f"the {min(both)} cannot be a room and a container")
     unvisited = [s.place for s in located if s.thing in holders and s.place not in visited]
-    return tuple(name for name in dict.fromkeys(visited + unvisited) if name != WAITING_ROOM)
+    rooms = tuple(name for name in dict.fromkeys(visited + unvisited) if name != WAITING_ROOM)
+    if len(rooms) > 1 and _ROOM in rooms:
+        line = next(line for line in lines if _ROOM in _visited(line.sentence))
+        others = ", ".join(name for name in rooms if name != _ROOM)
+        raise line.fault(f"'the room' may be one of several; name it: {others}")
+    return rooms or (_ROOM,)
+
+
+def _visited(sentence: Sentence) -> tuple[str, ...]:
+    """Return the room that a sentence says agents to be in."""
+    match sentence:
+        case Exited(_, None):
+            return ()
+        case Entered() | Exited() | Stayed() | UseDoor() | Write():
+            return (str(sentence.room),)
+        case Present():
+            return (sentence.place,)
+        case _:
+            return ()
 
 
 def _stated_rooms(lines: Sequence[Line], rooms: Sequence[str]) -> dict[str, str]:
@@ -220,28 +360,41 @@ class _Reader:
     rooms: Sequence[str]
     stated: dict[str, str]
     whereabouts: dict[str, str | None] = field(default_factory=dict)
-    first: dict[str, Place] = field(default_factory=dict)
-    now: dict[str, Place] = field(default_factory=dict)
+    first: dict[str, Place | Hand] = field(default_factory=dict)
+    now: dict[str, Place | Hand] = field(default_factory=dict)
     places: dict[Place, None] = field(default_factory=dict)
     is_open: dict[str, bool] = field(default_factory=dict)
+    present: dict[str, str] = field(default_factory=dict)
+    left: dict[str, str] = field(default_factory=dict)
+    said: list[tuple[Line, Told, dict[str, str | None]]] = field(default_factory=list)
 
-    def act(self, number: int) -> Act:
+    def act(self, number: int) -> Act:  # noqa: PLR0911  # one case a sentence
         """Return the act of a line."""
         line = self.lines[number]
         match line.sentence:
-            case Entered() | Exited():
-                return self._go(line, line.sentence)
-            case Moved(agent, thing, container):
-                return self._move(line, agent, thing, container)
+            case Entered(agents, room):
+                return self._enter(agents, room)
+            case Returned(agents):
+                return self._return(line, agents)
+            case Exited(agents, room):
+                return self._exit(number, agents, room)
+            case Moved(agent, thing, container, source):
+                return self._move(line, agent, thing, container, source)
+            case Placed(agent, thing, container):
+                return self._put(number, agent, thing, container)
+            case Taken(agent, thing, source):
+                held = self._held(line, agent, thing, source)
+                self.now[thing] = Hand(agent)
+                return Take(agent, thing, held)
             case Opened(agent, container):
-                room = self._room_of(line, agent)
+                room = self._room_of(line, agent, self._room_with(container))
                 return Look(agent, self._place(line, self._here(line, room, container), container))
             case UseDoor() | Write() as used:
                 self._check_inside(line, (used.agent,), used.room)
                 return self._door(line, used) if isinstance(used, UseDoor) else _text(line, used)
             case Told() | Whispered():
                 return self._tell(line, line.sentence)
-            case Stayed(agents, room):
+            case Stayed(agents, room) | Present(agents, room):
                 self._check_inside(line, agents, room)
             case Located(thing, place):
                 self._locate(number, thing, place)
@@ -249,16 +402,37 @@ class _Reader:
                 pass
         return Wait()
 
-    def _go(self, line: Line, sentence: Entered | Exited) -> Come | Go:
-        agents, room = sentence.agents, sentence.room
-        passed = [room, *(self.whereabouts.get(agent) for agent in agents)]
-        shuts = tuple(dict.fromkeys(r for r in passed if r and not self.is_open.get(r, True)))
-        if isinstance(sentence, Exited):
-            self._check_inside(line, agents, room)
-            self.whereabouts.update(dict.fromkeys(agents))
-            return Go(agents, shuts)
+    def _enter(self, agents: Sequence[str], room: str) -> Come | Go:
+        shuts = self._shuts(room, agents)
         self.whereabouts.update(dict.fromkeys(agents, room))
+        agents = tuple(agents)
         return Go(agents, shuts) if room == WAITING_ROOM else Come(agents, room, shuts)
+
+    def _return(self, line: Line, agents: Sequence[str]) -> Come | Go:
+        rooms = {self.left.get(agent) for agent in agents}
+        room = rooms.pop()
+        inside = [agent for agent in agents if self.whereabouts.get(agent)]
+        if room is None or rooms or inside:
+            raise line.fault(f"{listed(agents)} left no room together; name the room")
+        return self._enter(agents, room)
+
+    def _exit(self, number: int, agents: Sequence[str], room: str | None) -> Go:
+        line = self.lines[number]
+        if room is None:
+            known = {self.whereabouts[name] for name in agents if name in self.whereabouts}
+            room = known.pop() if known else self._room_near(number)
+            if room is None or known:
+                raise line.fault("they are in no room together; name the room")
+        shuts = self._shuts(room, agents)
+        self._check_inside(line, agents, room)
+        self.whereabouts.update(dict.fromkeys(agents))
+        self.left.update(dict.fromkeys(agents, room))
+        return Go(tuple(agents), shuts)
+
+    def _shuts(self, room: str, agents: Sequence[str]) -> tuple[str, ...]:
+        """Return the rooms with shut doors between a room and agents."""
+        passed = [room, *(self.whereabouts.get(agent) for agent in agents)]
+        return tuple(dict.fromkeys(r for r in passed if r and not self.is_open.get(r, True)))
 
     def _door(self, line: Line, used: UseDoor) -> UseDoor:
         if self.is_open.setdefault(used.room, True) is used.opens:
@@ -269,21 +443,56 @@ class _Reader:
 
     def _check_inside(self, line: Line, agents: Sequence[str], room: str) -> None:
         for agent in agents:
-            found = self.whereabouts.get(agent)
+            found = self._since_beginning(agent, room)
             if found != room:
                 where = "in no room" if found is None else f"in the {found}"
                 raise line.fault(f"{agent} is {where}; let {agent} enter the {room} first")
 
-    def _move(self, line: Line, agent: str, thing: str, container: str) -> Move:
-        room = self._room_of(line, agent)
+    def _since_beginning(self, agent: str, room: str) -> str | None:
+        """Return the room of an agent; one of whom no line said anything was there all the time."""
+        if agent not in self.whereabouts:
+            self.whereabouts[agent] = room
+            if room != WAITING_ROOM:
+                self.present[agent] = room
+        return self.whereabouts[agent]
+
+    def _move(
+        self, line: Line, agent: str, thing: str, container: str, named: str | None
+    ) -> Move | Put:
+        if self.now.get(thing) == Hand(agent) and named is None:
+            return self._out_of_hand(line, agent, thing, container)
+        source = self._held(line, agent, thing, named)
+        target = self._place(line, self._here(line, source.room, container), container)
+        self.now[thing] = target
+        return Move(agent, thing, source, target)
+
+    def _put(self, number: int, agent: str, thing: str, container: str) -> Move | Put:
+        line = self.lines[number]
+        if thing not in self.now:
+            room = self._room_with(container) or self._room_near(number, agent)
+            self._room_of(line, agent, room)
+            self.first[thing] = self.now[thing] = Hand(agent)
+        return self._move(line, agent, thing, container, None)
+
+    def _out_of_hand(self, line: Line, agent: str, thing: str, container: str) -> Put:
+        room = self._room_of(line, agent, None)
+        target = self._place(line, self._here(line, room, container), container)
+        self.now[thing] = target
+        return Put(agent, thing, target)
+
+    def _held(self, line: Line, agent: str, thing: str, named: str | None) -> Place:
+        """Return the place of a thing, after checking that an agent can take it there."""
         source = self.now.get(thing)
         if source is None:
             raise line.fault(f"nothing says where the {thing} was; say 'The {thing} is in the ...'")
+        if isinstance(source, Hand):
+            raise line.fault(f"{source.agent} has the {thing} in the hands")
+        room = self._room_of(line, agent, source.room)
         if source.room != room:
             raise line.fault(f"the {thing} is in the {source.room} and {agent} in the {room}")
-        target = self._place(line, self._here(line, room, container), container)
-        self.now[thing] = target
-        return Move(agent, thing, source, target)
+        if named not in (None, source.container):
+            raise line.fault(f"the {thing} is in the {source.container}, not in the {named}")
+        return source
 
     def _tell(self, line: Line, told: Told | Whispered) -> Tell:
         hearer = told.hearer if isinstance(told, Whispered) else None
@@ -294,16 +503,50 @@ class _Reader:
             raise line.fault(f"{told.agent} cannot whisper to itself; name somebody else")
         if told.thing not in self.now:
             raise line.fault(f"nothing says where the {told.thing} was; say where it is first")
-        room = self.stated.get(told.container) or self.now[told.thing].room
-        place = self._place(line, room, told.container)
+        where = self.now[told.thing]
+        room = self._room_with(told.container) or (
+            where.room if isinstance(where, Place) else self.whereabouts[where.agent]
+        )
+        if room in (None, WAITING_ROOM):
+            raise line.fault(f"nothing says in which room the {told.container} is; say it first")
+        place = self._place(line, str(room), told.container)
+        if isinstance(told, Told):
+            self.said.append((line, told, dict(self.whereabouts)))
         return Tell(told.agent, hearer, told.thing, place, told.is_there)
 
-    def _room_of(self, line: Line, agent: str) -> str:
-        """Return the room with containers that an agent is in."""
-        room = self.whereabouts.get(agent)
-        if room is None or room == WAITING_ROOM:
+    def notes(self) -> Iterator[str]:
+        """Yield remarks on what is said aloud where nobody, or not the addressee, hears it."""
+        for line, told, then in self.said:
+            rooms = {name: then.get(name, self.present.get(name)) for name in self.whereabouts}
+            inside = {name: None if at == WAITING_ROOM else at for name, at in rooms.items()}
+            here = inside.pop(told.agent)
+            audience = [name for name, at in inside.items() if at == here]
+            hears = f"{listed(audience)} {'hears' if len(audience) == 1 else 'hear'} it"
+            if told.hearer is not None and told.hearer not in audience:
+                hears = f"{hears} instead" if audience else "nobody hears it"
+                yield f"{line.place}: {line.text!r}: {told.hearer} is not there; {hears}"
+            elif not audience:
+                yield f"{line.place}: {line.text!r}: nobody else is there; nobody hears it"
+
+    def _room_of(self, line: Line, agent: str, room: str | None) -> str:
+        """Return the room with containers that an agent is in.
+
+        Args:
+            line: The line.
+            agent: The agent.
+            room: Room of an agent of whom no line said anything; None: such an agent is in none.
+        """
+        found = self.whereabouts.get(agent)
+        if room is not None:
+            found = self._since_beginning(agent, room)
+        if found is None or found == WAITING_ROOM:
             raise line.fault(f"{agent} is in no room with containers; let {agent} enter one first")
-        return room
+        return found
+
+    def _room_with(self, container: str) -> str | None:
+        """Return the room of a container; None: it is in none yet, or in several."""
+        rooms = {place.room for place in self.places if place.container == container}
+        return self.stated.get(container) or (rooms.pop() if len(rooms) == 1 else None)
 
     def _here(self, line: Line, room: str, container: str) -> str:
         """Return a room after checking that no line states another room for the container."""
@@ -332,13 +575,21 @@ class _Reader:
         self.places.setdefault(place)
         return place
 
-    def _room_near(self, number: int) -> str:
-        """Return the room that agents entered last before a line, or next after it."""
+    def _room_near(self, number: int, agent: str | None = None) -> str:
+        """Return the room of an agent, or that agents entered last before a line or next after it.
+
+        In a story with one room, that is the room.
+        """
+        if len(self.rooms) == 1:
+            return self.rooms[0]
+        inside = None if agent is None else self.whereabouts.get(agent)
+        if inside is not None:
+            return inside
         before, after = self.lines[:number][::-1], self.lines[number:]
         for line in (*before, *after):
-            sentence = line.sentence
-            if isinstance(sentence, Entered) and sentence.room != WAITING_ROOM:
-                return sentence.room
+            match line.sentence:
+                case Entered(_, room) | Present(_, room) if room != WAITING_ROOM:
+                    return room
         raise self.lines[number].fault("it is in no room that is entered; name its room")
 
 
