@@ -1,4 +1,4 @@
-"""What an observer could not perceive changes nothing that is inferred, foretold or drawn."""
+"""Nothing that an observer could not perceive changes what is inferred, foretold or drawn."""
 
 import random
 

@@ -8,7 +8,7 @@ To add a kind, add its keys to `ConditionEntry`, and its class to `KINDS`.
 import itertools
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, ClassVar
@@ -533,6 +533,12 @@ def condition_entry(given: object, agents: Collection[str], box: Box) -> Conditi
     try:
         entry = msgspec.convert(given, ConditionEntry)
     except msgspec.ValidationError as fault:
+        fields = ConditionEntry.__struct_fields__
+        if isinstance(given, Mapping) and (others := [key for key in given if key not in fields]):
+            raise InputError(
+                f"the condition {given!r} has {', '.join(map(repr, others))}; its fields are "
+                f"{', '.join(fields)}, and it is about one tick"
+            ) from None
         raise InputError(f"the condition {given!r} is malformed: {fault}") from None
     check_condition(entry, agents, box)
     return entry

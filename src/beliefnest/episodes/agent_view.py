@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from random import Random
 from typing import TYPE_CHECKING, Any, Protocol
 
 from beliefnest.belief.view import State
@@ -179,6 +181,11 @@ class AgentView:
         self.memo = {} if memo is None else memo
         self.considered: SearchTrace | None = None
         self.spent = Spent()
+
+    @cached_property
+    def random(self) -> Random:
+        """Random numbers of the policy in this round; equal seeds of episodes give equal ones."""
+        return Random(f"{self.brief.seed} {self.agent} {self.round}")
 
     @property
     def tick(self) -> int:

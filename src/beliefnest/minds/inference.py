@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -145,6 +146,8 @@ class Inference:
                 `credence_now` change from step to step.
             TickError: As for `mean`.
         """
+        if not factors:
+            raise InputError(f"joint needs factors; there are {', '.join(self.factors)}")
         posterior = self.posterior(tick)
         shares: dict[tuple[Any, ...], float] = {}
         columns = [np.broadcast_to(self._values(name), posterior.shape) for name in factors]
@@ -243,10 +246,13 @@ class Inference:
             seed: Seed of the draws; equal seeds give equal paths.
 
         Raises:
-            InputError: The number is below 1, or no hypothesis explains the course.
+            InputError: The number is below 1, the seed is below 0, or no hypothesis explains the
+                course.
         """
         if isinstance(n, bool) or not isinstance(n, int) or n < 1:
             raise InputError(f"n is {n!r}; give a whole number from 1")
+        if isinstance(seed, bool) or not isinstance(seed, Integral) or seed < 0:
+            raise InputError(f"seed is {seed!r}; give a whole number from 0")
         if self._failed is not None:
             raise InputError(f"there is no path to draw: {self.impossible}")
         random = np.random.default_rng(seed)
@@ -282,7 +288,13 @@ class Inference:
         return plot_of(self, factors)
 
     def at(self, tick: int) -> "Inference":
-        """Return the inference as it was at a tick: nothing after it counts."""
+        """Return the inference as it was at a tick: nothing after it counts.
+
+        Raises:
+            TickError: As for `mean`.
+        """
+        if tick is None:
+            raise TickError("at() needs a tick; give a whole number")
         self._number(tick)
         return self._rerun(tick)
 
@@ -302,6 +314,8 @@ class Inference:
     def _number(self, tick: int | None) -> int:
         if tick is None:
             return len(self._known) - 1
+        if isinstance(tick, bool) or not isinstance(tick, Integral):
+            raise TickError(f"{tick!r} is not a tick; give a whole number")
         if not self.since <= tick <= self.until:
             raise TickError(
                 f"tick {tick} is not in this inference, which is of ticks {self.since} to "

@@ -360,7 +360,8 @@ def _read_goals(goals: object) -> Mapping[str, Goal]:
         if not isinstance(what, Mapping) or len(what) != 1 or set(what) - {"at", "block", "item"}:
             raise InputError(
                 f"goal {name!r} is {what!r}; give {{'at': cell}}, {{'block': name}} or "
-                "{'item': name}"
+                "{'item': name}: one place or thing. An agent that does several things one after "
+                "the other is a program or a policy of `imagine`"
             )
         ((kind, value),) = what.items()
         if kind == "at":

@@ -1,6 +1,5 @@
 """Policies without planning: people, given programs, and random choice."""
 
-import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -71,6 +70,5 @@ class Random:
         calls = calls_of(mind, view.agent, goals)
         if view.may_speak:
             calls += [said(claim) for claim in claims_of_mind(mind, goals, lies=False)]
-        chance = random.Random(f"{view.brief.seed} {view.agent} {view.round}")
-        number = chance.randrange(len(calls) + 1)
+        number = view.random.randrange(len(calls) + 1)
         return calls[number].program if number < len(calls) else ""

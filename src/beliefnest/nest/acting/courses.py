@@ -265,11 +265,15 @@ class Course:
 
     # Seeds
 
+    def chance(self, name: str) -> Random:
+        """Return the random numbers of an agent that follows a model or a policy."""
+        return self._chances[name]
+
     def _seed(self, seed: str) -> None:
         self._chances = {
             name: Random(f"{seed} {name}")
             for name, candidate in self.candidates.items()
-            if candidate.strategy is not None
+            if not candidate.is_fixed
         }
         for name, programs in self._programs.items():
             programs.reseed(f"{seed} {name}")
@@ -329,7 +333,7 @@ class Course:
     def _walk(self, walker: Walker, now: int) -> None:
         if walker.is_over or (now - self.start) % walker.strategy.step_ticks:
             return
-        action = walker.choose(self._chances[walker.name], self._changes)
+        action = walker.choose(self.chance(walker.name), self._changes)
         world, name = self.world, walker.name
         state = world.agent(name)
         if isinstance(action, Step):

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from inspect import signature
 from typing import Any
 
 from beliefnest.errors import InputError
@@ -14,6 +15,7 @@ from beliefnest.nest.inferring.node_inference import ModelStart, start_of_model
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised
+from beliefnest.world.values import block_at
 
 __all__ = ["Candidates", "Policies"]
 
@@ -29,6 +31,7 @@ class Candidates:
         end: The point at which they end.
         starts: Beginnings of the histories, which learn the doubts of models.
         policies: Policies as programs.
+        is_alone: True if a single agent has candidates; others may open it a way.
     """
 
     recording: Recording
@@ -37,12 +40,14 @@ class Candidates:
     end: ForkPoint
     starts: Starts
     policies: "Policies"
+    is_alone: bool
 
     def of(self, agent: str, name: str, given: object) -> Candidate:
         """Return a candidate of an agent.
 
         Raises:
-            InputError: It is no program, model of that agent, or policy.
+            InputError: It is no program, model of that agent, or policy; or the model cannot
+                reach any of its goals.
         """
         if isinstance(given, str):
             return Candidate(name, program=given)
@@ -53,6 +58,9 @@ class Candidates:
                     f"{agent}"
                 )
             start = start_of_model(self.recording, self.path, given, self.base.tick, self.end.tick)
+            feet = self.starts.snapshot.agents.get(agent)
+            if feet is not None and self.is_alone:
+                start.check_goals(block_at(feet.position))
             return Candidate(name, strategy=_strategy(self.recording, start, self.starts, name))
         if callable(given):
             return Candidate(name, policy=self.policies.of(given, agent, name))
@@ -100,11 +108,15 @@ class Policies:
     _keys: dict[Course, tuple[TimelineKey, int]] = field(default_factory=dict)
 
     def of(self, policy: Callable[..., object], agent: str, name: str) -> PolicyProgram:
-        """Return what asks a policy for the next program."""
+        """Return what asks a policy for the next program.
+
+        A policy with a parameter `random` gets the random numbers of its history by it.
+        """
+        draws = "random" in signature(policy).parameters
 
         def program(course: Course, actor: str) -> str:
             simulator = self._shown(course, actor)
-            code = policy(simulator)
+            code = policy(simulator, random=course.chance(actor)) if draws else policy(simulator)
             if not isinstance(code, str):
                 raise InputError(
                     f"policy {name!r} of {agent} returned {code!r}; return a program, or an empty "

@@ -141,7 +141,9 @@ def goal_conditions(
     recording: Recording, given: Mapping[str, Any] | Sequence[Mapping[str, Any]]
 ) -> list[GoalCondition]:
     """Parse one condition, or a list of conditions, written as in goals."""
-    listed = [given] if isinstance(given, Mapping) else list(given)
+    listed = [given] if isinstance(given, Mapping) else given
+    if isinstance(listed, str) or not isinstance(listed, Sequence) or not listed:
+        raise InputError(f"the condition is {given!r}; give a mapping, or a list of mappings")
     return [
         condition
         for each in listed

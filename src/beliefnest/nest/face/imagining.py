@@ -58,7 +58,7 @@ def imagine_in(
     side.selected = dict(recording.selected)
     side.records.set_run(recording.records.run())
     policies = Policies(side, starts, path, faces)
-    candidates = Candidates(recording, path, base, end, starts, policies)
+    candidates = Candidates(recording, path, base, end, starts, policies, len(asked.actors) == 1)
     starts.candidates = {
         agent: {name: candidates.of(agent, name, given) for name, given in named.items()}
         for agent, named in asked.actors.items()

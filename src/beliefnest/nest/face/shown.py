@@ -254,7 +254,8 @@ class ShownSimulator(ABC):
             until: Tick at which they end; None: the tick that the simulator shows.
             actors: Candidates by name, by agent. A candidate is a program (JavaScript; empty:
                 nothing), a `MindModel` of that agent, or a policy: a function that takes the
-                agent's simulator in the history and returns its next program.
+                agent's simulator in the history and returns its next program. A policy with a
+                parameter `random` gets a `random.Random` by it, seeded for each history.
             n: Number of histories.
             seed: Seed of every random choice.
             weights: Probabilities of candidates by name, by agent; None: uniform.

@@ -19,6 +19,7 @@ from beliefnest.nest.inferring.perceived_course import Question, Reading
 from beliefnest.nest.past.recording import Recording
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.paths import BeliefPath, path_text
+from beliefnest.world.values import Position
 
 __all__ = ["ModelStart", "credence_in", "infer_in", "start_of_model"]
 
@@ -48,6 +49,8 @@ def infer_in(
         PathError: There is no such agent.
         TickError: A tick lies in the future or before the start.
     """
+    if not isinstance(model, MindModel):
+        raise InputError(f"the model is {model!r}; give a MindModel")
     work = _work_on(recording, path, model, since, until)
     if not work.reading.has_seen:
         raise InputError(
@@ -68,12 +71,18 @@ class ModelStart:
         scene: All alternatives at that tick.
         agrees: The alternatives that agree with the node from that tick on.
         step_ticks: Ticks that an action takes.
+        scenes: The same alternatives at all ticks that were read.
     """
 
     model: MindModel
     scene: Scene
     agrees: int
     step_ticks: int
+    scenes: Sequence[Scene]
+
+    def check_goals(self, cell: Position) -> None:
+        """Raise InputError if no goal can be reached from a cell in any scene."""
+        _check_reach(self.model, [(scene, cell) for scene in self.scenes if scene.can_stand(cell)])
 
 
 def start_of_model(
@@ -86,7 +95,8 @@ def start_of_model(
     """
     reading = _work_on(recording, path, model, since, until).reading
     step_ticks = model.step_ticks or _STEP_TICKS.get(recording.world, _MINECRAFT_STEP)
-    return ModelStart(model, reading.moments[0].scene, reading.agrees, step_ticks)
+    scenes = list({id(m.scene): m.scene for m in reading.moments}.values())
+    return ModelStart(model, scenes[0], reading.agrees, step_ticks, scenes)
 
 
 @dataclass
@@ -166,14 +176,17 @@ def _question(recording: Recording, path: BeliefPath, model: MindModel, since: i
 
 def _check_goals(model: MindModel, moments: Sequence[Moment]) -> None:
     """Raise InputError if no goal can be reached in any alternative."""
-    cells = [moment for moment in moments if moment.cell is not None]
-    for moment in cells:
-        assert moment.cell is not None
-        if moment.scene.stage(moment.cell).acts.any():
-            return
+    _check_reach(
+        model, [(moment.scene, moment.cell) for moment in moments if moment.cell is not None]
+    )
+
+
+def _check_reach(model: MindModel, places: Sequence[tuple[Scene, Position]]) -> None:
+    if not places or any(scene.stage(cell).acts.any() for scene, cell in places):
+        return
     raise InputError(
         f"none of the goals {', '.join(model.goals)} can be reached by {model.agent} from "
-        f"{cells[0].cell} in any alternative; check their places and the floor that is known"
+        f"{places[0][1]} in any alternative; check their places and the floor that is known"
     )
 
 
