@@ -14,7 +14,7 @@ from beliefnest.errors import ScenarioError
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.inferring import Inferred
 from beliefnest.scenarios.running import run_scenario
-from beliefnest.suites.films.rating import compared, rating_prompt, ratings_in
+from beliefnest.suites.films.rating import compared, rating_prompt, ratings_in, read_ratings
 
 FILE = """\
 name: lane
@@ -268,7 +268,7 @@ def test_ratings_are_read_and_compared_on_one_scale():
     model, _ = prompt_of(1)
     text = "Desire Korean: 4\n- **desire lebanese**: 1\ndesire mexican = 7\ndesire mexican: 6.5\n"
     text += "belief lebanese: 3\nbelief mexican: 5\nbelief nothing: 1\nbelief pizza: 3"
-    ratings = ratings_in(text, model)
+    ratings = ratings_in(read_ratings(text, model), model)
     assert ratings[("desires", "mexican")] == 6.5
     means = {
         **{"utility.korean": 40, "utility.lebanese": -20, "utility.mexican": 100},
@@ -278,8 +278,8 @@ def test_ratings_are_read_and_compared_on_one_scale():
     assert found.pairs["desires"] == [(4, 4), (1, 1), (7, 6.5)]
     assert found.pairs["beliefs"] == [(1 / 3, 1 / 3), (2 / 3, 2 / 3), (0, 0)]
     assert found.error == pytest.approx(0.5 / 6 / 6)
-    some = compared(
-        ratings_in("desire korean: 9\nbelief lebanese: 2", model), model, Inferred({}, 0)
-    )
+    few = read_ratings("desire korean: 9\nbelief lebanese: 2", model)
+    assert few.outcome == "unread"
+    some = compared(ratings_in(few, model), model, Inferred({}, 0))
     assert "desire korean" in some.missing
     assert some.error == 1

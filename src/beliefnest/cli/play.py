@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
@@ -24,6 +25,7 @@ from beliefnest.errors import InputError, ModelError, NotBegunError
 from beliefnest.files import new_file
 from beliefnest.llm.model_settings import query_of
 from beliefnest.locking import holding
+from beliefnest.scenarios.judging import unanswered_words
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
 
@@ -194,6 +196,7 @@ def _report(episode: Episode, options: PlayOptions) -> dict[str, Any]:
                     done["agent"]: {
                         "program": done["program"],
                         "fault": done["fault"],
+                        "outcome": done["outcome"],
                         "ended": done["ended"] or "none",
                         "reason": done["reason"],
                         **({"considered": done["considered"]} if options.explain else {}),
@@ -231,13 +234,14 @@ def _print(report: Mapping[str, Any]) -> None:
         table.add_column(heading, justify="right" if heading == "round" else "left")
     for part in report["rounds"]:
         for agent, told in part["agents"].items():
-            ended = told["ended"].replace("_", " ")
+            ended = (told["outcome"] or told["ended"]).replace("_", " ")
             cells = (str(part["round"]), agent, told["program"].strip(), ended)
             table.add_row(*(Text(printable(cell)) for cell in cells))
     console = stdout()
     print_table(console, table)
     lines = list(_considered_lines(report["rounds"]))
     lines += [f"failed in {failure}" for failure in report["measures"]["failures"]]
+    lines += _asked_lines(report["measures"])
     lines += [_goal_line(each) for each in report["goal"]]
     if "help" in report:
         lines += _help_lines(report["help"], report["measures"])
@@ -271,6 +275,15 @@ def _considered_lines(rounds: Sequence[Mapping[str, Any]]) -> Iterator[str]:
             latest[agent] = part["round"], considered
             yield f"round {part['round']}, {agent} tried {counted(considered['tried'], 'course')}"
             yield from (f"  {line}" for line in considered_lines(considered))
+
+
+def _asked_lines(measures: Mapping[str, Any]) -> Iterator[str]:
+    """Yield lines about models' answers without a program, if there were any."""
+    told = unanswered_words(Counter(measures["not_answered"]))
+    if told:
+        yield f"rounds without a program of a model: {told}"
+    if measures["asked_again"]:
+        yield f"models were asked again {counted(measures['asked_again'], 'time')}"
 
 
 def _goal_line(condition: Mapping[str, Any]) -> str:

@@ -36,7 +36,7 @@ from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioErr
 from beliefnest.files import replace_file
 from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.claim_reader import claims_from_model
-from beliefnest.llm.failures import LimitReachedError, UnavailableModelError
+from beliefnest.llm.failures import NOT_ASKED, UnavailableModelError
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.face.nest import Nest
@@ -55,8 +55,6 @@ __all__ = ["run_scenarios"]
 
 _MOST_TIMES = 10_000
 """Greatest number of repeats, and of attempts for one probe."""
-_NOT_ASKED = (UnavailableModelError, LimitReachedError)
-"""Errors after which a model was not asked."""
 _HOTTEST = 10.0
 """Greatest temperature; more than any provider accepts."""
 
@@ -181,7 +179,7 @@ class _Run:
                     "model": cell.model,
                     "seed": cell.seed,
                     "error": str(error),
-                    "outcome": ("error" if isinstance(error, _NOT_ASKED) else "no_answer"),
+                    "outcome": ("error" if isinstance(error, NOT_ASKED) else "no_answer"),
                 }
             )
             return

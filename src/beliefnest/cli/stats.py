@@ -15,6 +15,7 @@ from beliefnest.cli.options import PowerOptions, StatsOptions
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError
 from beliefnest.files import replacing
+from beliefnest.scenarios.judging import LOST
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
 from beliefnest.studies.regression import Effect
@@ -88,6 +89,7 @@ def _print(found: Mapping[str, Any], by: Sequence[str]) -> None:
     shown = ["variations", "judged", "right", "accuracy", "low", "high", "interval"]
     if any(group["chance"] is not None for group in found["summary"]):
         shown.append("chance")
+    shown += [name for name in LOST if any(group[name] for group in found["summary"])]
     _show("accuracy, with 95 % intervals", found["summary"], (*by, *shown))
     for column, pairs in found.get("differences", {}).items():
         _show(f"paired differences of accuracy: {column}", pairs)

@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
@@ -16,7 +17,7 @@ from beliefnest.cli.options import StudyOptions
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
-from beliefnest.scenarios.judging import OUTCOMES
+from beliefnest.scenarios.judging import OUTCOMES, unanswered_words
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.copies import text_of_copies
@@ -141,6 +142,9 @@ def _lost_rounds(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         rounds = counted(sum(row["lost_rounds"] for row in found), "round")
         first = json.loads(found[0]["failures"])[0]
         episodes = counted(len(found), "episode")
+        outcomes = [name for row in found for name in json.loads(row["not_answered"] or "[]")]
+        told = unanswered_words(Counter(outcomes))
+        rounds += f" ({told})" if told else ""
         yield f"{policy} gave no program in {rounds} of {episodes}; the first failure: {first}"
 
 

@@ -112,6 +112,7 @@ def _done(part: Part, agent: str) -> dict[str, Any]:
         "program": decision.program,
         "goes_on": decision.goes_on,
         "fault": decision.fault,
+        "outcome": decision.outcome,
         "ended": "" if ended is None else ended.how,
         "message": "" if ended is None else ended.message,
         "reason": part.reason(agent),

@@ -5,6 +5,7 @@ from beliefnest.llm.messages import Usage
 from beliefnest.world.texts import on_one_line
 
 __all__ = [
+    "NOT_ASKED",
     "LimitReachedError",
     "TransientModelError",
     "UnavailableModelError",
@@ -48,6 +49,10 @@ class UnusableAnswerError(ModelError):
     def __init__(self, message: str, usage: Usage) -> None:
         super().__init__(message)
         self.usage = usage
+
+
+NOT_ASKED = (UnavailableModelError, LimitReachedError)
+"""Errors after which a model was not asked. All others mean that no answer came."""
 
 
 def excerpt(text: str) -> str:

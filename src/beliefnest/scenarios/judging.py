@@ -5,10 +5,13 @@ from collections.abc import Mapping, Sequence
 from beliefnest.scenarios.expected import Judgement
 from beliefnest.worlds.protocol import NO_WAY, ProgramResult
 
-__all__ = ["NOT_ANSWERED", "OUTCOMES", "outcome_of", "unanswered_words"]
+__all__ = ["LOST", "NOT_ANSWERED", "OUTCOMES", "outcome_of", "unanswered_words"]
 
 NOT_ANSWERED = ("ambiguous", "unread", "cut", "refused", "no_answer")
 """Outcomes without an answer to judge. Each counts as not right, and reports show how many."""
+
+LOST = (*NOT_ANSWERED, "error")
+"""Outcomes without an answer or without a result; reports show each that occurs beside the rate."""
 
 OUTCOMES = ("ok", "wrong", *NOT_ANSWERED, "no_way", "program_failed", "error")
 """Possible outcomes of a probe, a row and a sample, the same everywhere. No rate leaves one out.
@@ -44,7 +47,5 @@ def outcome_of(verdicts: Sequence[Judgement], result: ProgramResult | None) -> s
 def unanswered_words(counts: Mapping[str, int]) -> str:
     """Return the number of results without an answer, such as `2 unread, 1 cut`; empty: none."""
     return ", ".join(
-        f"{counts[name]} {name.replace('_', ' ')}"
-        for name in (*NOT_ANSWERED, "error")
-        if counts.get(name)
+        f"{counts[name]} {name.replace('_', ' ')}" for name in LOST if counts.get(name)
     )

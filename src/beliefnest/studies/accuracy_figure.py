@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import MissingExtraError
+from beliefnest.scenarios.judging import LOST, unanswered_words
 
 if TYPE_CHECKING:  # matplotlib is optional, and imported when something is plotted.
     from matplotlib.axes import Axes
@@ -30,6 +31,7 @@ def plot_accuracy(
 ) -> "Figure":
     """Draw bars from 0 to 1 with 95 % intervals, and dashed lines at the chance level of choices.
 
+    If rows have no answer or no result, the caption below the axis tells how many of each outcome.
     The figure fits its texts into its size each time it is drawn, also after a change of size.
 
     Args:
@@ -68,13 +70,20 @@ def plot_accuracy(
         chances += [(middle, level) for middle, level in levels if level is not None]
     _draw_chance(axes, chances, width, in_legend=len(colours) > 1)
     axes.set_xticks(range(len(along)), along)
-    axes.set_xlabel(by[0])
+    axes.set_xlabel("\n".join([by[0], *_not_answered(judged)]))
     axes.set_ylim(0, 1.02)
     axes.spines[["top", "right"]].set_visible(False)
     if len(colours) > 1:
         axes.legend(title=title, frameon=False)
     figure.set_layout_engine(Fitting(along))
     return figure
+
+
+def _not_answered(groups: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the line of the caption about rows without an answer; empty: there are none."""
+    counts = {name: sum(group.get(name) or 0 for group in groups) for name in LOST}
+    told, total = unanswered_words(counts), sum(group["judged"] for group in groups)
+    return [f"not answered, of {total}: {told}"] if told else []
 
 
 def _draw_chance(

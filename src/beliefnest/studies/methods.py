@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,7 +15,7 @@ from beliefnest.files import read_regular
 from beliefnest.llm.resolve import can_vary
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
-from beliefnest.scenarios.judging import NOT_ANSWERED
+from beliefnest.scenarios.judging import LOST, unanswered_words
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import DRAWS
 from beliefnest.studies.counting import Row
@@ -101,6 +102,8 @@ class Facts:
         excluded: What was excluded, by keys of `_EXCLUDED`, and how often.
         computed: Number of judged rows whose right answers were computed from beliefs.
         not_answered: Number of judged rows by outcome, of those without an answer or result.
+        rounds_not_answered: Number of rounds of episodes in which a model gave no program, by
+            outcome.
         asked_again: Number of requests after answers that could not be read.
         intervals: Methods of the intervals of accuracies.
         people: People who answered.
@@ -125,6 +128,7 @@ class Facts:
     excluded: Mapping[str, int] = field(default_factory=dict)
     computed: int = 0
     not_answered: Mapping[str, int] = field(default_factory=dict)
+    rounds_not_answered: Mapping[str, int] = field(default_factory=dict)
     asked_again: int = 0
     intervals: Sequence[str] = ()
     people: Sequence[PeopleFacts] = ()
@@ -197,6 +201,7 @@ def study_facts(result: StudyRecord) -> Facts:
         excluded=_excluded(result),
         computed=_computed(judged),
         not_answered=_not_answered(judged),
+        rounds_not_answered=_rounds_not_answered(judged),
         asked_again=sum(row.get("asked_again") or 0 for row in judged),
         intervals=_intervals(result.counted(result.groups)),
         people=list(_people(result)),
@@ -268,8 +273,13 @@ def run_facts(result: RunResult) -> Facts:
 
 def _not_answered(rows: Sequence[Row]) -> dict[str, int]:
     """Return the number of rows without an answer or a result, by outcome."""
-    found = {name: sum(row["outcome"] == name for row in rows) for name in (*NOT_ANSWERED, "error")}
+    found = {name: sum(row["outcome"] == name for row in rows) for name in LOST}
     return {name: count for name, count in found.items() if count}
+
+
+def _rounds_not_answered(rows: Sequence[Row]) -> dict[str, int]:
+    """Return the number of rounds in which a model gave no program, by outcome."""
+    return Counter(name for row in rows for name in json.loads(row.get("not_answered") or "[]"))
 
 
 def _computed(rows: Sequence[Row]) -> int:
@@ -444,9 +454,14 @@ def _sentences(facts: Facts) -> Iterator[str]:
         f"{'is' if facts.judged == 1 else 'are'} judged."
     )
     if facts.not_answered:
-        told = [f"{count} {name.replace('_', ' ')}" for name, count in facts.not_answered.items()]
-        of = counted(sum(facts.not_answered.values()), "row")
-        yield f"Among them, {of} without an answer to judge ({', '.join(told)}) count as not right."
+        told, of = unanswered_words(facts.not_answered), sum(facts.not_answered.values())
+        yield (
+            f"Among them, {counted(of, 'row')} without an answer to judge ({told}) count as not "
+            "right."
+        )
+    if facts.rounds_not_answered:
+        told, of = unanswered_words(facts.rounds_not_answered), facts.rounds_not_answered.values()
+        yield f"Models gave no program in {counted(sum(of), 'round')} ({told})."
     if facts.asked_again:
         yield f"Models were asked again after {counted(facts.asked_again, 'unreadable answer')}."
     if facts.computed:

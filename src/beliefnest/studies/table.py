@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from beliefnest.llm.failures import NOT_ASKED
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.allocation import LABEL, LIST, PARTICIPANT
 from beliefnest.studies.copies import rows_with_copies
@@ -27,7 +28,7 @@ _FAILED = "error"
 _NO_ANSWER = "no_answer"
 assert {_FAILED, _NO_ANSWER} <= set(OUTCOMES)
 
-_NOT_ASKED = ("UnavailableModelError", "LimitReachedError")
+_NOT_ASKED = tuple(each.__name__ for each in NOT_ASKED)
 """Kinds of errors of cells whose model was not asked."""
 _NO_ANSWER_KINDS = ("ModelError", "TransientModelError", "UnusableAnswerError")
 """Kinds of errors of cells whose model gave no answer."""

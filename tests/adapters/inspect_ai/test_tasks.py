@@ -10,6 +10,10 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
+from tests.llm.conftest import serving
+from tests.studies.test_doors import ROOM, SAID
+
+from beliefnest.scenarios.judging import NOT_ANSWERED
 
 pytestmark = pytest.mark.extra("inspect_ai")
 
@@ -257,12 +261,12 @@ def test_ratings_of_desires_and_beliefs_are_scored_against_exact_inference(run, 
     file.write_text(json.dumps(FILM), encoding="utf-8")
     assert run(f"FILE = {str(file)!r}\n{MODEL}{MINDS}", tmp_path) == [
         "1 rated True",
-        "2 no_answer False",
+        "2 unread False",
         "3 rated True",
-        "['beliefs_r', 'desires_r', 'mean', 'rated', 'stderr'] True",
-        "no rating from 1 to 7 for desire korean",
+        "['beliefs_r', 'desires_r', 'mean', 'not_answered', 'rated', 'stderr'] True",
+        "unread: no number from 1 to 7 for desire korean",
         "1 rated 0.5",
-        "no_answer",
+        "unread",
     ]
 
 
@@ -399,3 +403,25 @@ def test_why_a_program_failed_stands_in_the_explanation_of_an_episode():
 
     done = {"agent": "ann", "program": "x()", "ended": "failed", "reason": "line 1: no x"}
     assert _line(0, done) == "round 1, ann: x() (failed: line 1: no x)"
+
+
+DOORS = """
+import os
+os.environ["VLLM_BASE_URL"] = URL
+arguments = {"file": FILE, "world": "scripted"}
+(log,) = read(eval("beliefnest/scenario", task_args=arguments, model="beliefnest/vllm:m",
+                   epochs=7, max_connections=1, display="none"))
+(scores,) = log.results.scores
+print(round(7 * scores.metrics["accuracy"].value), scores.metrics["not_answered"].value)
+print(sorted(each.scores["in_the_belief"].metadata["outcome"] for each in log.samples))
+"""
+
+
+def test_answers_without_an_option_and_requests_without_an_answer_are_scored(run, tmp_path):
+    file = tmp_path / "room.yaml"
+    file.write_text(ROOM, encoding="utf-8")
+    with serving() as server:
+        server.will(*SAID.values())
+        found = run(f"URL = {server.url!r}\nFILE = {str(file)!r}\n{MODEL}{DOORS}", tmp_path)
+    counts = dict.fromkeys(NOT_ANSWERED, 1)
+    assert found == [f"1 {counts}", str(sorted(SAID))]

@@ -19,6 +19,7 @@ from inspect_ai.scorer import (
     value_to_float,
 )
 
+from beliefnest.scenarios.judging import NOT_ANSWERED
 from beliefnest.studies.clusters import rate_interval
 from beliefnest.suites.films.film import About
 
@@ -30,6 +31,7 @@ __all__ = [
     "interval",
     "mean_of_epochs",
     "metrics_by",
+    "not_answered",
     "rated",
     "stderr_of_epochs",
 ]
@@ -41,7 +43,7 @@ CLUSTER = "cluster"
 def metrics_by(key: str) -> list[Metric | dict[str, list[Metric]]]:
     """Return the metrics of right answers, and accuracy grouped by a key of the samples."""
     by_group = grouped(accuracy(), key, all=False)
-    return [accuracy(), stderr(cluster=CLUSTER), interval(), chance(), by_group]
+    return [accuracy(), stderr(cluster=CLUSTER), interval(), chance(), not_answered(), by_group]
 
 
 def _clusters(scores: Sequence[SampleScore]) -> list[list[float]]:
@@ -77,6 +79,17 @@ def chance() -> Metric:
         levels = [(each.sample_metadata or {}).get("chance") for each in scores]
         known = [each for each in levels if each is not None]
         return float(np.mean(known)) if known and len(known) == len(levels) else math.nan
+
+    return value
+
+
+@metric(scores="unreduced")
+def not_answered() -> Metric:
+    """Count the answers of each outcome without an answer, over all epochs of all samples."""
+
+    def value(scores: list[SampleScore]) -> Value:
+        told = [(each.score.metadata or {}).get("outcome") for each in scores]
+        return {name: told.count(name) for name in NOT_ANSWERED}
 
     return value
 

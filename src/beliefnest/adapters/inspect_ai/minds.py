@@ -18,11 +18,19 @@ from beliefnest.adapters.inspect_ai.metrics import (
     beliefs_r,
     desires_r,
     mean_of_epochs,
+    not_answered,
     rated,
     stderr_of_epochs,
 )
-from beliefnest.adapters.inspect_ai.task_parts import several_files, task_of
+from beliefnest.adapters.inspect_ai.task_parts import (
+    finish_of,
+    several_files,
+    task_of,
+    without_answer,
+)
 from beliefnest.errors import InputError
+from beliefnest.llm.messages import Finish
+from beliefnest.llm.reading_numbers import NumbersReading
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.inferring import Inferred, Inferring
 from beliefnest.scenarios.scenario import Scenario
@@ -31,7 +39,13 @@ from beliefnest.studies.probe_orders import order_of
 from beliefnest.suites.films.film import Film, FilmParameters
 from beliefnest.suites.films.film_files import read_films
 from beliefnest.suites.films.film_inference import model_of, staged
-from beliefnest.suites.films.rating import Comparison, compared, rating_prompt, ratings_in
+from beliefnest.suites.films.rating import (
+    Comparison,
+    compared,
+    rating_prompt,
+    ratings_in,
+    read_ratings,
+)
 from beliefnest.worlds.by_name import Worlds
 
 __all__ = ["course_in_words", "films_task", "like_inference", "minds_task"]
@@ -134,8 +148,10 @@ class _Courses:
         with self._played(sample) as (nest, path, infer):
             return rating_prompt(nest, path, infer)
 
-    def compared(self, sample: Mapping[str, Any], answer: str) -> Comparison:
-        """Return the ratings in an answer beside exact inference."""
+    def compared(
+        self, sample: Mapping[str, Any], answer: str, finish: Finish
+    ) -> tuple[NumbersReading, Comparison]:
+        """Return the ratings in an answer, also beside exact inference."""
         with self._played(sample) as (nest, path, infer):
             inference = nest[path].infer(
                 infer.model,
@@ -144,8 +160,9 @@ class _Courses:
                 ended=infer.ended,
                 smooth=infer.smooth,
             )
-            ratings = ratings_in(answer, infer.model)
-            return compared(ratings, infer.model, Inferred.of(inference))
+            reading = read_ratings(answer, infer.model, finish)
+            ratings = ratings_in(reading, infer.model)
+            return reading, compared(ratings, infer.model, Inferred.of(inference))
 
     @contextmanager
     def _played(self, sample: Mapping[str, Any]) -> Iterator[tuple[Nest, str, Inferring]]:
@@ -185,23 +202,36 @@ def course_in_words() -> Solver:
     return solve
 
 
-@scorer(metrics=[mean_of_epochs(), stderr_of_epochs(), rated(), desires_r(), beliefs_r()])
+@scorer(
+    metrics=[
+        mean_of_epochs(),
+        stderr_of_epochs(),
+        rated(),
+        not_answered(),
+        desires_r(),
+        beliefs_r(),
+    ]
+)
 def like_inference() -> Scorer:
     """Score 1 less the mean absolute error of the ratings against exact inference."""
     courses = _Courses()
 
     async def score(state: TaskState, target: Target) -> Score:
-        answer = state.output.completion
-        found = await run_sync(courses.compared, state.metadata, answer)
+        lost = without_answer(state)
+        if lost is not None:
+            return lost
+        answer, finish = state.output.completion, finish_of(state.output)
+        reading, found = await run_sync(courses.compared, state.metadata, answer, finish)
         lines = [f"{about}: {_pairs_text(pairs)}" for about, pairs in found.pairs.items()]
-        if found.missing:
-            lines = [f"no rating from 1 to 7 for {', '.join(found.missing)}"]
+        outcome = "rated" if reading.outcome == "read" else reading.row_outcome
+        if reading.reason:
+            lines = [f"{outcome}: {reading.reason}"]
         return Score(
             value=1 - found.error,
             answer=answer,
             explanation="\n".join(lines),
             metadata={
-                "outcome": "no_answer" if found.missing else "rated",
+                "outcome": outcome,
                 "error": found.error,
                 **{about: [list(pair) for pair in pairs] for about, pairs in found.pairs.items()},
             },

@@ -2,6 +2,7 @@
 
 import os
 import threading
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from typing import Any
@@ -14,6 +15,7 @@ from inspect_ai.model import (
     ModelAPI,
     ModelOutput,
     ModelUsage,
+    StopReason,
     modelapi,
 )
 from inspect_ai.tool import ToolChoice, ToolInfo
@@ -29,7 +31,7 @@ from beliefnest.adapters.inspect_ai.stories import suite_task
 from beliefnest.adapters.inspect_ai.tasks import belief_prompt, in_the_belief, scenario_task
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.errors import InputError
-from beliefnest.llm.messages import Answer, Message, Sampling
+from beliefnest.llm.messages import Answer, Finish, Message, Sampling
 from beliefnest.llm.resolve import Connection, is_of_provider, open_model
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names
@@ -208,14 +210,21 @@ class BeliefNestAPI(ModelAPI):
 
 
 def _sampling(config: GenerateConfig) -> Sampling:
-    sampling = Sampling(seed=config.seed)
+    sampling = Sampling(seed=config.seed, max_output_tokens=config.max_tokens)
     if config.temperature is None:
         return sampling
     return replace(sampling, temperature=config.temperature)
 
 
+_STOP_REASONS: Mapping[Finish, StopReason] = {
+    "stop": "stop",
+    "length": "max_tokens",
+    "content_filter": "content_filter",
+}
+
+
 def _output(model: str, answer: Answer) -> ModelOutput:
-    output = ModelOutput.from_content(model, answer.text)
+    output = ModelOutput.from_content(model, answer.text, stop_reason=_STOP_REASONS[answer.finish])
     used = answer.usage
     output.usage = ModelUsage(
         input_tokens=used.input_tokens,

@@ -9,7 +9,13 @@ from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import TaskState
 
 from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
-from beliefnest.adapters.inspect_ai.task_parts import finish_of, score_of, several_files, task_of
+from beliefnest.adapters.inspect_ai.task_parts import (
+    finish_of,
+    score_of,
+    several_files,
+    task_of,
+    without_answer,
+)
 from beliefnest.errors import InputError
 from beliefnest.llm.reading_answers import read_answer
 from beliefnest.studies.cells import variation_id
@@ -94,6 +100,9 @@ def story_answer() -> Scorer:
     """Score an answer by the expected container; explain the belief of the nest."""
 
     async def score(state: TaskState, target: Target) -> Score:
+        lost = without_answer(state)
+        if lost is not None:
+            return lost
         reading = read_answer(
             state.output.completion, state.metadata["options"], finish_of(state.output)
         )

@@ -13,19 +13,67 @@ from inspect_ai.model import (
     ModelOutput,
 )
 from inspect_ai.scorer import CORRECT, INCORRECT, Score, Scorer
-from inspect_ai.solver import Solver, generate
+from inspect_ai.solver import Generate, Solver, TaskState, solver
 
-from beliefnest.errors import InputError
+from beliefnest.errors import InputError, ModelError
+from beliefnest.llm.failures import NOT_ASKED
 from beliefnest.llm.messages import Finish, Message
 
-__all__ = ["finish_of", "messages_of", "score_of", "several_files", "task_of"]
+__all__ = [
+    "ask_once",
+    "finish_of",
+    "messages_of",
+    "score_of",
+    "several_files",
+    "task_of",
+    "without_answer",
+]
+
+_NO_ANSWER = "no_answer"
+"""Outcome, and key of a sample's metadata with the reason."""
 
 
 def task_of(name: str, samples: list[Sample], scorer: Scorer, *before: Solver) -> Task:
     """Return a task that runs some solvers and then asks the model once per sample."""
     return Task(
-        dataset=MemoryDataset(samples, name=name), solver=[*before, generate()], scorer=scorer
+        dataset=MemoryDataset(samples, name=name), solver=[*before, ask_once()], scorer=scorer
     )
+
+
+@solver
+def ask_once() -> Solver:
+    """Ask the model. A request without an answer is scored, and not left out of the metrics.
+
+    Errors of Inspect's own providers are left to Inspect, and so is a model that is not there.
+    """
+
+    async def solve(state: TaskState, generate: Generate) -> TaskState:
+        try:
+            return await generate(state)
+        except Exception as error:
+            reason = _unanswered(error)
+            if reason is None:
+                raise
+            state.metadata[_NO_ANSWER] = reason
+            return state
+
+    return solve
+
+
+def _unanswered(error: BaseException | None) -> str | None:
+    """Return why our model gave no answer; None: the error is another one."""
+    while error is not None and not isinstance(error, ModelError):
+        error = error.__cause__ or error.__context__
+    return None if error is None or isinstance(error, NOT_ASKED) else str(error)
+
+
+def without_answer(state: TaskState) -> Score | None:
+    """Return the score of a sample whose model gave no answer; None: it gave one."""
+    reason = state.metadata.get(_NO_ANSWER)
+    if reason is None:
+        return None
+    lines = [f"{_NO_ANSWER}: {reason}"]
+    return score_of(ok=False, answer=None, lines=lines, metadata={"outcome": _NO_ANSWER})
 
 
 def several_files(names: str | list[str]) -> list[str]:
@@ -61,6 +109,9 @@ def score_of(
 
 def finish_of(output: ModelOutput) -> Finish:
     """Return the reason for the end of an answer."""
+    # Inspect notes there that a provider moderated the answer away.
+    if output.error:
+        return "content_filter"
     match output.stop_reason:
         case "max_tokens" | "model_length":
             return "length"

@@ -17,6 +17,7 @@ from beliefnest.adapters.inspect_ai.task_parts import (
     score_of,
     several_files,
     task_of,
+    without_answer,
 )
 from beliefnest.errors import InputError
 from beliefnest.scenarios.expected import expected_json
@@ -122,6 +123,9 @@ def in_the_belief() -> Scorer:
     stage = Stage()
 
     async def score(state: TaskState, target: Target) -> Score:
+        lost = without_answer(state)
+        if lost is not None:
+            return lost
         answer, finish = state.output.completion, finish_of(state.output)
         judged = await run_sync(stage.judged, state.metadata, answer, finish)
         outcome = judged.outcome

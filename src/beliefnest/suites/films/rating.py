@@ -3,13 +3,14 @@
 The words describe one simulator: its known floor, and the perceived places of the agent.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from math import floor
 
 from beliefnest.belief.view import State
+from beliefnest.llm.messages import Finish
+from beliefnest.llm.reading_numbers import NumbersReading, read_numbers
 from beliefnest.minds.mind_model import Alternative, MindModel
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.inferring import Inferred, Inferring
@@ -17,14 +18,9 @@ from beliefnest.suites.films.film import ABOUT, About
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["Comparison", "asked_of", "compared", "rating_prompt", "ratings_in"]
+__all__ = ["Comparison", "asked_of", "compared", "rating_prompt", "ratings_in", "read_ratings"]
 
 _LOWEST, _HIGHEST = 1.0, 7.0
-_RATING = re.compile(
-    r"^[\s>*_`-]*(?P<about>desire|belief|location)\s+(?P<name>[^:=]+?)[\s*_`]*[:=][\s*_`]*"
-    r"(?P<rating>\d+(?:\.\d+)?)",
-    re.IGNORECASE | re.MULTILINE,
-)
 _WORDS: Mapping[About, str] = {"desires": "desire", "beliefs": "belief", "locations": "location"}
 _FACTORS: Mapping[About, str] = {
     "desires": "utility",
@@ -72,17 +68,23 @@ def asked_of(model: MindModel) -> list[tuple[About, str]]:
     return asked
 
 
-def ratings_in(text: str, model: MindModel) -> Ratings:
-    """Return the ratings from 1 to 7 in an answer; of several for one question the last."""
-    kinds = {word: about for about, word in _WORDS.items()}
-    names = {(about, name.casefold()): (about, name) for about, name in asked_of(model)}
-    found = {}
-    for match in _RATING.finditer(text):
-        key = names.get((kinds[match["about"].lower()], match["name"].strip(" '\"").casefold()))
-        rating = float(match["rating"])
-        if key is not None and _LOWEST <= rating <= _HIGHEST:
-            found[key] = rating
-    return found
+def read_ratings(text: str, model: MindModel, finish: Finish = "stop") -> NumbersReading:
+    """Read the ratings from 1 to 7 in an answer, by question, such as `desire korean`."""
+    asked = [_question(about, name) for about, name in asked_of(model)]
+    return read_numbers(text, asked, _LOWEST, _HIGHEST, finish)
+
+
+def ratings_in(reading: NumbersReading, model: MindModel) -> Ratings:
+    """Return the ratings that were read, by kind and name."""
+    return {
+        (about, name): reading.numbers[_question(about, name)]
+        for about, name in asked_of(model)
+        if _question(about, name) in reading.numbers
+    }
+
+
+def _question(about: About, name: str) -> str:
+    return f"{_WORDS[about]} {name}"
 
 
 def compared(ratings: Ratings, model: MindModel, inferred: Inferred) -> Comparison:
@@ -92,9 +94,7 @@ def compared(ratings: Ratings, model: MindModel, inferred: Inferred) -> Comparis
     beliefs and locations become shares: less 1, and summing to 1.
     """
     asked = asked_of(model)
-    missing = tuple(
-        f"{_WORDS[about]} {name}" for about, name in asked if (about, name) not in ratings
-    )
+    missing = tuple(_question(about, name) for about, name in asked if (about, name) not in ratings)
     pairs: dict[About, list[tuple[float, float]]] = {}
     low, high = float(model.utility_rows.min()), float(model.utility_rows.max())
     for about in () if missing else ABOUT:
