@@ -411,8 +411,9 @@ os.environ["VLLM_BASE_URL"] = URL
 arguments = {"file": FILE, "world": "scripted"}
 (log,) = read(eval("beliefnest/scenario", task_args=arguments, model="beliefnest/vllm:m",
                    epochs=7, max_connections=1, display="none"))
-(scores,) = log.results.scores
-print(round(7 * scores.metrics["accuracy"].value), scores.metrics["not_answered"].value)
+metrics = {name: each.value for found in log.results.scores for name, each in found.metrics.items()}
+print([list(found.metrics) for found in log.results.scores])
+print(round(7 * metrics["accuracy"]), metrics["not_answered"])
 print(sorted(each.scores["in_the_belief"].metadata["outcome"] for each in log.samples))
 """
 
