@@ -1,6 +1,7 @@
 """Bodies stand and pass alike in Minecraft, in the scripted world and on the maps of planners."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from random import Random
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 from tests.profiles import few_by_day
 
+import beliefnest as bn
 from beliefnest.minds.ways import Floor, ways_from
 from beliefnest.world.doors import is_doorway
 from beliefnest.world.frames import Snapshot
@@ -295,3 +297,54 @@ def test_walks_on_planners_maps_are_walks_of_programs(
         finally:
             body.close()
         assert result.ok, (result.error, walk)
+
+
+def drawn_walks(seed: int) -> tuple[Snapshot, list[list[Position]]]:
+    """Return a floor with blocks of many shapes, and walks there that models of Ann's mind took.
+
+    The first are those of histories. The others are drawn by an observer who was walled in.
+    """
+    start, walk = planned_walk(seed)
+    registry, box = Registry.load(), start.box
+    blocks = start.blocks.draft()
+    for x, y, z in np.ndindex(3, 3, 3):
+        blocks[10 + x, 2 + y, 10 + z] = registry.state_id("bricks")
+    blocks[11, 2, 11] = blocks[11, 3, 11] = registry.state_id("air")
+    start = replace(
+        start, blocks=blocks.terrain(), agents={**start.agents, "eye": AgentState((6.5, 2.0, 6.5))}
+    )
+    world = bn.ScriptedWorld.from_snapshot(start)
+    ground = Ground(registry, box, start.blocks)
+    near = next(cell for cell in walk[::-1] if max(cell[0], cell[2]) < 10)
+    goals, utilities = {"there": {"at": near}}, {"there": 30}
+    model = bn.MindModel("ann", goals, utilities, rationality=0.3, stay_cost=1)
+    kinds = [registry.name(state) for state in np.unique(start.blocks.dense())]
+    with bn.Nest(world, static_blocks=kinds) as nest:
+        world.step(1)
+        world.place_agent("eye", (11.5, 2, 11.5))
+        world.step(18)
+        anything = [{"agent": "ann", "at": near, "mistaken": 0.5}]
+        imagined = nest["/"].imagine(1, actors={"ann": {"walks": model}}, evidence=anything, n=3)
+        walks = [[ground.cell_of(feet) for feet in h.feet("ann").values()] for h in imagined]
+        inferred = nest["/eye"].infer(model)
+        assert not nest["/eye"].state.agents["ann"].current
+        walks += [list(path.cells.values()) for path in inferred.sample_paths(3)]
+    return replace(start, tick=0), walks
+
+
+@pytest.mark.parametrize("seed", few_by_day(range(8)))
+def test_walks_that_models_of_minds_take_are_walks_of_programs(
+    seed: int, embedded: World, scripted: World
+) -> None:
+    start, walks = drawn_walks(seed)
+    assert len(walks) == 6 and sum(len(set(walk)) for walk in walks) > 12
+    start = replace(start, agents={"ann": start.agents["ann"]})
+    for walk in walks:
+        program = "\n".join(f"await goToPosition(bot, new Vec3{cell}, 0)" for cell in walk)
+        for world in (scripted, embedded):
+            body = world.open_body("/", "seed", start, lambda frame: None)
+            try:
+                result = body.run({"ann": program}, 4000)["ann"]
+            finally:
+                body.close()
+            assert result.ok, (result.error, walk)

@@ -191,3 +191,15 @@ def test_later_edits_are_repeated():
         path = walked(walks[0], range(4, 20))
         assert path[1] == (0, 1)
         assert walks[0].state.agents["red"].position == (6.5, 1.0, 0.5)
+
+
+def test_feet_are_those_of_the_states_at_every_tick():
+    world = two_ways()
+    model = bn.MindModel("red", rationality=1, **DECIDED)
+    with bn.Nest(world) as nest:
+        world.step(20)
+        for history in nest["/"].imagine(3, actors={"red": {"w": model}}, evidence=ANYTHING, n=4):
+            read = {t: history.at(t).state.agents["red"].position for t in range(3, 21)}
+            assert history.feet("red") == read
+        with pytest.raises(bn.PathError, match="no agent 'blue'; there are red"):
+            history.feet("blue")
