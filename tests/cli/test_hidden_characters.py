@@ -17,6 +17,8 @@ from beliefnest.cli.app import run_command_line
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 
 HIDDEN = "\u202e\u2066\u200f\u200b"
+SPOKEN = "\u200b"
+"""Hidden character that agents may say; marks of direction are refused."""
 FORMULA = '=HYPERLINK("http://there","click")'
 SCENARIO = f"""\
 name: odd
@@ -28,7 +30,7 @@ agents: {{ann: {{position: [1.5, 1, 1.5]}}, bob: {{position: [5.5, 1, 5.5]}}}}
 script:
   - label: "step {HIDDEN}"
     agent: ann
-    program: "say(bot, 'hello {HIDDEN}'); think(bot, 'hm {HIDDEN}')"
+    program: "await say(bot, 'hello {SPOKEN}'); await think(bot, 'hm {SPOKEN}')"
 probes:
   - label: "probe {HIDDEN}"
     path: /bob
@@ -64,7 +66,7 @@ def test_nothing_hidden_reaches_models_or_pages(
         study = ["study", "study.yaml", "--jobs", "1", "--record", "--out", "st"]
         assert run_command_line(study) == 1
         asked = json.dumps([each.body for each in served.requests], ensure_ascii=False)
-    assert r"hello \\u202e" in asked
+    assert r"hello \\u200b" in asked
     assert r"Get an apple \\u202e" in asked
     assert not set(HIDDEN) & set(asked)
     assert run_command_line(["show", "run", "--html", "page.html"]) == 0

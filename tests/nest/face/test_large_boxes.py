@@ -238,7 +238,7 @@ def test_imagined_histories_are_the_same(tmp_path):
             world.withdraw("bob", CHEST, {"bread": 1})
             world.place_agent("ann", (5.5, 61.0, 3.5))
             world.open("ann", CHEST)
-            take = f"await getItemFromChest(bot, {list(CHEST)}, {{bread: 1}})"
+            take = f"await getItemFromChest(bot, new Vec3{CHEST}, {{bread: 1}})"
             found = nest["/ann"].imagine(0, actors={"bob": {"take": take, "idle": ""}}, n=8)
             return found.by_candidate("bob")
 

@@ -50,6 +50,7 @@ class _Run:
     read: Sensed | None = None
     missed: tuple[tuple[str, str, str | None], ...] = ()
     aims: list[Aim] = field(default_factory=list)
+    stopped: list[tuple[int, str]] = field(default_factory=list)
     end_tick: int | None = None
     end: Fault | None = None
 
@@ -310,6 +311,7 @@ def _begin(run: _Run, request: Request) -> None:
     if request.aim is not None and len(run.aims) < _MOST_AIMS:
         run.aims.append(_aim(now, request.aim))
     if request.error is not None:
+        _stop(run, request)
         run.program.fail(number, request.error)
         return
     try:
@@ -319,7 +321,14 @@ def _begin(run: _Run, request: Request) -> None:
     except StopIteration as ended:
         _answer(run, number, ok=True, value=ended.value)
     except BeliefNestError as error:
+        _stop(run, request)
         _answer(run, number, ok=False, value=_told(error))
+
+
+def _stop(run: _Run, request: Request) -> None:
+    """Note that a call failed after the end of its program, which did not wait for it."""
+    if run.program.ended:
+        run.stopped.append((request.number, request.name))
 
 
 def _told(error: Exception) -> dict[str, object]:
@@ -360,7 +369,10 @@ def _result(
         happened=happened,
         log=run.program.log,
         unfinished=tuple(
-            run.program.unfinished(number, name) for number, (name, _) in run.doing.items()
+            run.program.unfinished(number, name)
+            for number, name in sorted(
+                [*run.stopped, *((number, name) for number, (name, _) in run.doing.items())]
+            )
         ),
         aims=tuple(run.aims),
         calls=run.memory.calls(run.end_tick or first) if remembers else (),
