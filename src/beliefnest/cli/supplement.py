@@ -183,7 +183,7 @@ def _reproduce_run(result: RunResult, again: Path, *, trust: bool) -> Reproducti
     system = None
     if "system" in settings:
         system = again.with_name("system.txt")
-        system.write_text(str(settings["system"]), encoding="utf-8")
+        replace_file(system, str(settings["system"]))
     try:
         options = RunOptions(
             scenario=str(folder / "scenario.yaml"),
