@@ -12,6 +12,7 @@ import beliefnest as bn
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.perception.sight import Sight
 from beliefnest.world.claims import Claim
+from beliefnest.world.double_chests import holds_items
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Event, EventKind, Items, Point, Position, Sign
@@ -141,7 +142,7 @@ class Rules:
         if block is None:
             return None
         name = self.registry.name(block.state)
-        return name if self.registry.is_container(name) else None
+        return name if holds_items(self.registry, block.state) else None
 
     def perceive(self, around: Node, before: Node, me: str, *, happening: bool) -> Node:
         """Return the belief of `me`, an agent in `around`, after the tick (4, 5, 8).

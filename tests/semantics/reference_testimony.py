@@ -19,6 +19,7 @@ from tests.semantics.reference_unique import is_perceived_elsewhere, remove
 
 from beliefnest.belief.grounds import Basis, ContainerBelief, Source
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
+from beliefnest.world.double_chests import holds_items
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EventKind, Items, Point, Position
 
@@ -297,9 +298,9 @@ def _believe_block(registry: Registry, node: "Node", claim: Claim, basis: Basis)
         state = registry.state_id(f"{name}[{inner}]" if inner else name)
     node.blocks[place] = Block(state, basis, False, written, claims)
     old_name = None if old is None else registry.name(old.state)
-    if not registry.is_container(name) or old_name not in (None, name):
+    if not holds_items(registry, state) or old_name not in (None, name):
         node.drop(place)
-    if registry.is_container(name) and place not in node.containers:
+    if holds_items(registry, state) and place not in node.containers:
         node.containers[place] = ContainerBelief({}, False, basis, current=False)
 
 

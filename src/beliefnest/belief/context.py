@@ -16,6 +16,7 @@ from beliefnest.perception.options import Perception
 from beliefnest.perception.sight import Sight
 from beliefnest.world import terrain
 from beliefnest.world.claims import Claim, claims_from_plain
+from beliefnest.world.double_chests import holds_items
 from beliefnest.world.memory import MemoryLimit, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, is_sign, plain_state
@@ -97,11 +98,14 @@ class BeliefContext:
 
     @cached_property
     def holds(self) -> npt.NDArray[np.bool_]:
-        """Bool by block number, and at the end for unknown: whether it is a container."""
+        """Bool by block number, and at the end for unknown: whether it is a container.
+
+        The left half of a double chest is none: its right half is the container.
+        """
         holds = np.zeros(_NUMBERS + 1, dtype=np.bool_)
         for name in self.registry.containers:
-            ids = self.registry.state_ids(name)
-            holds[ids.start : ids.stop] = True
+            for state in self.registry.state_ids(name):
+                holds[state] = holds_items(self.registry, state)
         return holds
 
     @cached_property

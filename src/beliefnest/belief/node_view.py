@@ -8,12 +8,13 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import NOBODY, READ
+from beliefnest.belief.arrays import NOBODY, READ, UNKNOWN
 from beliefnest.belief.chunk_pool import cut_grids
 from beliefnest.belief.columns import place_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.perception.sight import ChunkGeometry, Geometry, SightLines
+from beliefnest.world.double_chests import ByEitherHalf, believed_container_at, states_in
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
@@ -135,7 +136,7 @@ class NodeView:
 
     @Part
     def containers(self) -> Mapping[Position, ContainerBelief]:
-        """The known contents, in order of position."""
+        """The known contents, in order of position; found at either half of a double chest."""
         forest = self._forest
         found = {}
         for cell in sorted(forest.holdings.of(self._node).containers):
@@ -143,7 +144,12 @@ class NodeView:
             found[place_of(self.box, cell)] = ContainerBelief(
                 content.items, content.complete, content.basis, content.current
             )
-        return found
+        return ByEitherHalf(found, self.container_at)
+
+    def container_at(self, place: Position) -> Position:
+        """Return the position of the container to which a block belongs, as far as is believed."""
+        state_at = states_in(self.box, self.terrain, UNKNOWN)
+        return believed_container_at(self._forest.context.registry, state_at, place)
 
     @Part
     def agents(self) -> Mapping[str, AgentBelief]:

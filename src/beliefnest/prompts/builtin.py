@@ -20,7 +20,8 @@ from beliefnest.prompts.simulator_view import (
     owner_of,
 )
 from beliefnest.prompts.story_filters import FILTERS as STORY_FILTERS
-from beliefnest.world.registry import block_name, parse_state
+from beliefnest.world.double_chests import is_left_half
+from beliefnest.world.registry import Registry, block_name, parse_state
 from beliefnest.world.values import EQUIPMENT_SLOTS, Position
 
 __all__ = ["BUILT_IN"]
@@ -309,17 +310,27 @@ def _how_known(believed: AgentBelief) -> str:
 
 
 def _known_blocks(state: State, names: Iterable[str] | None) -> dict[str, list[Position]]:
-    """Return positions of known blocks by name, sorted; requested names may have none."""
+    """Return positions of known blocks by name, sorted; requested names may have none.
+
+    A double chest is listed once, at its right half.
+    """
     if names is None:
         grouped: dict[str, list[Position]] = {}
-        for at, block in blocks_where(state, lambda block: block_name(block) not in _AIRS):
-            grouped.setdefault(block_name(block), []).append(at)
+        for at, block in blocks_where(state, lambda each: block_name(each) not in _AIRS):
+            if _is_whole(block):
+                grouped.setdefault(block_name(block), []).append(at)
         return {name: sorted(grouped[name]) for name in sorted(grouped)}
     wanted = [name.removeprefix("minecraft:") for name in _strings(names)]
     grouped = {name: [] for name in wanted}
     for at, block in blocks_named(state, wanted):
-        grouped[block_name(block)].append(at)
+        if _is_whole(block):
+            grouped[block_name(block)].append(at)
     return grouped
+
+
+def _is_whole(block: str) -> bool:
+    registry = Registry.load()
+    return not is_left_half(registry, registry.state_id(block))
 
 
 def _strings(values: Iterable[str]) -> list[str]:

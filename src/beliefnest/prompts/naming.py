@@ -7,6 +7,7 @@ from beliefnest.belief.view import State
 from beliefnest.prompts.observations import Happened, Observation, Sight
 from beliefnest.prompts.simulator_view import blocks_where
 from beliefnest.world.doors import is_door, is_switch
+from beliefnest.world.double_chests import is_left_half
 from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.signs import is_sign
 from beliefnest.world.texts import on_one_line
@@ -91,8 +92,14 @@ def _seen_kinds(observations: Iterable[Observation]) -> dict[Position, str]:
 
 
 def _believed_kinds(state: State) -> dict[Position, str]:
-    named = blocks_where(state, lambda text: is_named(block_name(text)))
+    named = blocks_where(state, _is_named_block)
     return {at: block_name(text) for at, text in named}
+
+
+def _is_named_block(text: str) -> bool:
+    """Return True if a block has a name in prose; the left half of a double chest has none."""
+    registry = Registry.load()
+    return is_named(block_name(text)) and not is_left_half(registry, registry.state_id(text))
 
 
 def _lower_halves(kinds: Mapping[Position, str]) -> dict[Position, str]:

@@ -119,7 +119,7 @@ class Believed:
             case "agent":
                 checks.agent((*path, kind), thing)
             case "container":
-                checks.container((*path, kind), thing)
+                thing = checks.container((*path, kind), thing)
             case _:
                 checks.inside((*path, kind), thing)
         if not entry.unknown.strip():

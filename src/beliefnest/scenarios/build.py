@@ -1,9 +1,13 @@
 """Construction of scenarios from checked documents: setting, probes, and expectations."""
 
+import functools
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
+
+import msgspec
 
 from beliefnest.belief.conditions import check_condition
 from beliefnest.belief.grounds import InitialBelief
@@ -22,6 +26,7 @@ from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.format import (
     BelievedSignEntry,
     BlockEntry,
+    ContainerEntry,
     InitialBeliefEntry,
     ProbeEntry,
     ScenarioFile,
@@ -40,12 +45,13 @@ from beliefnest.scenarios.space import (
     parts_of,
 )
 from beliefnest.scenarios.yaml_reading import template_text
+from beliefnest.world.double_chests import container_at, states_in
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import AGENT_SLOTS, WORN_SLOTS
 from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
-from beliefnest.world.values import Block, Point, Position, block_at
+from beliefnest.world.values import Block, Items, Point, Position, block_at
 
 __all__ = ["build_scenario"]
 
@@ -110,7 +116,9 @@ class _Builder:
         blocks = build_blocks(document, file, box, registry)
         containers = build_containers(document, file.containers, blocks, box, registry)
         signs = build_signs(document, file, blocks, box, registry)
-        claims = build_sign_claims(document, file, signs, box)
+        state_at = states_in(box, blocks, registry.air)
+        whole = functools.partial(container_at, registry, state_at)
+        claims = build_sign_claims(document, file, signs, box, whole)
         agents = build_agents(document, file, blocks, box, registry)
         self._snapshot = Snapshot(
             0, box, blocks, containers, agents, signs=signs, sign_claims=claims
@@ -137,12 +145,20 @@ class _Builder:
             static_blocks=frozenset(file.static_blocks),
             initial_beliefs=initial,
             script=tuple(self._step(n, entry) for n, entry in enumerate(file.script)),
-            labels={entry.at: entry.label for entry in file.containers if entry.label},
-            prompt_labels=_prompt_labels(file) if file.labels else {},
+            labels=self._labels(lambda entry: entry.label),
+            prompt_labels=self._labels(_prompt_label) if file.labels else {},
             places=dict(file.places),
             people=frozenset(n for n, entry in file.agents.items() if entry.type == "human"),
             unique=self._unique(initial),
         )
+
+    def _labels(self, label: Callable[[ContainerEntry], str | None]) -> dict[Position, str]:
+        """Return labels of containers; of two halves of a chest the first that has one counts."""
+        labels: dict[Position, str] = {}
+        for entry in self._file.containers:
+            if told := label(entry):
+                labels.setdefault(self.checks.container_at(entry.at), told)
+        return labels
 
     def _unique(self, initial: Sequence[InitialBelief]) -> frozenset[str]:
         """Return the unique items; refuse those that world or initial beliefs contradict."""
@@ -228,7 +244,8 @@ class _Builder:
                     with self._document.naming(where):
                         check_condition(entry, agents, self._snapshot.box)
                     if entry.container is not None:
-                        self.checks.container((*where, "container"), entry.container)
+                        whole = self.checks.container((*where, "container"), entry.container)
+                        entries[number] = msgspec.structs.replace(entry, container=whole)
         for path, message in rule_faults(rules, agents):
             raise self._document.fault(("episode", *path), message)
         with self._document.naming(("episode",)):
@@ -278,17 +295,22 @@ class _Builder:
         for index, sign in enumerate(entry.signs):
             blocks[sign.at] = self._believed_sign((*path, "signs", index), sign, blocks)
         place: KeyPath
+        contents: dict[Position, tuple[Items, bool]] = {}
         for index, container in enumerate(entry.containers):
             place = (*path, "containers", index)
-            self.checks.container((*place, "at"), container.at)
-            self.checks.contents((*place, "items"), container.at, container.items)
+            whole = self.checks.container((*place, "at"), container.at)
+            items, complete = contents.get(whole, ({}, True))
+            items = Counter(items)
+            items.update(container.items)
+            self.checks.contents((*place, "items"), whole, items)
+            contents[whole] = dict(items), complete and container.complete
         for agent, items in entry.inventories.items():
             place = (*path, "inventories", agent)
             self.checks.agent(place, agent)
             self.checks.items(place, items, AGENT_SLOTS + WORN_SLOTS, agent)
         return InitialBelief(
             path=names,
-            containers={c.at: (dict(c.items), c.complete) for c in entry.containers},
+            containers=contents,
             blocks=blocks,
             agents=self._believed_places((*path, "agents"), entry.agents),
             inventories={name: dict(items) for name, items in entry.inventories.items()},
@@ -358,12 +380,7 @@ def _written(document: Document) -> Mapping[str, Any]:
     return {key: value for key, value in content.items() if key not in _WORKED_IN}
 
 
-def _prompt_labels(file: ScenarioFile) -> dict[Position, str]:
-    """Return the labels of containers for prompts: names, and what they seem to contain."""
-    labels = {}
-    for entry in file.containers:
-        looks = f"looks as if it held {entry.looks}" if entry.looks else ""
-        told = ", ".join(part for part in (entry.label, looks) if part)
-        if told:
-            labels[entry.at] = told
-    return labels
+def _prompt_label(entry: ContainerEntry) -> str:
+    """Return the label of a container for prompts: its name, and what it seems to contain."""
+    looks = f"looks as if it held {entry.looks}" if entry.looks else ""
+    return ", ".join(part for part in (entry.label, looks) if part)

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath
+from beliefnest.world.double_chests import container_at, other_half, states_in
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.limits import container_slots, items_fault
+from beliefnest.world.limits import items_fault, slots_at
 from beliefnest.world.paths import parse_path
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Items, Position
@@ -64,19 +65,36 @@ class Checks:
             known = ", ".join(self.snapshot.agents)
             raise self.fault(path, f"there is no agent {name!r}; agents are {known}")
 
-    def container(self, path: KeyPath, position: Position) -> None:
-        """Refuse a position without a container."""
-        if position not in self.snapshot.containers:
+    def container_at(self, position: Position) -> Position:
+        """Return the position of the container to which a block belongs: that of its right half."""
+        return container_at(self.registry, self._state_at, position)
+
+    def halves(self, place: Position) -> frozenset[Position]:
+        """Return the block positions of the container at a place; none if there is none."""
+        whole = self.container_at(place)
+        if whole not in self.snapshot.containers:
+            return frozenset()
+        other = other_half(self.registry, self._state_at(whole), whole)
+        is_whole = other is not None and self.container_at(other[0]) == whole
+        return frozenset((whole, other[0]) if is_whole and other is not None else (whole,))
+
+    def container(self, path: KeyPath, position: Position) -> Position:
+        """Return the position of a container, given either half; refuse one without a container."""
+        if (whole := self.container_at(position)) not in self.snapshot.containers:
             known = ", ".join(str(list(place)) for place in self.snapshot.containers)
             raise self.fault(
                 path, f"no container stands at {list(position)}; there are {known or 'none'}"
             )
+        return whole
 
     def contents(self, path: KeyPath, place: Position, items: Items) -> None:
         """Refuse items that the container at a place could not hold."""
-        box = self.snapshot.box
-        name = self.registry.name(self.snapshot.blocks[box.index(place)])
-        self.items(path, items, container_slots(name), f"a {name}")
+        name = self.registry.name(self._state_at(place))
+        slots = slots_at(self.registry, self._state_at, place)
+        self.items(path, items, slots, f"a {name}")
+
+    def _state_at(self, place: Position) -> int:
+        return states_in(self.snapshot.box, self.snapshot.blocks, self.registry.air)(place)
 
     def items(self, path: KeyPath, items: Items, slots: int, holder: str) -> None:
         """Refuse unknown items, counts below 1, and more than the slots of a holder can hold."""

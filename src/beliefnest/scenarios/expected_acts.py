@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,14 +48,14 @@ class Awaited(Deed):
         key: Its key: `opens`, `arrives` or `intends`.
         believed: The belief that gives the place.
         within: Greatest distance from there, in blocks.
-        containers: Containers of the scenario.
+        containers: Containers of the scenario, with the positions of their blocks.
     """
 
     ground = "a place that a simulator believes in"
     key: str
     believed: Believed
     within: float
-    containers: frozenset[Position]
+    containers: Mapping[Position, frozenset[Position]]
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -72,7 +72,8 @@ class Awaited(Deed):
         kinds = ("item",) if key == "opens" else ("item", "agent")
         if believed.kind not in kinds:
             raise checks.fault((*path, key), f"needs a place; give {' or '.join(kinds)}")
-        return cls(key, believed, entry.within, frozenset(checks.snapshot.containers))
+        containers = {place: checks.halves(place) for place in checks.snapshot.containers}
+        return cls(key, believed, entry.within, containers)
 
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Awaited"]:
@@ -96,9 +97,8 @@ class Awaited(Deed):
             case "arrives":
                 return Arrives(place, self.within, self.believed)
             case _:
-                return Intends(
-                    place, self.within, block_at(place) in self.containers, self.believed
-                )
+                blocks = self.containers.get(block_at(place), frozenset())
+                return Intends(place, self.within, blocks, self.believed)
 
     def judge(self, trial: Trial) -> Judgement:
         raise AssertionError("the expectation is resolved before a program runs")
@@ -125,8 +125,7 @@ class Opens(Deed):
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Opens"]:
         if entry.opens is not None and not isinstance(entry.opens, BelievedEntry):
-            checks.container((*path, "opens"), entry.opens)
-            yield cls(entry.opens)
+            yield cls(checks.container((*path, "opens"), entry.opens))
 
     def written(self) -> dict[str, Any]:
         return {"opens": list(self.container), **source_of("opens", self.believed)}
@@ -207,25 +206,25 @@ class Intends(Deed):
     Attributes:
         place: A container or another place, in blocks.
         within: Greatest distance of a walk's goal from the place, in blocks.
-        is_container: True if a container of the scenario is there.
+        blocks: Block positions of the container that is there, both halves of a double chest; none
+            if no container is there.
         believed: The belief that gave the place; None: the scenario gives it.
     """
 
     ground = "what the program makes for"
     place: Point
     within: float = 2.0
-    is_container: bool = False
+    blocks: frozenset[Position] = frozenset()
     believed: Believed | None = None
 
     @property
     def explained(self) -> Position | None:
-        return block_at(self.place) if self.is_container else None
+        return block_at(self.place) if self.blocks else None
 
     @classmethod
     def read(cls, entry: ExpectEntry, path: KeyPath, checks: Checks) -> Iterator["Intends"]:
         if entry.intends is not None and not isinstance(entry.intends, BelievedEntry):
-            is_container = entry.intends in checks.snapshot.containers
-            yield cls(entry.intends, entry.within, is_container)
+            yield cls(entry.intends, entry.within, checks.halves(block_at(entry.intends)))
 
     def written(self) -> dict[str, Any]:
         told = {"intends": list(self.place), "within": self.within}
@@ -238,9 +237,9 @@ class Intends(Deed):
 
     def _met(self, trial: Trial) -> bool:
         used, walked = trial.used, trial.walked
-        if used and block_at(used[0]) == block_at(self.place):
+        if used and block_at(used[0]) in (self.blocks or {block_at(self.place)}):
             return True
-        if self.is_container and used:
+        if self.blocks and used:
             return False
         return bool(walked) and math.dist(block_at(walked[-1]), block_at(self.place)) <= self.within
 

@@ -111,9 +111,9 @@ class Holds(Content):
     def read(cls, entry: ExpectationEntry, path: KeyPath, checks: Checks) -> "Holds | None":
         if entry.container is None or entry.items is None:
             return None
-        checks.container((*path, "container"), entry.container)
-        checks.contents((*path, "items"), entry.container, entry.items)
-        return cls(entry.container, dict(entry.items))
+        whole = checks.container((*path, "container"), entry.container)
+        checks.contents((*path, "items"), whole, entry.items)
+        return cls(whole, dict(entry.items))
 
     def written(self) -> dict[str, Any]:
         return {"container": list(self.container), "items": dict(self.items)}

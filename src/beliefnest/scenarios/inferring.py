@@ -17,7 +17,9 @@ from beliefnest.scenarios.format import (
     InferEntry,
     LevelsEntry,
 )
+from beliefnest.world.double_chests import container_at, states_in
 from beliefnest.world.frames import Snapshot
+from beliefnest.world.registry import Registry
 
 if TYPE_CHECKING:
     from beliefnest.minds.inference import Inference
@@ -217,13 +219,17 @@ def _alternative(
     """Return one alternative as `MindModel` takes it."""
     for number, block in enumerate(entry.blocks):
         check_inside(document, (*path, "blocks", number, "at"), block.at, snapshot.box)
+    registry = Registry.load()
+    state_at = states_in(snapshot.box, snapshot.blocks, registry.air)
+    contents = {}
     for number, container in enumerate(entry.containers):
         check_inside(document, (*path, "containers", number, "at"), container.at, snapshot.box)
+        contents[container_at(registry, state_at, container.at)] = dict(container.items)
     for agent in entry.agents:
         if agent not in snapshot.agents:
             raise document.fault((*path, "agents", agent), f"there is no agent {agent!r}")
     return {
         "blocks": {block.at: block.block for block in entry.blocks},
-        "containers": {container.at: dict(container.items) for container in entry.containers},
+        "containers": contents,
         "agents": dict(entry.agents),
     }

@@ -1,6 +1,7 @@
 """Blocks, containers and signs of a scenario: from a file's entries to block states of a box."""
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 
 import msgspec
 
@@ -9,8 +10,9 @@ from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
 from beliefnest.scenarios.terrain_entry import terrain_in
 from beliefnest.world.claims import claims_from_plain
+from beliefnest.world.double_chests import container_at, holds_items, states_in, whole_chests
 from beliefnest.world.frames import PlainClaims
-from beliefnest.world.limits import box_fault, container_slots
+from beliefnest.world.limits import box_fault, slots_at
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
@@ -46,7 +48,8 @@ def build_box(document: Document, file: ScenarioFile) -> Box:
 def build_blocks(document: Document, file: ScenarioFile, box: Box, registry: Registry) -> Terrain:
     """Return the block states of the box.
 
-    They are air or those of `terrain`, then the entries in order, then containers and signs.
+    They are air or those of `terrain`, then the entries in order, then containers and signs. A
+    half of a double chest without its other half becomes a single chest.
     """
     ground = Terrain.full(box.shape, registry.air)
     if file.terrain is not None:
@@ -76,7 +79,7 @@ def build_blocks(document: Document, file: ScenarioFile, box: Box, registry: Reg
             state = registry.state_id(sign.block)
         check_inside(document, (*path, "at"), sign.at, box)
         blocks[box.index(sign.at)] = state
-    return blocks.terrain()
+    return whole_chests(registry, box, blocks.terrain())
 
 
 def build_signs(
@@ -106,9 +109,13 @@ def build_signs(
 
 
 def build_sign_claims(
-    document: Document, file: ScenarioFile, texts: Mapping[Position, str], box: Box
+    document: Document,
+    file: ScenarioFile,
+    texts: Mapping[Position, str],
+    box: Box,
+    whole: Callable[[Position], Position],
 ) -> dict[Position, PlainClaims]:
-    """Return the claims of signs by position, as plain data."""
+    """Return the claims of signs by position, as plain data; `whole` as for `with_claims`."""
     found: dict[Position, PlainClaims] = {}
     for number, entry in enumerate(file.signs):
         for index, told in enumerate(entry.claims):
@@ -118,7 +125,7 @@ def build_sign_claims(
                 claim.check(box, file.agents)
             if entry.at not in texts:
                 raise document.fault(path, "is for signs with a text; add `text`")
-            found[entry.at] = (*found.get(entry.at, ()), claim.plain())
+            found[entry.at] = (*found.get(entry.at, ()), claim.of_whole(whole).plain())
     return found
 
 
@@ -129,17 +136,26 @@ def build_containers(
     box: Box,
     registry: Registry,
 ) -> dict[Position, Items]:
-    """Return the contents of every container in the box; containers without entry are empty."""
+    """Return the contents of every container in the box; containers without entry are empty.
+
+    What is given for both halves of a double chest is added up.
+    """
     found: dict[Position, Items] = {}
+    given: set[Position] = set()
+    state_at = states_in(box, blocks, registry.air)
     for number, entry in enumerate(entries):
         path = ("containers", number)
-        if entry.at in found:
+        if entry.at in given:
             raise document.fault((*path, "at"), f"{list(entry.at)} has a container already")
+        given.add(entry.at)
+        whole = container_at(registry, state_at, entry.at)
+        items = Counter(found.get(whole, {}))
+        items.update(entry.items)
         name = registry.name(registry.state_id(entry.block))
-        slots = container_slots(name)
-        check_items(document, (*path, "items"), entry.items, registry, slots, f"a {name}")
-        found[entry.at] = dict(entry.items)
-    empty = [state for state in blocks.states if registry.is_container(registry.name(state))]
+        slots = slots_at(registry, state_at, whole)
+        check_items(document, (*path, "items"), items, registry, slots, f"a {name}")
+        found[whole] = dict(items)
+    empty = [state for state in blocks.states if holds_items(registry, state)]
     x, y, z = box.low
     for i, j, k in blocks.find(empty).tolist() if empty else ():
         found.setdefault((x + i, y + j, z + k), {})

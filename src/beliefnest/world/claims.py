@@ -5,8 +5,8 @@ therefore stored, sent and exported together with the event.
 """
 
 import math
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Literal
 
@@ -62,6 +62,15 @@ class Claim:
     item: str | None = None
     agent: str | None = None
     state: str | None = None
+
+    def of_whole(self, whole: Callable[[Position], Position]) -> "Claim":
+        """Return the claim about the container to which the block at its place belongs.
+
+        Claims that are about no container stay as they are.
+        """
+        if self.kind not in (ClaimKind.LOCATED, ClaimKind.ABSENT):
+            return self
+        return replace(self, place=whole(self.cell))
 
     @staticmethod
     def located(item: str, container: Position) -> "Claim":
@@ -228,9 +237,20 @@ def claims_written(frame: Frame, place: Position) -> tuple[Claim, ...]:
 
 
 def with_claims(
-    detail: Mapping[str, Any], claims: Iterable[Claim], box: Box, agents: Collection[str]
+    detail: Mapping[str, Any],
+    claims: Iterable[Claim],
+    box: Box,
+    agents: Collection[str],
+    whole: Callable[[Position], Position],
 ) -> dict[str, Any]:
     """Return an event's detail with claims added, if there are any.
+
+    Args:
+        detail: Detail of the event.
+        claims: Claims of its text.
+        box: Box of the world.
+        agents: Names of all agents.
+        whole: Function that returns the position of the container to which a block belongs.
 
     Raises:
         InputError: `claims` is not a list of claims, or a claim is not about this world.
@@ -246,7 +266,8 @@ def with_claims(
                 "block"
             )
         claim.check(box, agents)
-    plain = {"claims": tuple(claim.plain() for claim in given)} if given else {}
+    told_of = (claim.of_whole(whole).plain() for claim in given)
+    plain = {"claims": tuple(told_of)} if given else {}
     return {**detail, **plain}
 
 

@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from beliefnest.errors import InputError
+from beliefnest.world.double_chests import StateAt, is_double, states_in
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
@@ -38,10 +39,12 @@ __all__ = [
     "block_fault",
     "box_fault",
     "container_slots",
+    "divided",
     "dropped_fault",
     "held_fault",
     "items_fault",
     "point_fault",
+    "slots_at",
     "snapshot_fault",
     "tick_fault",
 ]
@@ -149,8 +152,21 @@ def point_fault(point: Sequence[float]) -> str | None:
 
 
 def container_slots(name: str) -> int:
-    """Return the number of slots of a container block."""
+    """Return the number of slots of a container block; those of a half, for a double chest."""
     return _FURNACE_SLOTS if name in _FURNACES else _CHEST_SLOTS
+
+
+def slots_at(registry: Registry, state_at: StateAt, place: Position) -> int:
+    """Return the number of slots of the container to which the block at a place belongs.
+
+    Args:
+        registry: Names and properties of states.
+        state_at: Function that returns the block state at a position; an unknown one is a chest.
+        place: Position of a container.
+    """
+    state = state_at(place)
+    slots = container_slots(registry.name(state) if state >= 0 else "chest")
+    return 2 * slots if is_double(registry, state_at, place) else slots
 
 
 def items_fault(
@@ -172,6 +188,21 @@ def items_fault(
     if needed > slots:
         return f"the items need {quoted(needed)} slots; {holder} has {slots}"
     return None
+
+
+def divided(
+    items: Mapping[str, int], registry: Registry, slots: int
+) -> tuple[dict[str, int], dict[str, int]]:
+    """Divide items into those that the first slots hold, filled in order, and the rest."""
+    first: dict[str, int] = {}
+    rest: dict[str, int] = {}
+    for name, count in items.items():
+        stack = registry.item_stack(name)
+        fits = min(count, slots * stack)
+        slots -= -(-fits // stack)
+        first |= {name: fits} if fits else {}
+        rest |= {name: count - fits} if count > fits else {}
+    return first, rest
 
 
 def tick_fault(tick: int) -> str | None:
@@ -255,15 +286,15 @@ def snapshot_fault(snapshot: Snapshot, registry: Registry) -> str | None:
         faults.append(dropped_fault(number, item, registry))
     for place, text in snapshot.signs.items():
         faults.append(_sign_fault(snapshot, place, text, registry))
+    state_at = states_in(snapshot.box, snapshot.blocks, registry.air)
     for place, items in snapshot.containers.items():
         if place not in snapshot.box:
             faults.append(f"the container at {place} lies outside the box")
         else:
             state = snapshot.blocks[snapshot.box.index(place)]
             name = registry.name(state) if state >= 0 else "chest"
-            faults.append(
-                items_fault(items, registry, container_slots(name), f"the {name} at {place}")
-            )
+            slots = slots_at(registry, state_at, place)
+            faults.append(items_fault(items, registry, slots, f"the {name} at {place}"))
     return next((fault for fault in faults if fault), None)
 
 

@@ -14,6 +14,7 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.doors import is_door, is_switch
+from beliefnest.world.double_chests import holds_items
 from beliefnest.world.frames import Frame
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.paths import BeliefPath
@@ -65,7 +66,8 @@ class Hearsay:
         claims = tuple(self._reader.read(key.path, tick, text, speaker, nameable))
         if not claims:
             return event
-        found = with_claims(event.detail, claims, nameable.box, nameable.agents)
+        whole = self._history.state(key, key.path).container_at
+        found = with_claims(event.detail, claims, nameable.box, nameable.agents, whole)
         return replace(event, detail={**found, "claims_from": self._reader.name})
 
 
@@ -127,7 +129,7 @@ def _fittings(history: History, seen: NodeView) -> dict[Position, int]:
     states = []
     for state in seen.terrain.states:
         name = registry.name(state) if state >= 0 else ""
-        if name and (registry.is_container(name) or is_door(name) or is_switch(name)):
+        if name and (holds_items(registry, state) or is_door(name) or is_switch(name)):
             states.append(state)
     x, y, z = box.low
     return {

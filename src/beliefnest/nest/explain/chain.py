@@ -70,7 +70,7 @@ def element_of(
             )
         return Element("agent", agent)
     if container is not None:
-        place = _inside(recording, container)
+        place = recording.state(()).container_at(_inside(recording, container))
         return Element("container", place, recording.setting.labels.get(place))
     return Element("block", _inside(recording, block))
 

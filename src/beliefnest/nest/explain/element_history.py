@@ -11,6 +11,7 @@ from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.nest.explain.parts import Contents, Element, Value
 from beliefnest.nest.past.history import History
 from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
+from beliefnest.world.double_chests import holds_items
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, plain_state
@@ -185,7 +186,7 @@ def _after(entry: Entry, element: Element, registry: Registry, held: object) -> 
     if element.kind == "block":
         return block_words(registry, block)
     state = plain_state(block)
-    holds = state >= 0 and registry.is_container(registry.name(state))
+    holds = state >= 0 and holds_items(registry, state)
     return (held or {}) if holds else None
 
 

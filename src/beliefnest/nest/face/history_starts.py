@@ -7,6 +7,7 @@ from beliefnest.minds.walking import Strategy
 from beliefnest.nest.acting.courses import Candidate, Course
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, ForkPoint
+from beliefnest.world.double_chests import container_at, holds_items, states_in
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
@@ -47,14 +48,16 @@ class Starts:
         for place, block in blocks.items():
             state = max(0, plain_state(block))
             grid[snapshot.box.index(place)] = state
-            if registry.is_container(registry.name(state)):
+            if holds_items(registry, state):
                 held.setdefault(place, {})
             else:
                 held.pop(place, None)
         chest = registry.state_id("chest")
-        for place, items in contents.items():
+        state_at = states_in(snapshot.box, grid.terrain(), registry.air)
+        for given, items in contents.items():
+            place = container_at(registry, state_at, given)
             index = snapshot.box.index(place)
-            if not registry.is_container(registry.name(grid[index])):
+            if not holds_items(registry, grid[index]):
                 grid[index] = chest
             held[place] = dict(items)
         states = {**snapshot.agents, **agents}

@@ -50,8 +50,9 @@ def matter_of(
         context.registry.item_stack(item)
     if container is not None:
         context.box.check(container)
-        label = recording.setting.labels.get(container, f"container {point_words(container)}")
-        return Contained(container, item, label)
+        place = recording.state(()).container_at(container)
+        label = recording.setting.labels.get(place, f"container {point_words(place)}")
+        return Contained(place, item, label)
     if block is not None:
         context.box.check(block)
         return BlockAt(block, context.box.index(block), context.block_text)

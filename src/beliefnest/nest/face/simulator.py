@@ -1,9 +1,12 @@
 """Live simulator of a nest, as users work with it."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, cast
 
+from beliefnest.belief.arrays import UNKNOWN
 from beliefnest.belief.node_memory import paths_with_room
+from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BranchError, InputError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.imagination import Imagination
@@ -14,7 +17,14 @@ from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
+from beliefnest.world.double_chests import (
+    believed_container_at,
+    is_double,
+    other_half,
+    states_in,
+)
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import is_well_formed
 from beliefnest.world.values import TICKS_PER_SECOND, Block, Items, Position
@@ -239,7 +249,8 @@ class Simulator(ShownSimulator):
 
         Args:
             blocks: New block state texts; None makes a block unknown.
-            containers: New contents, which then count as complete.
+            containers: New contents, which then count as complete; of a double chest, those given
+                for both halves are added up.
             signs: New texts of signs, also of signs that `blocks` puts; line breaks separate lines.
 
         Raises:
@@ -266,7 +277,18 @@ class Simulator(ShownSimulator):
                     raise InputError(
                         f"a container cannot hold {count} {name}; give a count above 0"
                     )
-        self._engine.edit(self._path, states, {p: dict(i) for p, i in (containers or {}).items()})
+        view = self._recording.state(self._path)
+        states = {**_parted(registry, view, states), **states}
+        known = states_in(box, view.terrain, UNKNOWN)
+
+        def state_at(at: Position) -> int:
+            return plain_state(states[at]) if at in states else known(at)
+
+        contents: dict[Position, dict[str, int]] = {}
+        for position, items in (containers or {}).items():
+            place = believed_container_at(registry, state_at, position)
+            contents[place] = dict(Counter(contents.get(place, {})) + Counter(items))
+        self._engine.edit(self._path, states, contents)
 
     @in_turn
     def embody(self, stands: bool = True, *, unknown: str = "air") -> None:
@@ -363,3 +385,22 @@ def _based_on(key: TimelineKey, infos: Sequence[TimelineInfo]) -> list[TimelineK
         if info.base is not None and info.base.timeline in resting:
             resting.add(info.key)
     return [info.key for info in reversed(infos) if info.key in resting and info.key != key]
+
+
+def _parted(
+    registry: Registry, view: NodeView, states: Mapping[Position, Block]
+) -> dict[Position, Block]:
+    """Return single chests for the halves of double chests whose other half is replaced."""
+    known = states_in(view.box, view.terrain, UNKNOWN)
+    single: dict[Position, Block] = {}
+    for place, block in states.items():
+        other = other_half(registry, known(place), place)
+        replaced = plain_state(block)
+        if (
+            other is not None
+            and is_double(registry, known, place)
+            and replaced >= 0
+            and registry.name(replaced) != registry.name(known(place))
+        ):
+            single[other[0]] = registry.changed(known(other[0]), type="single")
+    return single

@@ -11,8 +11,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from beliefnest.world.double_chests import (
+    container_at,
+    halves_in,
+    holds_items,
+    other_half,
+    states_in,
+    whole_chests,
+)
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.limits import AGENT_SLOTS, container_slots, items_fault
+from beliefnest.world.limits import AGENT_SLOTS, container_slots, items_fault, slots_at
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, HALF_WIDTH, AgentState, Box, Items, Position
@@ -29,7 +37,10 @@ _WORN = frozenset(EQUIPMENT_SLOTS) - frozenset(_HANDS)
 def chest_places(
     registry: Registry, box: Box, blocks: Terrain, contents: Mapping[Position, Items]
 ) -> list[Position]:
-    """Return the positions of contents whose believed block is unknown or cannot hold them.
+    """Return the positions where a body has a chest and the belief has none.
+
+    These are the positions of contents whose believed block is unknown or cannot hold them, and of
+    the unknown other halves of known halves of double chests.
 
     Args:
         registry: Registry of blocks.
@@ -37,11 +48,15 @@ def chest_places(
         blocks: Believed block states, -1 unknown.
         contents: Believed items by position.
     """
-    return [
+    lacking = [
         place
         for place, items in contents.items()
         if not _holds(registry, blocks[box.index(place)], items)
     ]
+    others = [other_half(registry, state, at) for at, state in halves_in(registry, box, blocks)]
+    implied = {each[0] for each in others if each is not None and each[0] in box}
+    unknown = sorted(place for place in implied if blocks[box.index(place)] < 0)
+    return list(dict.fromkeys([*lacking, *unknown]))
 
 
 def with_chests(
@@ -54,14 +69,20 @@ def with_chests(
 def with_chests_at(
     registry: Registry, box: Box, blocks: Terrain, places: Iterable[Position]
 ) -> Terrain:
-    """Return believed blocks with chests at some positions; the same terrain if there are none."""
-    cells = [box.index(place) for place in places]
-    if not cells:
-        return blocks
-    filled = blocks.draft()
-    for cell in cells:
-        filled[cell] = registry.state_id(CHEST)
-    return filled.terrain()
+    """Return believed blocks with chests at some positions; the same terrain if there are none.
+
+    A chest becomes the other half of a half that is known, if there is one beside it. Halves
+    without another half become single chests.
+    """
+    put = list(places)
+    if put:
+        others = [other_half(registry, state, at) for at, state in halves_in(registry, box, blocks)]
+        states = dict(each for each in others if each is not None)
+        filled = blocks.draft()
+        for place in put:
+            filled[box.index(place)] = states.get(place, registry.state_id(CHEST))
+        blocks = filled.terrain()
+    return whole_chests(registry, box, blocks)
 
 
 def embodiable(registry: Registry, snapshot: Snapshot, blocks: Terrain) -> Snapshot:
@@ -75,10 +96,13 @@ def embodiable(registry: Registry, snapshot: Snapshot, blocks: Terrain) -> Snaps
         snapshot: The believed state.
         blocks: Its blocks from `with_chests`, -1 unknown.
     """
+    state_at = states_in(snapshot.box, blocks, registry.air)
     held = {
-        place: _fitting(registry, items, container_slots(_name(registry, blocks, snapshot, place)))
+        place: _fitting(registry, items, slots_at(registry, state_at, place))
         for place, items in snapshot.containers.items()
     }
+    for place, _ in halves_in(registry, snapshot.box, blocks):
+        held.setdefault(container_at(registry, state_at, place), {})
     return replace(
         snapshot,
         blocks=blocks.mapped(lambda part: np.maximum(part, 0)),
@@ -94,16 +118,12 @@ def embodiable(registry: Registry, snapshot: Snapshot, blocks: Terrain) -> Snaps
 def _holds(registry: Registry, state: int, items: Items) -> bool:
     if state < 0:
         return False
-    name = registry.name(state)
-    if not registry.is_container(name):
+    if not holds_items(registry, state):
         return False
+    name = registry.name(state)
     # A chest holds no more than another chest, so putting one would not help.
     slots = container_slots(name)
     return slots == container_slots(CHEST) or items_fault(items, registry, slots, name) is None
-
-
-def _name(registry: Registry, blocks: Terrain, snapshot: Snapshot, place: Position) -> str:
-    return registry.name(blocks[snapshot.box.index(place)])
 
 
 def _fitting(registry: Registry, items: Items, slots: int) -> Items:

@@ -8,8 +8,9 @@ from typing import Any
 from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.owned import Barred
 from beliefnest.world.circuits import Circuits
+from beliefnest.world.double_chests import container_at, is_double, other_half
 from beliefnest.world.frames import BlockGrid, PlainClaims
-from beliefnest.world.limits import items_fault
+from beliefnest.world.limits import container_slots, divided, items_fault
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import written
 from beliefnest.world.terrain import Terrain
@@ -78,12 +79,16 @@ class ScriptedState(Barred):
         return self._facts.containers
 
     def contents(self, position: Position) -> Items:
-        """Return the contents of a container.
+        """Return the contents of a container, given either half of a double chest.
 
         Raises:
             WorldError: There is no container at the position.
         """
         return dict(self._facts.containers[self._container(position)])
+
+    def container_at(self, position: Position) -> Position:
+        """Return the position of the container to which a block belongs: that of its right half."""
+        return container_at(self._registry, self.state_at, position)
 
     def block_text(self, place: Position) -> str:
         """Return the block state at a position as text; air outside the box."""
@@ -109,12 +114,22 @@ class ScriptedState(Barred):
         return dict(self._facts.signs)
 
     def _change(self, pending: Pending, place: Position, state: int, actor: str | None) -> None:
-        """Replace a block in the current tick."""
-        pending.replaced.append((self._box.index(place), self.state_at(place)))
-        held = self._facts.containers.get(place)
+        """Replace a block in the current tick; what remains of a double chest is a single one."""
+        before = self.state_at(place)
+        pending.replaced.append((self._box.index(place), before))
+        halves = [other_half(self._registry, each, place) for each in (before, state)]
+        near = {place, *(each[0] for each in halves if each is not None)}
+        held = {each: self._facts.containers.get(each) for each in near}
+        was_double = is_double(self._registry, self.state_at, place)
         self._put(place, self._registry.text(state))
-        if self._facts.containers.get(place) is not held:
-            pending.containers.add(place)
+        pending.containers |= {
+            each for each in near if self._facts.containers.get(each) is not held[each]
+        }
+        gone = self._registry.name(before) != self._registry.name(state)
+        if was_double and gone and halves[0] is not None:
+            rest = halves[0][0]
+            single = self._registry.changed(self.state_at(rest), type="single")
+            self._change(pending, rest, single, None)
         pending.blocks[place] = self._block(place)
         detail: dict[str, Any] = {"position": place, "block": self._registry.text(state)}
         if place in self._facts.sign_claims:
@@ -159,6 +174,8 @@ class ScriptedState(Barred):
         name = self._registry.name(state)
         if before != name:
             self._wipe(place)
+        if is_double(self._registry, self.state_at, place):
+            self._part(place)
         self._facts.blocks[self._box.index(place)] = state
         if (state in self._plates) is not (place in self._facts.plates):
             self._facts.plates ^= {place}
@@ -167,6 +184,27 @@ class ScriptedState(Barred):
                 self._facts.containers[place] = {}
         else:
             self._facts.containers.pop(place, None)
+        if is_double(self._registry, self.state_at, place):
+            self._join(place)
+
+    def _part(self, place: Position) -> None:
+        """Divide the contents of a double chest among its halves; the right one is filled first."""
+        right, left = self._right_and_left(place)
+        name = self._registry.name(self.state_at(right))
+        kept, rest = divided(self._facts.containers[right], self._registry, container_slots(name))
+        self._facts.containers[right], self._facts.containers[left] = kept, rest
+
+    def _join(self, place: Position) -> None:
+        """Put the contents of both halves of a double chest together."""
+        right, left = self._right_and_left(place)
+        contents = [self._facts.containers.pop(half, {}) for half in (right, left)]
+        self._facts.containers[right] = sum_of(*contents)
+
+    def _right_and_left(self, place: Position) -> tuple[Position, Position]:
+        right = container_at(self._registry, self.state_at, place)
+        left = other_half(self._registry, self.state_at(right), right)
+        assert left is not None  # the chest is double
+        return right, left[0]
 
     def _fill(self, block: str, low: Position, high: Position) -> None:
         """Set all blocks of a cuboid of a new world."""
@@ -201,7 +239,8 @@ class ScriptedState(Barred):
         return self._facts.agents[name]
 
     def _container(self, position: Position) -> Position:
-        place = self._inside(position)
+        """Return the position of the container to which the block at a position belongs."""
+        place = container_at(self._registry, self.state_at, self._inside(position))
         if place not in self._facts.containers:
             there = self._registry.text(self.state_at(place))
             raise WorldError(f"there is no container at {place}, but {there}")

@@ -25,7 +25,7 @@ from beliefnest.world.handling import (
 from beliefnest.world.limits import (
     AGENT_SLOTS,
     WORN_SLOTS,
-    container_slots,
+    slots_at,
     snapshot_fault,
 )
 from beliefnest.world.registry import AIR, parse_state
@@ -46,6 +46,7 @@ from beliefnest.worlds.scripted.facts import (
     checked_utterance,
     due_from,
     rest_of,
+    sum_of,
     whole_position,
 )
 from beliefnest.worlds.scripted.powered import PoweredState, plates_in
@@ -64,7 +65,8 @@ class ScriptedWorld(PoweredState):
         blocks: Block state texts by position; the rest is air, or what `fills` sets.
         agents: Feet positions by agent name.
         inventories: Items by agent name.
-        containers: Contents by position; a chest is added if `blocks` has no block there.
+        containers: Contents by position; a chest is added if `blocks` has no block there. What is
+            given for both halves of a double chest is added up.
         equipment: Item names by slot (`EQUIPMENT_SLOTS`), by agent name.
         tick: The first tick.
         signs: Texts of signs by position; `blocks` must have a sign there.
@@ -99,12 +101,15 @@ class ScriptedWorld(PoweredState):
         for position, text in (blocks or {}).items():
             self._put(self._inside(position), text)
         for position, items in (containers or {}).items():
-            place = self._inside(position)
+            place = self.container_at(self._inside(position))
             if place not in self._facts.containers:
                 if place in {whole_position(p) for p in blocks or {}}:
                     raise WorldError(f"the block at {place} is no container; it cannot hold items")
                 self._put(place, "chest")
-            self._facts.containers[place] = self._items(items)
+            # A double chest may be given by its halves.
+            self._facts.containers[place] = sum_of(
+                self._facts.containers[place], self._items(items)
+            )
         for position, text in (signs or {}).items():
             self._write(self._inside(position), text)
         for name, feet in (agents or {}).items():
@@ -413,11 +418,9 @@ class ScriptedWorld(PoweredState):
             held, inside = agent.inventory, self._facts.containers[place]
             if kind is EventKind.DEPOSIT_ITEM_INTO_CHEST:
                 held = rest_of(held, moved, f"{name} cannot put {moved} into {place}: it")
-                state = self.state_at(place)
-                there = self._registry.name(state)
-                inside = self._fitting(
-                    f"the {there} at {place}", inside, moved, container_slots(there)
-                )
+                there = self._registry.name(self.state_at(place))
+                slots = slots_at(self._registry, self.state_at, place)
+                inside = self._fitting(f"the {there} at {place}", inside, moved, slots)
             else:
                 inside = rest_of(inside, moved, f"{name} cannot take {moved}: the one at {place}")
                 held = self._fitting(name, held, moved, AGENT_SLOTS + WORN_SLOTS)
@@ -436,7 +439,8 @@ class ScriptedWorld(PoweredState):
     def _claiming(self, detail: dict[str, Any], claims: Iterable[Claim]) -> dict[str, Any]:
         """Return an utterance's detail with its claims; WorldError if they do not fit."""
         try:
-            return with_claims(detail, claims, self._box, self._facts.agents)
+            agents = self._facts.agents
+            return with_claims(detail, claims, self._box, agents, self.container_at)
         except InputError as fault:
             raise WorldError(str(fault)) from None
 

@@ -20,11 +20,11 @@ class WorldFacts:
 
     def items_in(self, place: Position) -> Items:
         """Return the items in a container."""
-        return self._world.containers.get(place, {})
+        return self._world.containers.get(self._world.container_at(place), {})
 
     def is_empty(self, place: Position) -> bool:
         """Return True if there is a container that holds nothing."""
-        return self._world.containers.get(place) == {}
+        return self._world.containers.get(self._world.container_at(place)) == {}
 
     def items_of(self, agent: str) -> Items:
         """Return the items that an agent has."""

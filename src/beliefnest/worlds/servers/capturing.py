@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.world.double_chests import holds_items
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.limits import box_fault
 from beliefnest.world.registry import Registry
@@ -215,7 +216,7 @@ def _said(found: Snapshot, registry: Registry) -> tuple[Snapshot, list[str]]:
 
 
 def _container_states(names: dict[int, str], registry: Registry) -> list[int]:
-    return [state for state, name in names.items() if registry.is_container(name)]
+    return [state for state in names if holds_items(registry, state)]
 
 
 def _known(agent: AgentState, registry: Registry, strange: set[str]) -> AgentState:

@@ -62,12 +62,10 @@ function inside (exhibit, place, states, { Item, registry }) {
   const { name } = states.describe(exhibit.at(place))
   if (slotsIn(name) === 0) return null
   const halves = halvesAt(each => states.describe(exhibit.at(each)), place)
-  const held = halves.map(half => exhibit.containers.get(keyOf(half)) ?? { items: {}, complete: false })
+  const held = exhibit.containers.get(keyOf(halves[0])) ?? { items: {}, complete: false }
   const { type, title } = windowOf(name, halves.length)
-  const slots = held.flatMap(({ items }) => {
-    const stacks = stacksOf(Item, registry, items)
-    return Array.from({ length: HALF }, (_, slot) => stacks[slot] ?? null)
-  })
+  const stacks = stacksOf(Item, registry, held.items)
+  const slots = Array.from({ length: halves.length * HALF }, (_, slot) => stacks[slot] ?? null)
   return { type, title: `${title}${known(held)}`, items: [...slots, ...new Array(OWN_SLOTS).fill(null)].map(stack => Item.toNotch(stack)) }
 }
 
@@ -75,9 +73,9 @@ function inside (exhibit, place, states, { Item, registry }) {
  * Return the suffix of a window's title that says which contents are unknown: an empty window would mean that the
  * container is empty.
  */
-function known (held) {
-  if (held.every(({ complete }) => complete)) return ''
-  return held.every(({ items }) => Object.keys(items).length === 0) ? ' (contents unknown)' : ' (known in part)'
+function known ({ items, complete }) {
+  if (complete) return ''
+  return Object.keys(items).length === 0 ? ' (contents unknown)' : ' (known in part)'
 }
 
 module.exports = { inside, listing, moving, sign, spawning, wearing }

@@ -68,7 +68,8 @@ function factsOf (serv, region) {
     items: () => itemStates(serv, region),
     changedContainers: () => changedContainers(serv, region),
     blockText: state => serv.blocks.text(state),
-    signText: position => serv.signs.get(region.toServer(position))
+    signText: position => serv.signs.get(region.toServer(position)),
+    wholeAt: place => region.toScenario(serv.containers.wholeAt(region.toServer(place)))
   }
 }
 

@@ -15,12 +15,13 @@ function slotsIn (name) {
 
 /**
  * Return the stacks by slot.
+ * @param {number} count number of such blocks that are one container
  * @returns {Array}
  * @throws {RangeError} if the items do not fit
  */
-function slotted (Item, registry, name, items) {
+function slotted (Item, registry, name, items, count = 1) {
   const stacks = stacksOf(Item, registry, items)
-  const size = slotsIn(name)
+  const size = slotsIn(name) * count
   if (size === 0) throw new RangeError(`the block is ${name}, which is no container`)
   const slots = size === SIZE ? arrange(name, stacks) : stacks
   if (slots === null || slots.length > size) throw new RangeError(`the items given do not fit into the ${size} slots of the ${name}`)

@@ -27,7 +27,7 @@ class Lids {
   /** Handle a moved lid; `viewers` is the number of players who look into the container. */
   moved (place, viewers) {
     const { scene } = this
-    const position = vecOf(place)
+    const position = scene.wholeAt(vecOf(place))
     if (!scene.contents.has(position)) return
     const known = this.open.get(keyOf(position))
     const { tick } = scene.region

@@ -7,6 +7,7 @@ const { Exhibit } = require('../exhibits/exhibit')
 const { Place } = require('../regions/place')
 const { Terrain } = require('../regions/terrain')
 const { keyOf, listOf, vecOf } = require('../server/plugins/lib/positions')
+const { halvesAt } = require('../server/plugins/lib/doubleChest')
 const { slotsIn, slotted } = require('./kinds')
 const { Guide } = require('./guide')
 const { Link } = require('./link')
@@ -76,7 +77,16 @@ class RemoteExhibit {
 
   stacks (position, items) {
     const { Item, registry } = this.setup
-    return slotted(Item, registry, this.scene.states.describe(this.exhibit.at(vecOf({ x: position[0], y: position[1], z: position[2] }))).name, items)
+    const place = vecOf({ x: position[0], y: position[1], z: position[2] })
+    return slotted(Item, registry, this.shown(place).name, items, this.halvesAt(place).length)
+  }
+
+  shown (place) {
+    return this.scene.states.describe(this.exhibit.at(place))
+  }
+
+  halvesAt (place) {
+    return halvesAt(each => this.shown(each), place)
   }
 
   /** Restore everything after the guide or the operator was disconnected. */
@@ -115,12 +125,14 @@ class RemoteExhibit {
     }
     const places = [...blocks, ...containers].map(([x, y, z]) => vecOf({ x, y, z }))
     for (const place of places) {
-      if (slotsIn(this.scene.states.describe(exhibit.at(place)).name) === 0) continue
+      const size = slotsIn(this.shown(place).name)
+      const halves = this.halvesAt(place)
+      if (size === 0 || !halves[0].equals(place)) continue
       const wanted = this.stacks(listOf(place), exhibit.containers.get(keyOf(place))?.items ?? {})
       const given = this.given.get(keyOf(place)) ?? []
       wanted.forEach((stack, slot) => {
         const before = given[slot] ?? null
-        if (before?.name !== stack?.name || before?.count !== stack?.count) guide.type(commands.contents(listOf(place), slot, stack))
+        if (before?.name !== stack?.name || before?.count !== stack?.count) guide.type(commands.contents(listOf(halves[Math.floor(slot / size)]), slot % size, stack))
       })
       this.given.set(keyOf(place), wanted)
     }

@@ -71,6 +71,11 @@ class Scene {
     return halvesAt(place => this.at(place), position)
   }
 
+  /** Return the position of the container to which the block at a position belongs. */
+  wholeAt (position) {
+    return this.halvesAt(position)[0]
+  }
+
   /** Handle a block of the box that became `state`. */
   blockChanged (position, state) {
     const { box, recorder } = this.region
@@ -89,7 +94,7 @@ class Scene {
   replaced (position, after) {
     this.contents.forget(position)
     this.signs.delete(keyOf(position))
-    if (slotsIn(after.name) > 0) this.contents.know(position, {})
+    if (slotsIn(after.name) > 0 && this.wholeAt(position).equals(position)) this.contents.know(position, {})
   }
 
   /** Handle the text that a sign now shows. */
@@ -190,7 +195,8 @@ class Scene {
 
   /** Return true if a bot has just used the block, or is about to see its contents. */
   isUsedByBot (position) {
-    return [...this.witnesses.values()].some(witness => witness.usesNow(position))
+    const halves = this.halvesAt(position)
+    return [...this.witnesses.values()].some(witness => halves.some(half => witness.usesNow(half)))
   }
 
   isOpenToBot (position) {

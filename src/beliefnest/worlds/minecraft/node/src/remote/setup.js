@@ -4,7 +4,7 @@ const { EYE_HEIGHT } = require('../../../../../skills/code/lib/sight')
 const { BadRequest } = require('../channel/errors')
 const { countByName } = require('../server/plugins/lib/items')
 const { stacksIn, totals } = require('../places/held')
-const { byPlace, vecOf } = require('../server/plugins/lib/positions')
+const { byPlace, listOf, vecOf } = require('../server/plugins/lib/positions')
 const { isDeepStrictEqual } = require('node:util')
 const { sorted } = require('../regions/facts')
 const { halvesAt } = require('../server/plugins/lib/doubleChest')
@@ -131,8 +131,11 @@ class Setup {
   /** Return the commands that set the contents of a container. @returns {string[]} */
   putIn (position, items) {
     const { name } = this.scene.at(vec(position))
+    const halves = this.scene.halvesAt(vec(position))
+    const size = slotsIn(name)
     try {
-      return slotted(this.Item, this.registry, name, items).map((stack, slot) => this.commands.contents(position, slot, stack))
+      return slotted(this.Item, this.registry, name, items, halves.length).map((stack, slot) =>
+        this.commands.contents(listOf(halves[Math.floor(slot / size)]), slot % size, stack))
     } catch (error) {
       if (error instanceof RangeError) throw new BadRequest(`contents at (${position.join(', ')}): ${error.message}`)
       throw error
@@ -146,22 +149,30 @@ class Setup {
   async read (position) {
     const stacks = await this.operator.lookInto(this.commands, position)
     if (stacks === null) return this.asked(position)
-    const halves = halvesAt(place => this.scene.at(place), vec(position))
-    const size = slotsIn(this.scene.at(vec(position)).name)
-    const first = halves.findIndex(half => half.equals(vec(position))) * size
-    return countByName(stacks.slice(first, first + size))
+    const size = slotsIn(this.scene.at(vec(position)).name) * this.scene.halvesAt(vec(position)).length
+    return countByName(stacks.slice(0, size))
   }
 
   /** Return the contents of a container from the server's data. */
   async asked (position) {
-    const data = this.operator.can('data') ? await this.operator.ask(this.commands.dataAt(position)) : null
-    return data === null ? null : totals(stacksIn(data.Items))
+    if (!this.operator.can('data')) return null
+    const found = []
+    for (const half of this.scene.halvesAt(vec(position))) {
+      const data = await this.operator.ask(this.commands.dataAt(listOf(half)))
+      if (data === null) return null
+      found.push(...stacksIn(data.Items))
+    }
+    return totals(found)
   }
 
   /** Return the positions of all containers of a terrain, in order. */
   containers (terrain) {
     const found = []
-    terrain.find(state => slotsIn(this.scene.states.describe(state).name) > 0, (x, y, z) => found.push([x, y, z]))
+    const { scene: { states, region: { box } } } = this
+    const at = ({ x, y, z }) => states.describe(box.contains(x, y, z) ? terrain.at(x, y, z) : 0)
+    terrain.find(state => slotsIn(states.describe(state).name) > 0, (x, y, z) => {
+      if (halvesAt(at, vec([x, y, z]))[0].equals(vec([x, y, z]))) found.push([x, y, z])
+    })
     return found.sort(byPlace)
   }
 

@@ -5,7 +5,7 @@
  */
 const { createLedger } = require('../server/plugins/lib/ledger')
 const { equal, withCount } = require('../server/plugins/lib/items')
-const { listOf, keyOf } = require('../server/plugins/lib/positions')
+const { listOf } = require('../server/plugins/lib/positions')
 const { isFurnace, slotsIn } = require('./kinds')
 
 const OWN = 0
@@ -50,16 +50,14 @@ class Windows {
     const used = this.witness.lookedAt()
     const positions = used !== null && slotsIn(this.scene.at(used).name) > 0 ? this.scene.halvesAt(used) : []
     const kind = positions.length > 0 ? this.scene.at(used).name : null
-    this.opened = { id: windowId, used, positions, kind, slots: [], own: new Map(), isTold: false, ledger: null, isTable: used !== null && this.scene.at(used).name === 'crafting_table' }
+    this.opened = { id: windowId, positions, kind, slots: [], own: new Map(), isTold: false, ledger: null, isTable: used !== null && this.scene.at(used).name === 'crafting_table' }
     const { opened } = this
-    opened.ledger = createLedger(positions, position => this.part(opened, position))
+    opened.ledger = createLedger(positions.slice(0, 1), () => this.held(opened))
   }
 
-  /** Return the slots of one container of an opened window. */
-  part ({ positions, kind, slots }, position) {
-    const index = positions.findIndex(other => keyOf(other) === keyOf(position))
-    const size = slotsIn(kind)
-    return Array.from({ length: size }, (_, slot) => slots[index * size + slot] ?? null)
+  /** Return the slots of the container of an opened window. */
+  held (opened) {
+    return Array.from({ length: this.size(opened) }, (_, slot) => opened.slots[slot] ?? null)
   }
 
   size ({ positions, kind }) {
@@ -79,8 +77,7 @@ class Windows {
     this.tellContents()
     if (this.opened.isTold) return
     this.opened.isTold = true
-    const { used, positions } = this.opened
-    for (const position of [...positions].sort((a, b) => b.equals(used) - a.equals(used))) {
+    for (const position of this.opened.positions.slice(0, 1)) {
       this.witness.emitEvent({ kind: 'open_container', detail: { position: listOf(position) } })
     }
   }
@@ -88,7 +85,7 @@ class Windows {
   tellContents () {
     const { opened } = this
     if (opened.slots.length === 0) return
-    for (const position of opened.positions) this.scene.contents.show(position, this.part(opened, position))
+    for (const position of opened.positions.slice(0, 1)) this.scene.contents.show(position, this.held(opened))
   }
 
   /** Handle the server's content of a slot: somebody else moved an item, or the server undid a click of the agent. */

@@ -32,7 +32,7 @@ const BLOCKS = [
   [2, FLOOR, -6, 'oak_log'], [2, FLOOR + 1, -6, 'oak_log'], [-8, FLOOR, -8, 'sand'], [-8, FLOOR + 1, -8, 'sand'], [6, FLOOR, 6, 'glass'],
   [-2, FLOOR, -8, 'stone'], [-2, FLOOR + 1, -8, 'torch'], [9, FLOOR, -9, 'oak_door', { half: 'lower' }], [9, FLOOR + 1, -9, 'oak_door', { half: 'upper' }]
 ]
-const CONTAINERS = [[3, FLOOR, 3, { apple: 100, diamond: 5 }], [4, FLOOR, 3, { stick: 3 }], [-5, FLOOR, -2, { dirt: 200 }], [5, FLOOR, -4, { raw_iron: 2 }]]
+const CONTAINERS = [[3, FLOOR, 3, { apple: 100, diamond: 5, stick: 3 }], [-5, FLOOR, -2, { dirt: 200 }], [5, FLOOR, -4, { raw_iron: 2 }]]
 const INVENTORIES = {
   sally: { oak_log: 20, dirt: 70, diamond: 3, coal: 5, stone_pickaxe: 1, bread: 3 },
   anne: { oak_planks: 12, apple: 9, raw_iron: 5, wooden_pickaxe: 1, red_bed: 1, torch: 4, sand: 3 },

@@ -22,7 +22,7 @@ const setting = {
     [...CHESTS[0], 'chest', { type: 'right', facing: 'south' }], [...CHESTS[1], 'chest', { type: 'left', facing: 'south' }],
     [...CHESTS[2], 'barrel'], [...TABLE, 'crafting_table']
   ],
-  containers: [[...CHESTS[0], { apple: 100, diamond: 5 }], [...CHESTS[1], { stick: 3 }], [...CHESTS[2], { dirt: 200 }]]
+  containers: [[...CHESTS[0], { apple: 100, diamond: 5, stick: 3 }], [...CHESTS[2], { dirt: 200 }]]
 }
 
 function generator (seed) {

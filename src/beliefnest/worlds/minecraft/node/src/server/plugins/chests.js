@@ -45,7 +45,7 @@ module.exports.server = (serv) => {
       positions,
       menu: containerMenu(cells, player),
       closed: () => positions.forEach((half) => showLid(serv, half)),
-    }, position)
+    })
     positions.forEach((half) => showLid(serv, half))
     return true
   }

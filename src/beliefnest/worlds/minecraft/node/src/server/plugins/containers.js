@@ -15,8 +15,8 @@ module.exports.server = (serv) => {
    * Spill the contents of a container that a player breaks; drop the contents of one that is replaced in another way.
    */
   serv.blocks.on('change', ({ position, before, after, player }) => {
-    const names = [before, after].map((stateId) => serv.blocks.describe(stateId).name)
-    const items = serv.containers.blockChanged(position, ...names)
+    const blocks = [before, after].map((stateId) => serv.blocks.describe(stateId))
+    const items = serv.containers.blockChanged(position, ...blocks)
     serv.containers.stand(position)
     if (player) items.forEach((item) => serv.popItem(position, item))
   })

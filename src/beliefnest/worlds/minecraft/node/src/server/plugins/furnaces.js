@@ -74,7 +74,7 @@ module.exports.server = (serv) => {
   function open ({ player, position, block: { name } }) {
     const slots = serv.containers.slots(position)
     const menu = containerMenu(slots.map((_, i) => (i === OUTPUT ? outputCell(slots, player) : cell(slots, i))), player, rules(name))
-    player.lookInto({ type: WINDOWS[name], title: TITLES[name], positions: [vecOf(position)], menu }, position)
+    player.lookInto({ type: WINDOWS[name], title: TITLES[name], positions: [vecOf(position)], menu })
     showProgress(fireAt(position), name)
     return true
   }

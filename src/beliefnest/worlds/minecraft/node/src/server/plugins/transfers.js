@@ -12,23 +12,17 @@ module.exports.server = (serv) => {
 }
 
 module.exports.player = (player, serv) => {
-  const slots = (position) => serv.containers.slots(position)
+  const slots = (position) => serv.containers.allSlots(position)
   let ledgers = []
 
-  /**
-   * Open a window on the containers at `window.positions` (see PlayerWindows.open). The player clicked the
-   * container at `clicked`.
-   */
-  player.lookInto = (window, clicked) => {
+  /** Open a window on the container whose halves are at `window.positions` (see PlayerWindows.open). */
+  player.lookInto = (window) => {
     const { positions } = window
-    const ledger = createLedger(positions, slots)
+    const ledger = createLedger([positions[0]], slots)
     const around = (run) => ledger.record(run).forEach((position) => serv.containers.touch(position))
     player.windows.open({ ...window, around })
     ledgers.push({ ledger, isOpen: () => player.windows.opened?.positions === positions })
-    const clickedFirst = [...positions].sort((a, b) => b.equals(clicked) - a.equals(clicked))
-    for (const position of clickedFirst) {
-      player.emitEvent({ kind: 'open_container', detail: { position: listOf(position) } })
-    }
+    player.emitEvent({ kind: 'open_container', detail: { position: listOf(positions[0]) } })
   }
 
   player.reportTransfers = () => {

@@ -2,11 +2,13 @@
 
 const { isDeepStrictEqual } = require('node:util')
 const { countByName, equal, rowsOf, slotsOf, stacksOf } = require('./items')
+const { halvesAt } = require('./doubleChest')
 const { byPlace, keyOf, listOf, vecOf } = require('./positions')
 
 /**
- * Contents of containers by block position; each half of a double chest holds its own 27 slots. A container is a block
- * whose kind was declared with `define`.
+ * Contents of containers by block position. A container is a block whose kind was declared with `define`, or both halves
+ * of a double chest: each half keeps its own slots, but contents are reported and set for the whole, at the position of
+ * its first half.
  */
 class ContainerStore {
   /**
@@ -26,7 +28,7 @@ class ContainerStore {
    * @param {(stacks: object[]) => object[] | null} arrange returns the slots for given stacks, or null if they do not
    *   fit; one after the other by default
    */
-  define (name, size, arrange = (stacks) => (stacks.length > size ? null : stacks)) {
+  define (name, size, arrange = (stacks) => stacks) {
     this.kinds.set(name, { name, size, arrange })
   }
 
@@ -39,7 +41,22 @@ class ContainerStore {
     return this.kinds.get(this.serv.blocks.at(position).name)
   }
 
-  /** Return the slots of the container at a position. The caller must call `touch` after changing them. */
+  /** Return the positions of the halves of the container at a position, or its one position. */
+  halves (position) {
+    return halvesAt(this.serv.blocks.at, position)
+  }
+
+  /** Return the position of the container to which the block at a position belongs. */
+  wholeAt (position) {
+    return this.halves(position)[0]
+  }
+
+  /** Return the slots of the whole container at a position. */
+  allSlots (position) {
+    return this.halves(position).flatMap((half) => this.slots(half))
+  }
+
+  /** Return the slots of the block at a position. The caller must call `touch` after changing them. */
   slots (position) {
     const key = keyOf(position)
     if (!this.stored.has(key)) {
@@ -56,8 +73,12 @@ class ContainerStore {
 
   /** Record a change of slots, and send it to those who look in. */
   touch (position) {
-    this.changed.set(keyOf(position), vecOf(position))
+    this.mark(this.wholeAt(position))
     this.viewers(position).forEach((player) => player.windows.sync())
+  }
+
+  mark (position) {
+    this.changed.set(keyOf(position), vecOf(position))
   }
 
   /** Return the players who look into the container at a position. */
@@ -65,35 +86,47 @@ class ContainerStore {
     return this.serv.players.filter((player) => player.windows.looksInto(position))
   }
 
-  /** Return counts by item name; null if there is no container. @returns {Object<string, number> | null} */
+  /**
+   * Return counts by item name; null if there is no container, or the second half of one.
+   * @returns {Object<string, number> | null}
+   */
   get (position) {
     if (this.kindAt(position) === undefined) return null
-    return countByName(this.stored.get(keyOf(position))?.slots ?? [])
+    const halves = this.halves(position)
+    if (!halves[0].equals(vecOf(position))) return null
+    return countByName(halves.flatMap((half) => this.stored.get(keyOf(half))?.slots ?? []))
   }
 
-  /** Set the contents of a container. @throws RangeError if there is none, or the items do not fit */
+  /** Set the contents of the whole container at a position. @throws RangeError if there is none, or they do not fit */
   set (position, counts) {
     const kind = this.kindAt(position)
     if (kind === undefined) {
       throw new RangeError(`there is no container, but ${this.serv.blocks.at(position).name}`)
     }
-    const arranged = this.arranged(kind, counts)
+    const arranged = this.arranged(position, counts)
     if (arranged === null) {
-      throw new RangeError(`the items given do not fit into the ${kind.size} slots of the ${kind.name}`)
+      const size = this.allSlots(position).length
+      throw new RangeError(`the items given do not fit into the ${size} slots of the ${kind.name}`)
     }
     this.fill(position, arranged)
     this.touch(position)
   }
 
-  /** Return the slots for given contents; null if they do not fit. */
-  arranged (kind, counts) {
-    const slots = kind.arrange(stacksOf(this.serv.Item, this.serv.registry, counts))
-    return slots && Array.from({ length: kind.size }, (_, i) => slots[i] ?? null)
+  /** Return the slots of a whole container for given contents; null if they do not fit. */
+  arranged (position, counts) {
+    const size = this.allSlots(position).length
+    const slots = this.kindAt(position).arrange(stacksOf(this.serv.Item, this.serv.registry, counts))
+    return slots && slots.length <= size ? Array.from({ length: size }, (_, i) => slots[i] ?? null) : null
   }
 
+  /** Fill the slots of a whole container. */
   fill (position, stacks) {
-    const slots = this.slots(position)
-    slots.forEach((_, i) => { slots[i] = stacks[i] })
+    let filled = 0
+    for (const half of this.halves(position)) {
+      const slots = this.slots(half)
+      slots.forEach((_, i) => { slots[i] = stacks[filled + i] })
+      filled += slots.length
+    }
   }
 
   /**
@@ -103,8 +136,8 @@ class ContainerStore {
    */
   save (region) {
     return this.positions((place) => region.contains(place)).flatMap((position) => {
-      const slots = this.slots(position)
-      const usual = this.arranged(this.kindAt(position), countByName(slots))
+      const slots = this.allSlots(position)
+      const usual = this.arranged(position, countByName(slots))
       return usual && usual.every((item, i) => equal(item, slots[i])) ? [] : [[...region.toScenario(position), ...rowsOf(slots)]]
     })
   }
@@ -113,21 +146,40 @@ class ContainerStore {
   restore (rows, region) {
     const told = new Map(rows.map(([x, y, z, ...slots]) => [keyOf(region.toServer([x, y, z])), slots]))
     for (const position of this.positions((place) => region.contains(place))) {
-      const counts = countByName(this.slots(position))
-      const kind = this.kindAt(position)
-      const slots = slotsOf(this.serv.Item, this.serv.registry, told.get(keyOf(position)) ?? [], kind.size)
+      const present = this.allSlots(position)
+      const counts = countByName(present)
+      const slots = slotsOf(this.serv.Item, this.serv.registry, told.get(keyOf(position)) ?? [], present.length)
       const same = isDeepStrictEqual(countByName(slots), counts)
-      this.fill(position, same ? slots : this.arranged(kind, counts) ?? this.slots(position))
+      this.fill(position, same ? slots : this.arranged(position, counts) ?? present)
     }
   }
 
-  /** Handle a changed block. Return the items that were inside the old one. */
-  blockChanged (position, before, after) {
-    if (before === after || !(this.kinds.has(before) || this.kinds.has(after))) return []
+  /**
+   * Handle a changed block. Return the items that were inside the old one.
+   * @param {object} old description of the block before
+   * @param {object} now description of the block after
+   */
+  blockChanged (position, old, now) {
+    const [before, after] = [old.name, now.name]
+    if (!(this.kinds.has(before) || this.kinds.has(after))) return []
+    const wholes = this.changedWholes(position, old, now)
+    if (before !== after || wholes.length > 1) wholes.forEach((place) => this.mark(place))
+    if (before === after) return []
     const items = this.stored.get(keyOf(position))?.slots.filter(Boolean) ?? []
     this.drop(position)
-    this.changed.set(keyOf(position), position)
     return items
+  }
+
+  /**
+   * Return the positions of the containers that a changed block was or is, and of blocks that it joined or left as a
+   * half of a double chest.
+   */
+  changedWholes (position, old, now) {
+    const blockAs = (block) => (place) => (place.equals(position) ? block : this.serv.blocks.at(place))
+    const held = [old, now].filter(({ name }) => this.kinds.has(name)).map((block) => halvesAt(blockAs(block), position))
+    const others = held.flat().filter((half) => !half.equals(position))
+    const isOne = held.some(([first]) => first.equals(position))
+    return [...(isOne ? [position] : []), ...others]
   }
 
   drop (position) {
@@ -150,12 +202,15 @@ class ContainerStore {
    */
   positions (within) {
     const places = [...this.stored.values()].map(({ position }) => position).filter(within)
+      .filter((position) => this.wholeAt(position).equals(position))
     return places.sort((a, b) => byPlace(listOf(a), listOf(b)))
   }
 
   /** Forget everything about a part of the world. */
   forget (within) {
-    this.positions(within).forEach((position) => this.drop(position))
+    for (const { position } of [...this.stored.values()]) {
+      if (within(position)) this.drop(position)
+    }
     this.drainChanges(within)
   }
 }

@@ -11,14 +11,20 @@ function partnerOf (position, { properties }) {
 }
 
 /**
- * Return the halves of the container at a position, the one in the window's upper part first.
+ * Return the halves of the container at a position, the one in the window's upper part first: the right one, whose
+ * position is that of the whole. A half without the other one is a container of its own.
  * @param {(position: object) => {name: string, properties: object}} at returns the block at a position
  */
 function halvesAt (at, position) {
   const block = at(position)
   const other = partnerOf(position, block)
-  if (!other || at(other).name !== block.name) return [vecOf(position)]
+  if (!other || !belongTogether(block, at(other))) return [vecOf(position)]
   return block.properties.type === 'right' ? [vecOf(position), other] : [other, vecOf(position)]
+}
+
+function belongTogether (half, { name, properties }) {
+  return name === half.name && properties.facing === half.properties.facing &&
+    properties.type === (half.properties.type === 'left' ? 'right' : 'left')
 }
 
 module.exports = { halvesAt, partnerOf }
