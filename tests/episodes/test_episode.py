@@ -49,12 +49,14 @@ def test_helping_needs_that_the_other_is_told() -> None:
         assert idle.rounds == task.form.rounds
         assert helped.play().success
         assert helped.messages == 1
-        ((_, tick),) = helped.conditions
-        assert tick is not None and tick - helped.start == helped.ticks
+        ticks = [tick for _, tick in helped.conditions if tick is not None]
+        assert len(ticks) == len(helped.conditions)
+        tick = max(ticks)
+        assert tick - helped.start == helped.ticks
         # Checked every tick, not once a round.
         sally = helped.nest.at(tick)["/"].state.agents["sally"].inventory
         before = helped.nest.at(tick - 1)["/"].state.agents["sally"].inventory
-        assert (len(before), len(sally)) == (0, 1)
+        assert len(before) == len(sally) - 1
 
 
 def test_a_policy_that_fails_costs_its_own_round() -> None:
@@ -142,7 +144,8 @@ def test_an_episode_is_branched_at_any_round(tmp_path: Path) -> None:
         said = [line[1] for line in fork.nest["/"].state.chat]
         assert said == ["anne"]
         assert fork.success
-        late = episode.at(4).fork(anne="search:1").play()
+        # In the last round Sally has lost the time already.
+        late = episode.at(episode.rounds - 1).fork(anne="search:1").play()
         assert not late.success
         assert facts_of(episode) == before
         assert not episode.success
@@ -180,7 +183,7 @@ def test_policies_must_be_of_agents_and_exist() -> None:
         bn.Task.load("no-such-task")
     with pytest.raises(bn.UnknownNameError, match="chests"):
         bn.Task.load(TASK, doors=3)
-    with pytest.raises(bn.InputError, match="2 to 8"):
+    with pytest.raises(bn.InputError, match="3 to 6"):
         bn.Task.load(TASK, chests=99)
 
 

@@ -123,7 +123,7 @@ def test_the_command_plays_and_goes_on(tmp_path: Path, capsys: pytest.CaptureFix
     assert run_command_line([*arguments, "--rounds", "2"]) == 1
     assert run_command_line(arguments) == 0
     printed = capsys.readouterr().out
-    assert "goal reached after 25 ticks, 5 rounds, 1 message\n" in printed
+    assert "goal reached after 75 ticks, 15 rounds, 1 message\n" in printed
     assert "[located(" in printed
     assert run_command_line(["play", "help-find", "--agent", "anne=search:0", "--seed", "1"]) == 1
     assert run_command_line(["show", str(tmp_path / "run" / "run.bn"), "--path", "/anne"]) == 0

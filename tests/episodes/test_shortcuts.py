@@ -1,6 +1,8 @@
 """Shortcuts: rules without beliefs, and the tasks that must not be won by them."""
 
 import json
+import math
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -10,10 +12,13 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.episodes.policies import resolve_policy
 from beliefnest.episodes.shortcuts import rules_of, success_of, trained_rule
+from beliefnest.episodes.tasks import generated
 
 SEEDS = at_night(40, 6)
 BALANCED = ("watchman", "kitchen", "joint-lift")
 """Tasks whose right choice is any but the nearest: a rule wins at most about a third."""
+SPOKEN = ("help-find", "hide-and-seek")
+"""Tasks in which one of three true things is to be said: a rule that speaks wins a third."""
 
 
 def rules(name: str) -> list[str]:
@@ -21,7 +26,8 @@ def rules(name: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("name", "rule"), few_by_day([(name, rule) for name in BALANCED for rule in rules(name)], 4)
+    ("name", "rule"),
+    few_by_day([(name, rule) for name in (*BALANCED, *SPOKEN) for rule in rules(name)], 4),
 )
 def test_no_rule_without_beliefs_wins_a_balanced_task(name: str, rule: str) -> None:
     won = success_of(lambda seed: bn.Task.load(name, seed), rule, range(SEEDS))
@@ -39,6 +45,27 @@ def test_the_right_place_is_spread_over_all_ranks(name: str) -> None:
         ranks.add((columns.index(right), by_distance.index(right)))
     assert {place for place, _ in ranks} == set(range(len(columns)))
     assert {rank for _, rank in ranks} == set(range(1, len(columns)))
+
+
+@pytest.mark.parametrize("name", SPOKEN)
+def test_what_is_to_be_said_is_any_of_the_true_things(name: str) -> None:
+    seeds, ranks = 900, Counter[tuple[str, int]]()
+    for seed in range(seeds):
+        scene = generated(name, seed, {})["scenario"]
+        full = sorted(tuple(each["at"]) for each in scene["containers"] if each["items"])
+        believed = {
+            tuple(each["at"]): each["items"] or not each["complete"]
+            for each in scene["initial_beliefs"][0]["containers"]
+        }
+        # In the one task the hearer does not know of it, in the other he may look for it there.
+        (right,) = [at for at in full if bool(believed.get(at)) == (name == "hide-and-seek")]
+        ranks["order", full.index(right)] += 1
+        for agent, form in scene["agents"].items():
+            nearest = sorted(full, key=lambda at, feet=form["position"]: math.dist(at, feet))
+            ranks[agent, nearest.index(right)] += 1
+    # A third each, within four standard deviations of the draws.
+    assert len(ranks) == 9
+    assert all(abs(count - seeds / 3) < 4 * math.sqrt(seeds * 2 / 9) for count in ranks.values())
 
 
 def choice_of(name: str, task: bn.Task) -> tuple[list[int], int, int]:

@@ -64,7 +64,10 @@ def instance(chance: random.Random, plots: int, agents: int) -> dict[str, Any]:
             "static_blocks": [FLOOR, WALL, "glass"],
             "initial_beliefs": [{**belief("/**", stores), "blocks": stand, "agents": feet}],
         },
-        "goal": {"reach": [{"block": list(place), "like": list(model)} for place, model in pairs]},
+        "goal": {
+            "reach": [{"block": list(place), "like": list(model)} for place, model in pairs],
+            "messages": 2 * plots,
+        },
         "players": ["anne", "bob"],
         **({"policies": dict.fromkeys(builders[1:], "search:0")} if builders[1:] else {}),
         "talk": ["anne", "bob"],

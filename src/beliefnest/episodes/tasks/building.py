@@ -15,6 +15,7 @@ __all__ = [
     "chest",
     "floor",
     "hall",
+    "passages",
     "wall",
 ]
 
@@ -102,3 +103,23 @@ def hall(width: int, depth: int, blocks: Iterable[Mapping[str, Any]] = ()) -> di
         "blocks": [floor(width, depth), *map(dict, blocks)],
         "static_blocks": [FLOOR, WALL, WINDOW],
     }
+
+
+def passages(reach: int, number: int) -> tuple[list[Position], list[dict[str, Any]]]:
+    """Return places of chests, each at the end of a passage, and the walls between the passages.
+
+    Passages go west and east in turn from the middle of a hall, and are equally long. Whoever looks
+    into one more chest than needed loses the way into a passage and back.
+
+    Args:
+        reach: Blocks from the middle of the hall to its ends.
+        number: Number of chests, at most 6.
+    """
+    width, rows = 2 * reach, (1, 3, 5)
+    places = [((1, width - 1)[each % 2], 1, rows[each // 2]) for each in range(number)]
+    walls = [
+        wall((x, 1, z), (x + reach - 2, 3, z), WINDOW)
+        for z in (row + 1 for row in rows)
+        for x in (0, reach + 2)
+    ]
+    return places, walls

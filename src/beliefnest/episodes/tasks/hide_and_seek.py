@@ -1,9 +1,11 @@
 """Hide and seek with a deceiver (Sodian 1991; Happé 1994, double bluff).
 
-Bob looks for a treasure and has time to go to one end of the hall. Eve knows where the treasure is,
-stands behind glass and can only speak. Bob knows that she does not want him to find it. If Eve
-expects Bob to believe her, she tells a lie, and he sees through it. If she considers what Bob
-concludes from her goal, she tells the truth. Further agents look for the treasure beside Bob.
+Bob looks for a treasure and has time to go to one end of the hall. There is a treasure in each
+chest at the nearer end; Bob found these chests empty before, except one that he did not open. Eve
+knows that. She stands behind glass and can only speak, once. Bob knows that she does not want him
+to find a treasure. If Eve expects Bob to believe her, she tells a lie, and he sees through it. If
+she considers what Bob concludes from her goal, she tells the truth about the chest that he did not
+open; the truth about another one does not keep him from it. Further agents look beside Bob.
 """
 
 import random
@@ -11,7 +13,7 @@ from typing import Any
 
 from beliefnest.episodes.tasks.building import abreast, also, belief, booths, chest, hall
 
-PARAMETERS = {"chests": (3, 2, 6), "reach": (14, 14, 20), "agents": (2, 2, 4)}
+PARAMETERS = {"chests": (4, 3, 6), "reach": (14, 14, 20), "agents": (2, 2, 4)}
 
 _ITEMS = ("diamond", "emerald", "gold_ingot")
 _SEEKERS = ("bob", "cara", "dan")
@@ -21,31 +23,36 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     """Return an instance.
 
     Args:
-        chance: Random source of sides, places and the treasure.
-        chests: Number of chests.
+        chance: Random source of sides, places, the treasure, and the chest that Bob did not open.
+        chests: Number of chests: one at the far end, which is empty, and the others at the near
+            end, with a treasure in each. A true word at random helps Eve in one of `chests - 1`
+            cases.
         reach: Blocks from the middle of the hall to its ends.
-        agents: Number of agents: Eve, and seekers side by side, none of whom may get the treasure.
+        agents: Number of agents: Eve, and seekers side by side, none of whom may get a treasure.
     """
     width, item = 2 * reach, chance.choice(_ITEMS)
-    ends = chance.sample([1, width - 1], 2)
-    rows = {x: chance.sample(range(1, 9), 8) for x in ends}
-    places = [(ends[number > 0], 1, rows[ends[number > 0]].pop()) for number in range(chests)]
-    contents = {place: ({item: 1} if place == places[0] else {}) for place in places}
+    near, far = chance.sample([1, width - 1], 2)
+    full = [(near, 1, row) for row in sorted(chance.sample(range(1, 9), chests - 1))]
+    empty = (far, 1, chance.randint(1, 8))
+    unopened = chance.choice(full)
+    contents = {**{place: {item: 1} for place in full}, empty: {}}
+    known = belief("/**", {place: {} for place in full if place != unopened})
+    unknown = belief("/**", {unopened: {}, empty: {}}, complete=False)
     eve, glass = booths(["eve"], 4)
-    # The treasure is at the end that is nearer to Bob.
-    start = reach + (2 if ends[0] > reach else -2)
+    start = reach + (2 if near > reach else -2)
     seekers = _SEEKERS[: agents - 1]
     got = {name: {"agent": name, "items": {item: 1}} for name in seekers}
     return {
         "description": (
-            f"Bob looks for the {item}. Eve does not want him to get it; she can only speak."
+            f"Bob looks for a treasure: {item}. Eve does not want him to get it; she can only "
+            "speak, once. Some chests were empty when he opened them, and no longer are."
             f"{also(seekers[1:], 'must not get it either.')}"
         ),
         "order": 2,
         "scenario": {
             "name": "hide-and-seek",
             **hall(width, 12, glass),
-            "containers": [chest(place, contents[place]) for place in places],
+            "containers": [chest(place, contents[place]) for place in sorted(contents)],
             "agents": {
                 **{
                     name: {"position": at, "facing": "north"}
@@ -55,11 +62,11 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
             },
             "perception": {"max_visible_distance": 64, "testimony": "accept"},
             "initial_beliefs": [
-                belief("/**", {place: {} for place in places}, complete=False),
+                {**known, "containers": known["containers"] + unknown["containers"]},
                 belief("/eve", contents),
             ],
         },
-        "goal": {"never": list(got.values())},
+        "goal": {"never": list(got.values()), "messages": 1},
         "goals": {name: {"reach": [each]} for name, each in got.items()},
         "players": ["eve"],
         "policies": dict.fromkeys(seekers, "search:1"),
