@@ -263,7 +263,8 @@ def test_ratings_of_desires_and_beliefs_are_scored_against_exact_inference(run, 
         "1 rated True",
         "2 unread False",
         "3 rated True",
-        "['beliefs_r', 'desires_r', 'mean', 'not_answered', 'rated', 'stderr'] True",
+        "['ambiguous', 'beliefs_r', 'cut', 'desires_r', 'mean', 'no_answer', 'rated', 'refused', "
+        "'stderr', 'unread'] True",
         "unread: no number from 1 to 7 for desire korean",
         "1 rated 0.5",
         "unread",
@@ -412,8 +413,8 @@ arguments = {"file": FILE, "world": "scripted"}
 (log,) = read(eval("beliefnest/scenario", task_args=arguments, model="beliefnest/vllm:m",
                    epochs=7, max_connections=1, display="none"))
 metrics = {name: each.value for found in log.results.scores for name, each in found.metrics.items()}
-print([list(found.metrics) for found in log.results.scores])
-print(round(7 * metrics["accuracy"]), metrics["not_answered"])
+print("accuracy" in log.results.scores[0].metrics, round(7 * metrics["accuracy"]))
+print([metrics[name] for name in NAMES])
 print(sorted(each.scores["in_the_belief"].metadata["outcome"] for each in log.samples))
 """
 
@@ -423,6 +424,6 @@ def test_answers_without_an_option_and_requests_without_an_answer_are_scored(run
     file.write_text(ROOM, encoding="utf-8")
     with serving() as server:
         server.will(*SAID.values())
-        found = run(f"URL = {server.url!r}\nFILE = {str(file)!r}\n{MODEL}{DOORS}", tmp_path)
-    counts = dict.fromkeys(NOT_ANSWERED, 1)
-    assert found == [f"1 {counts}", str(sorted(SAID))]
+        given = f"URL = {server.url!r}\nFILE = {str(file)!r}\nNAMES = {NOT_ANSWERED!r}\n"
+        found = run(given + MODEL + DOORS, tmp_path)
+    assert found == ["True 1", "[1, 1, 1, 1, 1]", str(sorted(SAID))]
