@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -251,7 +250,7 @@ class Inference:
         """
         if isinstance(n, bool) or not isinstance(n, int) or n < 1:
             raise InputError(f"n is {n!r}; give a whole number from 1")
-        if isinstance(seed, bool) or not isinstance(seed, Integral) or seed < 0:
+        if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
             raise InputError(f"seed is {seed!r}; give a whole number from 0")
         if self._failed is not None:
             raise InputError(f"there is no path to draw: {self.impossible}")
@@ -314,7 +313,7 @@ class Inference:
     def _number(self, tick: int | None) -> int:
         if tick is None:
             return len(self._known) - 1
-        if isinstance(tick, bool) or not isinstance(tick, Integral):
+        if isinstance(tick, bool) or not isinstance(tick, int | np.integer):
             raise TickError(f"{tick!r} is not a tick; give a whole number")
         if not self.since <= tick <= self.until:
             raise TickError(
