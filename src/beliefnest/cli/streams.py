@@ -76,9 +76,10 @@ def print_warnings_as_lines() -> None:
         line: str | None = None,
     ) -> None:
         if category.__module__.partition(".")[0] == __name__.partition(".")[0]:
-            if str(message) not in shown:
+            subject = str(getattr(message, "subject", message))
+            if subject not in shown:
                 print(f"beliefnest: warning: {message}", file=sys.stderr)  # noqa: T201
-            shown.add(str(message))
+            shown.add(subject)
         else:
             usual(message, category, filename, lineno, file, line)
 

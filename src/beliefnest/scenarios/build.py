@@ -17,7 +17,7 @@ from beliefnest.perception.options import Perception
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, built_in_template
 from beliefnest.scenarios.agent_entries import build_agents
 from beliefnest.scenarios.checks import Checks, check_inside
-from beliefnest.scenarios.content import Probe, ScenarioContent
+from beliefnest.scenarios.content import Probe, ScenarioContent, ScenarioWarning
 from beliefnest.scenarios.document import Document, KeyPath, plain
 from beliefnest.scenarios.expected import Expected
 from beliefnest.scenarios.expected_answers import Answers
@@ -34,6 +34,7 @@ from beliefnest.scenarios.format import (
 )
 from beliefnest.scenarios.inferring import build_inferring
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, rule_faults
+from beliefnest.scenarios.scene_check import scene_warnings
 from beliefnest.scenarios.space import (
     UNKNOWN,
     believed_fault,
@@ -97,6 +98,7 @@ def build_scenario(
         written=_written(document),
         source=document.source,
         text=document.text,
+        warnings=builder.warnings(probes),
         templates={
             entry.template: probe.template
             for entry, probe in zip(file.probes, probes, strict=True)
@@ -160,6 +162,10 @@ class _Builder:
                 labels.setdefault(self.checks.container_at(entry.at), told)
         return labels
 
+    def warnings(self, probes: tuple[Probe, ...]) -> tuple[ScenarioWarning, ...]:
+        """Return warnings about the file."""
+        return scene_warnings(self._document, self._file, self._snapshot, probes)
+
     def _unique(self, initial: Sequence[InitialBelief]) -> frozenset[str]:
         """Return the unique items; refuse those that world or initial beliefs contradict."""
         found = set()
@@ -199,13 +205,15 @@ class _Builder:
             label=entry.label,
             timeout_ticks=entry.timeout_ticks,
             senses=entry.senses or self._file.senses,
+            intended=entry.intended,
+            where=self._document.key_at(path),
         )
 
     def _inferring(self, path: KeyPath, entry: ProbeEntry) -> Probe:
         """Return a probe that infers in place of asking a model."""
         assert entry.infer is not None
         usual = ProbeEntry(path=entry.path)
-        for key in ("acts_in", "agent", "task", "template", "senses", "timeout_ticks"):
+        for key in ("acts_in", "agent", "task", "template", "senses", "timeout_ticks", "intended"):
             if getattr(entry, key) != getattr(usual, key):
                 raise self._document.fault(
                     (*path, key), "is for probes that ask a model; remove it, or 'infer'"

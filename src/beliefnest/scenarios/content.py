@@ -12,7 +12,22 @@ from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world.values import Position
 
-__all__ = ["Probe", "ScenarioContent"]
+__all__ = ["Probe", "ScenarioContent", "ScenarioWarning"]
+
+
+class ScenarioWarning(UserWarning):
+    """Warning about a scenario, which changes no result.
+
+    Attributes:
+        subject: Kind and place of what it is about; studies say it once for each subject.
+    """
+
+    def __init__(self, message: str, subject: str = "") -> None:
+        super().__init__(message, subject)
+        self.subject = subject or message
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +48,8 @@ class Probe:
         timeout_ticks: Ticks of 50 ms after which the program fails.
         senses: Source of what the program reads: the world, or its agent's percepts.
         infer: Inference from `path`, which takes the place of the request; None: none.
+        intended: Intended right answer, `true belief` or `false belief`; empty: none is said.
+        where: Start of a message about the probe: file, line and key.
     """
 
     path: str
@@ -45,6 +62,8 @@ class Probe:
     timeout_ticks: int = 1200
     senses: Senses = "world"
     infer: Inferring | None = None
+    intended: str = ""
+    where: str = ""
 
     @property
     def questions(self) -> tuple[Answers, ...]:
@@ -90,6 +109,7 @@ class ScenarioContent:
         source: Name of the source for messages.
         text: Text of the file; empty if the scenario was built in code.
         templates: Texts of the templates that probes name, by name.
+        warnings: Warnings about the file; nothing was played for them.
     """
 
     setting: Setting
@@ -105,6 +125,7 @@ class ScenarioContent:
     source: str = "scenario"
     text: str = ""
     templates: Mapping[str, str] = field(default_factory=dict)
+    warnings: tuple[ScenarioWarning, ...] = ()
 
     @property
     def name(self) -> str:

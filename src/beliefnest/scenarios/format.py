@@ -387,6 +387,13 @@ class ProbeEntry(_Entry, frozen=True):
     agent: Annotated[str | None, note("The agent that runs the program.")] = None
     task: Annotated[str | None, note("Task of the agent, for the model.")] = None
     label: Annotated[str, note("A name for tables and overrides.")] = ""
+    intended: Annotated[
+        str,
+        note(
+            "Intended right answer, `true belief` or `false belief`; a warning is given if the "
+            "computed answer is another one."
+        ),
+    ] = ""
     template: Annotated[
         str | None,
         note(

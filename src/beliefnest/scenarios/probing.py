@@ -30,7 +30,7 @@ from beliefnest.scenarios.questioning import ask_question
 from beliefnest.scenarios.trial import Trial
 from beliefnest.skills import SkillDetail, skills_at
 
-__all__ = ["Asking", "resolved", "run_probe"]
+__all__ = ["Asking", "naming_for", "resolved", "run_probe"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,9 +143,14 @@ def resolved(nest: Nest, probe: Probe) -> Probe:
     in_words = any(not question.options for question in probe.questions)
     if not in_words and all(each.paths == () for each in probe.expect):
         return probe
-    naming = Naming.of(nest[probe.path].view, nest.setting)
+    naming = naming_for(nest, probe)
     expect = tuple(each.resolved(lambda path: nest[path].state, naming) for each in probe.expect)
     return replace(probe, expect=expect)
+
+
+def naming_for(nest: Nest, probe: Probe) -> Naming:
+    """Return the names by which the answers to a probe are given."""
+    return Naming.of(nest[probe.path].view, nest.setting)
 
 
 def _infer(nest: Nest, probe: Probe, infer: Inferring) -> ProbeOutcome:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import built_in_template
 from beliefnest.scenarios.believed import Believed, bare_words
-from beliefnest.scenarios.content import Probe
+from beliefnest.scenarios.content import Probe, ScenarioWarning
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.prose_reading import UnreadError, read_places
 from beliefnest.world.paths import parse_path
@@ -17,7 +17,7 @@ __all__ = ["ProseWarning", "warn_of_prose"]
 _STORY = "{{ branch | beginning }} {{ branch | story }}"
 
 
-class ProseWarning(UserWarning):
+class ProseWarning(ScenarioWarning):
     """Warning that the right answer to a question does not follow from the text of its probe."""
 
 
@@ -43,7 +43,9 @@ def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
     for number, probe, question, believed in asked:
         name = repr(probe.label) if probe.label else str(number)
         for fault in _faults(nest, story, question, believed):
-            warnings.warn(f"{believed.where}probe {name}: {fault}", ProseWarning, stacklevel=3)
+            subject = f"prose {believed.where}{name}"
+            told = f"{believed.where}probe {name}: {fault}"
+            warnings.warn(ProseWarning(told, subject), stacklevel=3)
 
 
 def _faults(nest: Nest, story: str, question: Answers, believed: Believed) -> Iterator[str]:

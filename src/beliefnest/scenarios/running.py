@@ -7,7 +7,7 @@ from beliefnest.nest.face.nest import Nest, Progress
 from beliefnest.scenarios.expected import Deed
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome
 from beliefnest.scenarios.probing import Asking, resolved, run_probe
-from beliefnest.scenarios.prose_check import warn_of_prose
+from beliefnest.scenarios.right_answers_check import warn_of_answers, warn_of_scene
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import parse_path, path_text
 
@@ -42,6 +42,7 @@ def run_scenario(
         ScenarioError: A belief gives no right answer; no model was asked.
     """
     _check_functions(scenario)
+    warn_of_scene(scenario)
     nest.play(on_progress)
     ticks = nest.tick
     steps = len(scenario.setting.script)
@@ -60,7 +61,7 @@ def run_scenario(
     probes = []
     # Compute right answers before any model is asked: errors in them then cost nothing.
     asked = [resolved(nest, probe) for probe in scenario.probes]
-    warn_of_prose(nest, asked)
+    warn_of_answers(nest, scenario, asked)
     for number, probe in enumerate(asked):
         verb = "asking" if probe.asks_model else "inferring"
         on_progress(f"{verb}: {probe.asked}", number, len(asked))

@@ -1,6 +1,7 @@
 """Playing of the open cells of a plan, one by one, in processes, or on a cluster with joblib."""
 
 import contextlib
+import warnings
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
@@ -84,7 +85,12 @@ def run_cells(
     progress = _Counting(folder, len(cells), len(cells) - len(left), on_progress)
     keys = {cell.key.name: cell.key for cell in left}
     with contextlib.closing(_results(left, terms, jobs, backend)) as results:
+        warned: set[str] = set()
         for result in results:
+            for each in result.warnings:
+                if each.subject not in warned:
+                    warnings.warn(each, stacklevel=2)
+                warned.add(each.subject)
             if result.unavailable:
                 raise UnavailableModelError(
                     f"{result.unavailable}; {counted(progress.left, 'cell')} left to play: run the "

@@ -2,6 +2,7 @@
 
 import threading
 import time
+import warnings
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.llm.resolve import can_vary, is_free, open_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
+from beliefnest.scenarios.content import ScenarioWarning
 from beliefnest.scenarios.records import expectation_json, probe_json
 from beliefnest.scenarios.running import Asking, run_scenario
 from beliefnest.studies.cells import Cell, Keyed
@@ -36,12 +38,14 @@ class CellResult:
         content: Plain values; reproducible, apart from answers of providers' models.
         seconds: Wall time in seconds.
         unavailable: Why no further cell can be played; empty: others can be.
+        warnings: Warnings about the scenario.
     """
 
     name: str
     content: Mapping[str, Any]
     seconds: float
     unavailable: str = ""
+    warnings: tuple[ScenarioWarning, ...] = ()
 
 
 class Worker:
@@ -59,6 +63,20 @@ class Worker:
     def play(self, cell: Keyed, terms: Terms) -> CellResult:
         """Play a cell; an error of the scenario, world or model is its result."""
         started = time.perf_counter()
+        # A process has only standard error for its warnings; the study gives them, each once.
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always", ScenarioWarning)
+            content, unavailable = self._content(cell, terms)
+        told = [each for each in found if isinstance(each.message, ScenarioWarning)]
+        for each in found:
+            if each not in told:
+                warnings.warn_explicit(each.message, each.category, each.filename, each.lineno)
+        seconds = time.perf_counter() - started
+        ours = tuple(each.message for each in told if isinstance(each.message, ScenarioWarning))
+        return CellResult(cell.key.name, content, seconds, unavailable, ours)
+
+    def _content(self, cell: Keyed, terms: Terms) -> tuple[dict[str, Any], str]:
+        """Return the content of a cell, and why no further cell can be played."""
         unavailable = ""
         try:
             if isinstance(cell, EpisodeCell):
@@ -71,7 +89,7 @@ class Worker:
             content = {"error": str(error), "kind": type(error).__name__}
             if isinstance(error, UnavailableModelError):
                 unavailable = str(error)
-        return CellResult(cell.key.name, content, time.perf_counter() - started, unavailable)
+        return content, unavailable
 
     def _played(self, cell: Cell, terms: Terms) -> dict[str, Any]:
         key, scenario = cell.key, cell.scenario

@@ -12,6 +12,7 @@ from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.outcome import ExpectationOutcome
 from beliefnest.scenarios.probing import resolved
 from beliefnest.scenarios.records import expectation_json
+from beliefnest.scenarios.right_answers_check import warn_of_answers, warn_of_scene
 from beliefnest.studies.participants.film import Film, read_film
 from beliefnest.studies.participants.items import Item
 from beliefnest.worlds.by_name import Worlds
@@ -104,7 +105,9 @@ def _played(item: Item, worlds: Worlds, renderer: Renderer) -> Iterator[tuple[Ne
             scenario, key.setting["world"], None, key.seed, worlds, renderer=renderer
         ) as nest:
             start = nest.tick
+            warn_of_scene(scenario)
             nest.play()
+            warn_of_answers(nest, scenario)
             yield nest, start
     except (ProgramError, ScenarioError) as error:
         raise type(error)(f"{_title(item)}: {error}") from error

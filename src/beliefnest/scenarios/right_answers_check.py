@@ -1,0 +1,127 @@
+"""Warnings about computed right answers: several at once, or others than the author intends."""
+
+import re
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from beliefnest.errors import ScenarioError
+from beliefnest.nest.face.nest import Nest
+from beliefnest.scenarios.believed import bare_words
+from beliefnest.scenarios.content import Probe, ScenarioContent, ScenarioWarning
+from beliefnest.scenarios.expected_answers import Answers
+from beliefnest.scenarios.probing import naming_for, resolved
+from beliefnest.scenarios.prose_check import warn_of_prose
+from beliefnest.world.words import listed
+
+__all__ = ["warn_of_answers", "warn_of_scene"]
+
+_KIND = re.compile(r"\b(true|false)[- ]beliefs?\b", re.IGNORECASE)
+
+
+def warn_of_scene(scenario: ScenarioContent) -> None:
+    """Give the warnings about a scenario's file."""
+    for each in scenario.warnings:
+        warnings.warn(each, stacklevel=3)
+
+
+def warn_of_answers(
+    nest: Nest, scenario: ScenarioContent, probes: Sequence[Probe] | None = None
+) -> None:
+    """Warn of right answers that are several, not intended, or do not follow from the prose.
+
+    Args:
+        nest: The nest after the script.
+        scenario: Its scenario.
+        probes: Its probes with their right answers; None: compute them. Probes that have no right
+            answer are left out then.
+    """
+    if probes is None:
+        probes = tuple(_answered(nest, scenario.probes))
+    warn_of_prose(nest, probes)
+    for each in (*_several(probes), *_intended(nest, scenario, probes)):
+        warnings.warn(each, stacklevel=3)
+
+
+def _answered(nest: Nest, probes: Sequence[Probe]) -> Iterator[Probe]:
+    for probe in probes:
+        try:
+            yield resolved(nest, probe)
+        except ScenarioError:
+            continue
+
+
+def _computed(probes: Sequence[Probe]) -> Iterator[tuple[Probe, Answers]]:
+    """Yield the questions whose right answers the nest computes."""
+    for probe in probes:
+        yield from ((probe, each) for each in probe.questions if each.believed is not None)
+
+
+def _several(probes: Sequence[Probe]) -> Iterator[ScenarioWarning]:
+    """Yield questions of which several options are right."""
+    for probe, question in _computed(probes):
+        if question.options and len(question.right) > 1 and question.believed is not None:
+            right = listed([repr(each) for each in question.right])
+            yield ScenarioWarning(
+                f"{question.believed.where}probe {probe.label!r} has {len(question.right)} right "
+                f"answers, {right}: {question.believed.thing} is believed to be in each; "
+                "list it under 'unique', or change the script",
+                f"several {question.believed.where}",
+            )
+
+
+def _intended(
+    nest: Nest, scenario: ScenarioContent, probes: Sequence[Probe]
+) -> Iterator[ScenarioWarning]:
+    """Yield probes and conditions of which author and nest say different things."""
+    kinds: list[tuple[Probe, str]] = []
+    for probe, question in _computed(probes):
+        kind = _kind_of(nest, probe, question)
+        right = listed([repr(each) for each in question.right], "or")
+        said = probe.intended or _named(probe.label)
+        computed = f"the computed right answer {right} is that of a {kind}"
+        if kind and not said:
+            kinds.append((probe, kind))
+        if said and not _named(said):
+            right_words = {tuple(bare_words(each)) for each in question.right}
+            if {tuple(bare_words(said))} != right_words:
+                yield _other(probe, said, f"the computed right answer is {right}")
+        elif said and kind and _named(said) != kind:
+            yield _other(probe, said, computed)
+    said = _named(scenario.condition_description)
+    if said and kinds and said not in [kind for _, kind in kinds]:
+        probe, kind = kinds[0]
+        yield ScenarioWarning(
+            f"{probe.where}condition {scenario.condition} is described as "
+            f"{scenario.condition_description.strip()!r}, and the right answer to probe "
+            f"{probe.label!r} is that of a {kind}; change the script or the description",
+            f"described {probe.where}{scenario.condition}",
+        )
+
+
+def _other(probe: Probe, said: str, computed: str) -> ScenarioWarning:
+    return ScenarioWarning(
+        f"{probe.where}probe {probe.label!r} is meant as {said!r}, but {computed}; change the "
+        "script, or what is intended",
+        f"intended {probe.where}",
+    )
+
+
+def _named(text: str) -> str:
+    """Return `true belief` or `false belief` if a text names just one of them; else nothing."""
+    found = {each.lower() for each in _KIND.findall(text)}
+    return f"{found.pop()} belief" if len(found) == 1 else ""
+
+
+def _kind_of(nest: Nest, probe: Probe, question: Answers) -> str:
+    """Return the kind of a belief: true if reality gives the same answer. Reality has none."""
+    believed = question.believed
+    if believed is None or nest[believed.path].path == "/":
+        return ""
+    try:
+        real = replace(believed, path="/").answers(
+            lambda path: nest[path].state, naming_for(nest, probe), question.options
+        )
+    except ScenarioError:
+        return "false belief"  # Reality is none of the options.
+    return "true belief" if set(real) == set(question.right) else "false belief"
