@@ -128,6 +128,7 @@ def _gifts(file: ScenarioFile, snapshot: Snapshot) -> _Found:
         for pair in combinations(snapshot.agents, 2)
         if _distance(snapshot, *pair) <= _CATCHES
     }
+    met: set[frozenset[str]] = set()
     for number, step in enumerate(file.script):
         programs: Mapping[str, str] = dict(step.programs)
         if step.agent is not None and step.program is not None:
@@ -139,9 +140,11 @@ def _gifts(file: ScenarioFile, snapshot: Snapshot) -> _Found:
                     name
                     for name in snapshot.agents
                     if name not in (giver, receiver)
-                    and {frozenset((name, receiver)), frozenset((name, giver))} & near
+                    and (
+                        frozenset((name, receiver)) in near | met or frozenset((name, giver)) in met
+                    )
                 ]
-                near.add(frozenset((giver, receiver)))
+                met.add(frozenset((giver, receiver)))
                 if others:
                     verb = "stands" if len(others) == 1 else "stand"
                     yield (
