@@ -171,15 +171,17 @@ def test_texts_of_a_run_are_texts_whatever_is_in_them(browser, tmp_path):
 def test_what_is_written_on_a_sign_is_an_event_and_false_where_it_was_missed(browser, tmp_path):
     import beliefnest as bn
 
-    sign = (1, 1, 5)
+    sign, hidden = (1, 1, 5), (6, 1, 6)
     blocks = {(x, 0, z): "stone" for x in range(7) for z in range(7)}
     blocks |= {(3, y, z): "stone" for y in (1, 2) for z in range(7) if z != 6}
+    # Nobody sees that there is no container.
+    blocks |= {(5, 1, 6): "stone", (6, 1, 5): "stone", (6, 2, 6): "stone"}
     world = bn.ScriptedWorld(
         box=((0, 0, 0), (6, 3, 6)),
         blocks={**blocks, sign: "oak_sign"},
         agents={"ann": (1.5, 1, 3.5), "bob": (1.5, 1, 2.5)},
         signs={sign: "in"},
-        sign_claims={sign: [bn.Claim.located("diamond", (1, 1, 6))]},
+        sign_claims={sign: [bn.Claim.located("diamond", hidden)]},
     )
     nest = bn.Nest(world, bn.Perception(testimony="accept"), store=tmp_path / "sign.bn")
     world.place_agent("bob", (5.5, 1, 1.5))
@@ -192,7 +194,7 @@ def test_what_is_written_on_a_sign_is_an_event_and_false_where_it_was_missed(bro
     assert "ann writes “out” on the sign" in browser.script(told, ".events")
     assert "1 block is false" in browser.script(told, "main, body")
     # The claims of the start are told with the sign, not only as events.
-    assert "“in”, which claims that diamond is in (1, 1, 6)" in browser.script(told, ".detail")
+    assert "“in”, which claims that diamond is in (6, 1, 6)" in browser.script(told, ".detail")
     assert "told by a sign" in browser.script(told, ".detail")
 
 
