@@ -24,6 +24,9 @@ def delta(**content):
     return chunk(choices=[{"index": 0, "finish_reason": None, "delta": content}])
 
 
+ENDING = chunk(choices=[{"index": 0, "finish_reason": "stop", "delta": {}}])
+
+
 def counted(**over):
     counts = {"prompt_tokens": 12, "completion_tokens": 3, "total_tokens": 15, **over}
     return chunk(choices=[], usage=counts)
@@ -111,7 +114,7 @@ def test_nonsense_ends_that_answer_with_one_error(fake, events):
     "count", [1e30, float("nan"), float("inf"), -5, "many", 10**40, True, [], None, 1.5]
 )
 def test_tokens_that_cannot_be_are_guessed(fake, count):
-    fake.will(sends(chunk(), counted(prompt_tokens=count)))
+    fake.will(sends(chunk(), ENDING, counted(prompt_tokens=count)))
     assert is_usable(asked(fake))
 
 
@@ -219,3 +222,49 @@ def test_whatever_a_stream_holds_gives_an_answer_or_one_error(neighbour, changes
     else:
         assert isinstance(answer, Answer)
         assert is_usable(answer)
+
+
+def told(*pieces, end="stop"):
+    """Return the bytes of a good stream."""
+    events = [delta(content=each) for each in pieces]
+    events += [chunk(choices=[{"index": 0, "finish_reason": end, "delta": {}}]), counted()]
+    lines = [json.dumps(each, ensure_ascii=False).encode() for each in events]
+    return b"".join(b"data: " + line + b"\n\n" for line in (*lines, b"[DONE]"))
+
+
+WHOLE = told("Answer: red ", "box or", " the blüe box")
+ENDED = WHOLE.index(b'"stop"') + len(b'"stop", "delta": {}}], "usage": null}')
+
+
+def stops_after(count):
+    def behave(handler):
+        handler.start_stream()
+        handler.wfile.write(WHOLE[:count])
+
+    return behave
+
+
+@pytest.mark.parametrize("step", [211, pytest.param(1, marks=pytest.mark.long)])
+def test_half_an_answer_is_none(neighbour, step):
+    for count in range(0, len(WHOLE) + 1, step):
+        neighbour.will(stops_after(count))
+        try:
+            answer = asked(neighbour)
+        except ModelError as fault:
+            assert one_line(fault)
+        else:
+            assert count >= ENDED
+            assert answer.text == "Answer: red box or the blüe box"
+
+
+@pytest.mark.parametrize("end", ["eos", "banana", "stop"])
+def test_any_reason_ends_an_answer(neighbour, end):
+    neighbour.will(
+        lambda handler: (handler.start_stream(), handler.wfile.write(told("go();", end=end)))
+    )
+    assert asked(neighbour).finish == "stop"
+
+
+def test_an_answer_of_10_mb_in_one_line_is_cut(neighbour):
+    neighbour.will(sends(delta(content="x" * 10_000_000)))
+    assert asked(neighbour).finish == "length"

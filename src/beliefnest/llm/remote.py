@@ -162,7 +162,13 @@ class RemoteModel:
                     if received > limits.characters:
                         cut = _answer(self, messages, stream.get())
                         return replace(cut, finish="length")
-                return _answer(self, messages, stream.get())
+                response = stream.get()
+                if not _has_ended(response):
+                    raise TransientModelError(
+                        f"{self.name} at {self.endpoint.place} ended the stream in the middle of "
+                        "its answer, before any reason for the end; ask again"
+                    )
+                return _answer(self, messages, response)
         except TimeoutError:
             usage = _guessed_usage(self, messages, received)
             raise UnusableAnswerError(_too_slow(self, received), usage) from None
@@ -301,6 +307,16 @@ def _length(event: object) -> int:
             return len(text)
         case _:
             return 0
+
+
+def _has_ended(response: "ModelResponse") -> bool:
+    """Return True if the provider gave a reason for the end of an answer, of whatever name.
+
+    A connection that was cut may look like the end of a stream, and half an answer like another.
+    """
+    told = (response.provider_details or {}).get("finish_reason")
+    # Of a stream without a reason the library says `stop`.
+    return told is not None or response.finish_reason not in (None, "stop")
 
 
 def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Answer:
