@@ -6,9 +6,22 @@ from typing import Literal, Protocol
 
 from beliefnest.world.texts import visible
 
-__all__ = ["Answer", "Finish", "Message", "Model", "Role", "Sampling", "Usage"]
+__all__ = [
+    "Answer",
+    "AnswerForm",
+    "ChoiceSampling",
+    "Finish",
+    "Message",
+    "Model",
+    "Role",
+    "Sampling",
+    "Usage",
+]
 
 Role = Literal["system", "user", "assistant"]
+
+AnswerForm = Literal["text", "schema", "tool"]
+"""Form of an answer: free text, JSON by a schema, or the arguments of a tool."""
 
 Finish = Literal["stop", "length", "content_filter"]
 """Reason for the end of an answer. `stop`: the model ended it. `length`: a limit cut it off.
@@ -43,6 +56,17 @@ class Sampling:
     temperature: float | None = 0.0
     seed: int | None = None
     max_output_tokens: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ChoiceSampling(Sampling):
+    """Sampling parameters of an answer in the provider's structured form.
+
+    Attributes:
+        options: Options, one of which the answer must name.
+    """
+
+    options: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +110,7 @@ class Answer:
         cached: True if the answer comes from a cache without a request.
         date: Day of the answer (UTC, YYYY-MM-DD); empty: not known, or the same on every day.
         finish: Reason for its end. The text of a cut or refused answer may be empty.
+        form: Form that the request asked for: free text, JSON by a schema, or the call of a tool.
     """
 
     text: str
@@ -93,6 +118,7 @@ class Answer:
     cached: bool = False
     date: str = ""
     finish: Finish = "stop"
+    form: AnswerForm = "text"
 
 
 class Model(Protocol):

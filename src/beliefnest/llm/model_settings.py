@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any, Self, get_args
+from typing import Any, Literal, Self, get_args
 from urllib.parse import parse_qsl, urlencode
 
 from beliefnest.errors import InputError
@@ -13,8 +13,9 @@ from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.llm.remote import AnswerLimits
 from beliefnest.skills.manifests import SkillDetail
 
-__all__ = ["ModelSettings", "WithSystem", "query_of"]
+__all__ = ["AskedForm", "ModelSettings", "WithSystem", "query_of"]
 
+AskedForm = Literal["text", "structured"]
 _NUMBERS = ("answer_seconds", "first_token_seconds", "max_output_tokens", "retry_unread")
 
 
@@ -30,6 +31,8 @@ class ModelSettings:
         skills: Detail in which the built-in system message lists the skills.
         retry_unread: Number of times that a model is asked again, with the form of an answer said
             once more, after an answer that cannot be read.
+        answer: Form of answers to questions with options: free text, or the structured form that
+            the provider has (JSON by a schema, or the call of a tool).
 
     Raises:
         InputError: A value is not valid.
@@ -41,6 +44,7 @@ class ModelSettings:
     system: str | None = None
     skills: SkillDetail = "full"
     retry_unread: int = 0
+    answer: AskedForm = "text"
 
     def __post_init__(self) -> None:
         for name in ("answer_seconds", "first_token_seconds"):
@@ -57,6 +61,9 @@ class ModelSettings:
         if self.skills not in get_args(SkillDetail):
             known = ", ".join(get_args(SkillDetail))
             raise InputError(f"skills is {self.skills!r}; give one of {known}")
+        if self.answer not in get_args(AskedForm):
+            forms = ", ".join(get_args(AskedForm))
+            raise InputError(f"answer is {self.answer!r}; give one of {forms}")
         if self.system is not None and not isinstance(self.system, str):
             raise InputError(f"system is {self.system!r}; give a text")
 

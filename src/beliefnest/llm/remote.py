@@ -16,7 +16,15 @@ from beliefnest.llm.failures import (
     UnusableAnswerError,
     excerpt,
 )
-from beliefnest.llm.messages import Answer, Finish, Message, Sampling, Usage
+from beliefnest.llm.messages import (
+    Answer,
+    AnswerForm,
+    ChoiceSampling,
+    Finish,
+    Message,
+    Sampling,
+    Usage,
+)
 from beliefnest.llm.providers import Endpoint
 from beliefnest.llm.routes import check_listening, check_route, proxy_variable
 from beliefnest.world.texts import is_well_formed
@@ -25,6 +33,7 @@ if TYPE_CHECKING:  # Extras, imported when a provider is asked.
     import httpx2
     from pydantic_ai.messages import ModelMessage, ModelResponse
     from pydantic_ai.models import Model as ChatModel
+    from pydantic_ai.models import ModelRequestParameters
     from pydantic_ai.profiles import ModelProfile
     from pydantic_ai.settings import ModelSettings
 
@@ -37,6 +46,9 @@ let a run exceed its limits."""
 _THINKING_AS_TEXT: "ModelProfile" = {"thinking_tags": ("\0", "\0")}
 """Profile with marks of thinking that no model writes. The library takes `<think>` for a mark only
 if it is a chunk of its own; `separate_thinking` reads all marks, however an answer was cut."""
+
+_ANSWER = "answer"
+"""Name of the structured form, and of its only field."""
 
 _MOST_TOKENS = 10**9
 """Greatest plausible token count. If a server reports more, usage is estimated instead."""
@@ -143,6 +155,7 @@ class RemoteModel:
         count = ByteCount(limits.silent_bytes)
         longest = max(limits.seconds, limits.first_token_seconds)
         settings = _settings(sampling)
+        options = sampling.options if isinstance(sampling, ChoiceSampling) else ()
         received = 0
         try:
             # asyncio's timeout ends a stream that sends no event: the loop below would never run.
@@ -150,7 +163,12 @@ class RemoteModel:
                 asyncio.timeout(limits.first_token_seconds) as alarm,
                 bounded_client(self.endpoint, longest, count) as client,
                 _chat_model(self.endpoint, self.model, client) as model,
-                model_request_stream(model, _history(messages), model_settings=settings) as stream,
+                model_request_stream(
+                    model,
+                    _history(messages),
+                    model_settings=settings,
+                    model_request_parameters=(asked := self._parameters(model, options)),
+                ) as stream,
             ):
                 async for event in stream:
                     added = _length(event)
@@ -160,7 +178,7 @@ class RemoteModel:
                     count.restart()
                     alarm.reschedule(now() + limits.seconds)
                     if received > limits.characters:
-                        cut = _answer(self, messages, stream.get())
+                        cut = _answer(self, messages, stream.get(), _form(asked))
                         return replace(cut, finish="length")
                 response = stream.get()
                 if not _has_ended(response):
@@ -168,10 +186,49 @@ class RemoteModel:
                         f"{self.name} at {self.endpoint.place} ended the stream in the middle of "
                         "its answer, before any reason for the end; ask again"
                     )
-                return _answer(self, messages, response)
+                return _answer(self, messages, response, _form(asked))
         except TimeoutError:
             usage = _guessed_usage(self, messages, received)
             raise UnusableAnswerError(_too_slow(self, received), usage) from None
+
+    def _parameters(
+        self, model: "ChatModel", options: Sequence[str]
+    ) -> "ModelRequestParameters | None":
+        """Return the form to ask for, the best that the model has; None: free text.
+
+        Raises:
+            ModelError: The model has no structured form.
+        """
+        if not options:
+            return None
+        from pydantic_ai.models import ModelRequestParameters
+        from pydantic_ai.output import OutputObjectDefinition
+        from pydantic_ai.tools import ToolDefinition
+
+        schema = {
+            "type": "object",
+            "properties": {_ANSWER: {"type": "string", "enum": list(options)}},
+            "required": [_ANSWER],
+            "additionalProperties": False,
+        }
+        profile = model.profile
+        if profile.get("supports_json_schema_output"):
+            wanted = OutputObjectDefinition(json_schema=schema, name=_ANSWER, strict=True)
+            return ModelRequestParameters(output_mode="native", output_object=wanted)
+        if profile.get("supports_tools"):
+            tool = ToolDefinition(name=_ANSWER, parameters_json_schema=schema, kind="output")
+            return ModelRequestParameters(
+                output_mode="tool", output_tools=[tool], allow_text_output=False
+            )
+        raise ModelError(
+            f"{self.name} has no structured form of answers; leave out `answer: structured`"
+        )
+
+
+def _form(asked: "ModelRequestParameters | None") -> AnswerForm:
+    if asked is None:
+        return "text"
+    return "schema" if asked.output_mode == "native" else "tool"
 
 
 @contextmanager
@@ -296,6 +353,8 @@ def _length(event: object) -> int:
         TextPartDelta,
         ThinkingPart,
         ThinkingPartDelta,
+        ToolCallPart,
+        ToolCallPartDelta,
     )
 
     match event:
@@ -304,6 +363,10 @@ def _length(event: object) -> int:
         case PartDeltaEvent(delta=TextPartDelta(content_delta=text)):
             return len(text)
         case PartDeltaEvent(delta=ThinkingPartDelta(content_delta=str() as text)):
+            return len(text)
+        case PartStartEvent(part=ToolCallPart(args=str() as text)):
+            return len(text)
+        case PartDeltaEvent(delta=ToolCallPartDelta(args_delta=str() as text)):
             return len(text)
         case _:
             return 0
@@ -319,8 +382,13 @@ def _has_ended(response: "ModelResponse") -> bool:
     return told is not None or response.finish_reason not in (None, "stop")
 
 
-def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Answer:
+def _answer(
+    model: RemoteModel, messages: Sequence[Message], response: "ModelResponse", form: AnswerForm
+) -> Answer:
     text = response.text or ""
+    if form == "tool" and (calls := response.tool_calls):
+        # Several calls are several statements, which the reader of answers judges.
+        text = "\n".join([text, *(call.args_as_json_str() for call in calls)]).strip()
     usage = _usage(model, messages, response)
     finish: Finish = "stop"
     match response.finish_reason:
@@ -334,7 +402,7 @@ def _answer(model: RemoteModel, messages: Sequence[Message], response: "ModelRes
             f"{model.name} gave an answer with half a surrogate pair in it; ask again",
             usage,
         )
-    return Answer(text, usage, date=datetime.now(UTC).date().isoformat(), finish=finish)
+    return Answer(text, usage, date=datetime.now(UTC).date().isoformat(), finish=finish, form=form)
 
 
 def _usage(model: RemoteModel, messages: Sequence[Message], response: "ModelResponse") -> Usage:

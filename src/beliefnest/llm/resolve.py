@@ -147,6 +147,22 @@ def _resolved(name: str, environment: Mapping[str, str], connection: Connection)
         return _Unreachable(name, str(error))
 
 
+def check_structured(name: str) -> None:
+    """Refuse a model that is known to have no structured form of answers.
+
+    Others are refused at their first answer: a provider's model may lack the form, and a recording
+    may hold free text.
+
+    Raises:
+        InputError: The model answers in free text only.
+    """
+    if name in ("offline", *OPTION_MODELS):
+        raise InputError(
+            f"the model {name} has no structured form of answers; leave out `answer: structured`, "
+            "or name a model of a provider"
+        )
+
+
 def is_of_provider(name: str) -> bool:
     """Return True if a model is a provider's."""
     return name.partition(":")[0] in PROVIDERS

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import msgspec
 
 from beliefnest.files import decode_json
-from beliefnest.llm.messages import Answer, Finish, Message, Sampling, Usage
+from beliefnest.llm.messages import Answer, AnswerForm, Finish, Message, Sampling, Usage
 
 __all__ = ["Exchange", "decode_exchange", "encode_exchange", "exchange_of", "request_key"]
 
@@ -22,6 +22,7 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_def
         usage: Resources that the answer used.
         date: Day of the answer, as in `Answer`; earlier versions did not store it.
         finish: Reason for its end, as in `Answer`; earlier versions kept complete answers only.
+        form: Form that the request asked for, as in `Answer`.
     """
 
     model: str
@@ -31,11 +32,14 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_def
     usage: Usage
     date: str = ""
     finish: Finish = "stop"
+    form: AnswerForm = "text"
 
     @property
     def answer(self) -> Answer:
         """Return the answer as one that needed no request."""
-        return Answer(self.text, self.usage, cached=True, date=self.date, finish=self.finish)
+        return Answer(
+            self.text, self.usage, cached=True, date=self.date, finish=self.finish, form=self.form
+        )
 
 
 def request_key(model: str, messages: Sequence[Message], sampling: Sampling) -> str:
@@ -56,6 +60,7 @@ def exchange_of(
         answer.usage,
         answer.date,
         answer.finish,
+        answer.form,
     )
 
 

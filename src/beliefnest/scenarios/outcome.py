@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
-from beliefnest.llm.messages import Usage
+from beliefnest.llm.messages import AnswerForm, Usage
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Judgement
 from beliefnest.scenarios.expected_state import Expectation
@@ -33,6 +33,7 @@ class Reply:
         outcome: `read`, or one of `judging.NOT_ANSWERED`.
         why_not: Why there is no usable answer; empty: there is one.
         asked_again: Number of times that the model was asked again.
+        form: Form of the reply: `text`, `schema` or `tool`.
     """
 
     question: str
@@ -44,6 +45,7 @@ class Reply:
     outcome: str = "read"
     why_not: str = ""
     asked_again: int = 0
+    form: AnswerForm = "text"
 
 
 @dataclass(frozen=True, slots=True)

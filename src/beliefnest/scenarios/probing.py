@@ -103,7 +103,7 @@ def run_probe(
     for question in probe.questions:
         noting = asking.settings.around(believer.noting(model, probe=name, task=question.question))
         replies[question], used = ask_question(
-            nest, probe, question, noting, seed, asking.sampling, asking.settings.retry_unread
+            nest, probe, question, noting, seed, asking.sampling, asking.settings
         )
         usage += used
     judged = iter(programs.verdicts)

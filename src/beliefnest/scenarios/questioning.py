@@ -2,10 +2,12 @@
 
 import random
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import astuple, replace
 
+from beliefnest.errors import ModelError
 from beliefnest.llm.failures import UnusableAnswerError
-from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
+from beliefnest.llm.messages import Answer, ChoiceSampling, Message, Model, Sampling, Usage
+from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.llm.reading_answers import read_answer, read_words
 from beliefnest.llm.statements import given_reason
 from beliefnest.nest.face.nest import Nest
@@ -26,7 +28,7 @@ def ask_question(
     model: Model,
     seed: int,
     sampling: Sampling,
-    retry_unread: int = 0,
+    settings: ModelSettings,
 ) -> tuple[Reply, Usage]:
     """Ask a model a question of a probe, from the belief of the probe.
 
@@ -37,11 +39,11 @@ def ask_question(
         model: The model.
         seed: Seed of the order of the options.
         sampling: Sampling options of the answer.
-        retry_unread: Number of times to ask again, with the form of an answer said once more,
-            if an answer names no option or several.
+        settings: Form of the answer, and number of times to ask again, with the form said once
+            more, if an answer names no option or several.
 
     Raises:
-        ModelError: The model cannot be asked.
+        ModelError: The model cannot be asked, or not for the form of the settings.
     """
     believer = nest[probe.path]
     options = shuffled(question, seed)
@@ -58,13 +60,20 @@ def ask_question(
     prompt = believer.render(template, task=question.question, **asked)
     messages = [Message("system", system), Message("user", prompt)]
     usage = Usage()
-    for again in range(retry_unread + 1):
+    structured = settings.answer == "structured" and bool(options)
+    if structured:
+        sampling = ChoiceSampling(*astuple(sampling), options)
+    for again in range(settings.retry_unread + 1):
         try:
             answer = model.answer(messages, sampling)
         except UnusableAnswerError as error:
             reply = Reply(question.question, options, prompt, "", None, "", "no_answer", str(error))
             return replace(reply, asked_again=again), usage + error.usage
         usage += answer.usage
+        if structured and answer.form == "text":
+            raise ModelError(
+                f"{model.name} has no structured form of answers; leave out `answer: structured`"
+            )
         reply = replace(_reply(question, options, prompt, answer), asked_again=again)
         if reply.outcome not in ("unread", "ambiguous"):
             break
@@ -90,6 +99,7 @@ def _reply(question: Answers, options: tuple[str, ...], prompt: str, answer: Ans
         reason=given_reason(answer.text),
         outcome=reading.row_outcome,
         why_not=reading.reason,
+        form=answer.form,
     )
 
 

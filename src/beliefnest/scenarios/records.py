@@ -99,6 +99,7 @@ def _reply_json(reply: Reply) -> dict[str, object]:
         "outcome": reply.outcome,
         "why_not": reply.why_not,
         "asked_again": reply.asked_again,
+        "form": reply.form,
     }
 
 

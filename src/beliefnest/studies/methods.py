@@ -356,6 +356,8 @@ def _asking(plan: Mapping[str, Any]) -> str:
     if "retry_unread" in plan:
         again = counted(plan["retry_unread"], "further request")
         parts.append(f"{again} after an unreadable answer")
+    if plan.get("answer") == "structured":
+        parts.append("with answers to choices in a structured form")
     if "max_output_tokens" in plan:
         parts.append(f"at most {counted(plan['max_output_tokens'], 'token')} for an answer")
     if "system" in plan:

@@ -68,6 +68,12 @@ def _answered(replies: list[Mapping[str, Any]] | None) -> str | None:
     return None if replies is None else "; ".join(str(reply["answer"]) for reply in replies)
 
 
+def _form(replies: list[Mapping[str, Any]] | None) -> str | None:
+    """Return the form that was asked for in questions; those of a probe have one form."""
+    forms = dict.fromkeys(str(reply.get("form", "text")) for reply in replies or ())
+    return "; ".join(forms) or None
+
+
 def _tokens(usage: Mapping[str, Any] | None) -> int | None:
     return None if usage is None else usage["input_tokens"] + usage["output_tokens"]
 
@@ -130,6 +136,7 @@ PROBES = Table(
         Column("seconds", "float64", of_result("seconds")),
         Column("attempts", "int64", of_result("attempts")),
         Column("asked_again", "int64", of_result("asked_again")),
+        Column("form", "string", of_result("replies", _form)),
         Column("tokens", "int64", of_result("usage", _tokens), shown=True),
         Column("cost", "float64", of_result("usage", _cost)),
         Column("program", "string", of_result("program")),

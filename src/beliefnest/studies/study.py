@@ -9,8 +9,8 @@ import msgspec
 
 from beliefnest.errors import InputError, ModelError
 from beliefnest.files import read_regular_text
-from beliefnest.llm.model_settings import ModelSettings
-from beliefnest.llm.resolve import check_model
+from beliefnest.llm.model_settings import AskedForm, ModelSettings
+from beliefnest.llm.resolve import check_model, check_structured
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.sources import read_document
@@ -84,6 +84,8 @@ class Study:
         temperature: Sampling temperature; None: the provider's default.
         retry_unread: Number of times that a model is asked again, with the form of an answer said
             once more, after an answer that cannot be read.
+        answer: Form of answers to questions with options: `text`, or `structured`, the form that
+            the provider has (JSON by a schema, or the call of a tool).
         max_tokens: Token limit of the whole study; None: no limit. The default does not count
             free models.
         max_cost: Cost limit of the whole study in US dollars; None: no limit.
@@ -129,6 +131,7 @@ class Study:
         attempts: int = 3,
         temperature: float | None = 0.0,
         retry_unread: int = 0,
+        answer: AskedForm = "text",
         max_tokens: int | None = 1_000_000,
         max_cost: float | None = 5.0,
         claims_from: str | None = None,
@@ -156,6 +159,7 @@ class Study:
             attempts=attempts,
             temperature=temperature,
             retry_unread=retry_unread,
+            answer=answer,
             max_tokens=max_tokens,
             max_cost=max_cost,
             claims_from=claims_from,
@@ -499,7 +503,11 @@ class Study:
 
         A model needs no key if the study's folder has its answers in the cache.
         """
-        for name in self._design.asked:
+        design = self._design
+        if isinstance(design, Design) and design.settings.answer == "structured":
+            for name in design.models:
+                check_structured(name)
+        for name in design.asked:
             try:
                 check_model(name, terms.surroundings, terms.connection())
             except ModelError:

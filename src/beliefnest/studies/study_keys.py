@@ -32,6 +32,7 @@ class StudyKeys(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     attempts: int = 3
     temperature: float | None = 0.0
     retry_unread: int = 0
+    answer: str = ModelSettings().answer
     max_tokens: int | None = 1_000_000
     max_cost: float | None = 5.0
     claims_from: str | None = None

@@ -258,6 +258,8 @@ def _model(
         settings = ModelSettings.of_query(query)
     except InputError as error:
         raise InputError(f"{name!r}: {error}") from None
+    if settings.answer != "text":
+        raise InputError(f"{name!r}: policies answer with programs; leave out `answer`")
     model_name, colon, order = plain.rpartition(":")
     if not colon:
         raise InputError(f"{name!r} is not complete; give model:MODEL:ORDER")
