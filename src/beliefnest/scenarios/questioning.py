@@ -2,7 +2,7 @@
 
 import random
 from collections.abc import Mapping
-from dataclasses import astuple, replace
+from dataclasses import replace
 
 from beliefnest.errors import ModelError
 from beliefnest.llm.failures import UnusableAnswerError
@@ -62,7 +62,9 @@ def ask_question(
     usage = Usage()
     structured = settings.answer == "structured" and bool(options)
     if structured:
-        sampling = ChoiceSampling(*astuple(sampling), options)
+        sampling = ChoiceSampling(
+            sampling.temperature, sampling.seed, sampling.max_output_tokens, options
+        )
     for again in range(settings.retry_unread + 1):
         try:
             answer = model.answer(messages, sampling)

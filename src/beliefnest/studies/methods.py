@@ -456,14 +456,15 @@ def _sentences(facts: Facts) -> Iterator[str]:
         f"{'is' if facts.judged == 1 else 'are'} judged."
     )
     if facts.not_answered:
-        told, of = unanswered_words(facts.not_answered), sum(facts.not_answered.values())
+        missing, kinds = sum(facts.not_answered.values()), unanswered_words(facts.not_answered)
         yield (
-            f"Among them, {counted(of, 'row')} without an answer to judge ({told}) count as not "
-            "right."
+            f"Among them, {counted(missing, 'row')} without an answer to judge ({kinds}) count as "
+            "not right."
         )
     if facts.rounds_not_answered:
-        told, of = unanswered_words(facts.rounds_not_answered), facts.rounds_not_answered.values()
-        yield f"Models gave no program in {counted(sum(of), 'round')} ({told})."
+        rounds = counted(sum(facts.rounds_not_answered.values()), "round")
+        kinds = unanswered_words(facts.rounds_not_answered)
+        yield f"Models gave no program in {rounds} ({kinds})."
     if facts.asked_again:
         yield f"Models were asked again after {counted(facts.asked_again, 'unreadable answer')}."
     if facts.computed:

@@ -152,7 +152,7 @@ class ByEitherHalf(dict[Position, T]):
         raise KeyError(place)
 
     def __contains__(self, place: object) -> bool:
-        return self.get(place, _NOTHING) is not _NOTHING  # type: ignore[call-overload, no-any-return]
+        return bool(self.get(place, _NOTHING) is not _NOTHING)  # type: ignore[arg-type] # any key may be asked for
 
     def get(self, place: Position, default: Any = None) -> Any:
         """Return the value at a position, or a default."""

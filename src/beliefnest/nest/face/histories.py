@@ -113,10 +113,13 @@ class History(Barred):
         if agent not in known:
             raise PathError(f"no agent {agent!r}; there are {', '.join(known)}")
         first = imagined._starts.of(course.drawn).agents.get(agent)
-        placed = {} if first is None else {imagined.since: first.position}
+        placed: dict[int, Point | None] = {}
+        if first is not None:
+            placed[imagined.since] = first.position
         for entry in course.entries:
             if isinstance(entry, Frame) and agent in entry.agents:
-                placed[entry.tick] = entry.agents[agent].position
+                state = entry.agents[agent]
+                placed[entry.tick] = None if state is None else state.position
         found: dict[int, Point] = {}
         feet = None
         for tick in range(imagined.since, course.tick + 1):

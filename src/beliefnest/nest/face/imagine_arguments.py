@@ -142,7 +142,8 @@ def goal_conditions(
 ) -> list[GoalCondition]:
     """Parse one condition, or a list of conditions, written as in goals."""
     listed = [given] if isinstance(given, Mapping) else given
-    if isinstance(listed, str) or not isinstance(listed, Sequence) or not listed:
+    is_list = isinstance(given, Sequence) and not isinstance(given, str)
+    if not listed or not (is_list or isinstance(given, Mapping)):
         raise InputError(f"the condition is {given!r}; give a mapping, or a list of mappings")
     return [
         condition

@@ -246,7 +246,7 @@ def _named(lines: Sequence[Line]) -> Iterator[Line]:
     """
     agents = {name for line in lines for name in _actors(line.sentence)}
     used = Located | Moved | Placed | Taken
-    things = {line.sentence.thing for line in lines if isinstance(line.sentence, used)}
+    things = {s.thing for line in lines if isinstance(s := line.sentence, used)}
     holders = {line.sentence.place for line in lines if isinstance(line.sentence, Located)}
     holders |= {s.container for line in lines if isinstance(s := line.sentence, Moved | Placed)}
     last: str | None = None
@@ -255,7 +255,7 @@ def _named(lines: Sequence[Line]) -> Iterator[Line]:
         sentence = line.sentence
         if isinstance(sentence, Present):
             sentence = _placed(line, sentence, agents, lines)
-        if isinstance(sentence, used | Told | Whispered):
+        if isinstance(sentence, Located | Moved | Placed | Taken | Told | Whispered):
             if sentence.thing == IT:
                 if last is None:
                     raise line.fault("no earlier line names a thing that 'it' could be")
@@ -565,6 +565,8 @@ class _Reader:
         self.first.setdefault(thing, found)
         if self.now.setdefault(thing, found) != found:
             before = self.now[thing]
+            if isinstance(before, Hand):
+                raise line.fault(f"{before.agent} holds the {thing}; say where it is put")
             raise line.fault(f"the {thing} is in the {before.container} of the {before.room}")
 
     def _place(self, line: Line, room: str, container: str) -> Place:
