@@ -53,7 +53,9 @@ def chest_places(
         for place, items in contents.items()
         if not _holds(registry, blocks[box.index(place)], items)
     ]
-    others = [other_half(registry, state, at) for at, state in halves_in(registry, box, blocks)]
+    # A half with contents of its own becomes a single chest, so that it implies no other half.
+    halves = [each for each in halves_in(registry, box, blocks) if each[0] not in lacking]
+    others = [other_half(registry, state, at) for at, state in halves]
     implied = {each[0] for each in others if each is not None and each[0] in box}
     unknown = sorted(place for place in implied if blocks[box.index(place)] < 0)
     return list(dict.fromkeys([*lacking, *unknown]))

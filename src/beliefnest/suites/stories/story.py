@@ -245,8 +245,11 @@ def _named(lines: Sequence[Line]) -> Iterator[Line]:
         InputError: `it` stands for nothing, or for one of several things.
     """
     agents = {name for line in lines for name in _actors(line.sentence)}
-    used = Located | Moved | Placed | Taken
-    things = {s.thing for line in lines if isinstance(s := line.sentence, used)}
+    things = {
+        s.thing
+        for line in lines
+        if isinstance(s := line.sentence, Located | Moved | Placed | Taken)
+    }
     holders = {line.sentence.place for line in lines if isinstance(line.sentence, Located)}
     holders |= {s.container for line in lines if isinstance(s := line.sentence, Moved | Placed)}
     last: str | None = None
@@ -256,14 +259,15 @@ def _named(lines: Sequence[Line]) -> Iterator[Line]:
         if isinstance(sentence, Present):
             sentence = _placed(line, sentence, agents, lines)
         if isinstance(sentence, Located | Moved | Placed | Taken | Told | Whispered):
-            if sentence.thing == IT:
+            thing = sentence.thing
+            if thing == IT:
                 if last is None:
                     raise line.fault("no earlier line names a thing that 'it' could be")
                 if doubt is not None:
                     raise line.fault(f"'it' may be the {last} or the {doubt}; name the thing")
-                sentence = _with_thing(sentence, last)
-            if not (isinstance(sentence, Located) and sentence.thing in holders):
-                last, doubt = sentence.thing, None
+                thing, sentence = last, _with_thing(sentence, last)
+            if not (isinstance(sentence, Located) and thing in holders):
+                last, doubt = thing, None
         if isinstance(sentence, Wait) and sentence.about is not None:
             if sentence.about in things - holders:
                 last, doubt = sentence.about, None
