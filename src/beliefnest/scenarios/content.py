@@ -63,7 +63,7 @@ class Probe:
     senses: Senses = "world"
     infer: Inferring | None = None
     intended: str = ""
-    where: str = ""
+    where: str = field(default="", compare=False)
 
     @property
     def questions(self) -> tuple[Answers, ...]:

@@ -214,6 +214,7 @@ _SHAPE: Mapping[str, Any] = {
             "infer": _INFER,
             "timeout_ticks": "keep",
             "senses": "keep",
+            "intended": "text",
         }
     ),
     "expectations": _Each(_EXPECTATION),
