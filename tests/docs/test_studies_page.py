@@ -12,7 +12,7 @@ pytestmark = pytest.mark.usefixtures("kept_worlds")
 
 PAGE = (Path(__file__).parents[2] / "docs" / "studies.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
-SCENARIO, STUDY, EPISODES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+SCENARIO, STUDY, LABELLED, EPISODES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
 
 
 @pytest.mark.extra("matplotlib")
@@ -48,3 +48,13 @@ def test_the_study_of_episodes_is_one(tmp_path: Path, monkeypatch: pytest.Monkey
     # The scenario is of one size.
     assert {each.scenario for each in plan.invalid} == {"mine.yaml"}
     assert len(plan.cells) == 2 * 50 * 2 * (4 + 1 + 4 + 1)
+
+
+def test_groups_of_scenarios_have_labels(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in re.findall(r"\w+\.yaml", LABELLED):
+        text = SCENARIO.replace("name: fetch", f"name: {name.removesuffix('.yaml')}")
+        Path(name).write_text(text, encoding="utf-8")
+    Path("study.yaml").write_text(LABELLED, encoding="utf-8")
+    labels = {cell.label for cell in bn.Study.load("study.yaml").plan().cells}
+    assert labels == {"false belief", "true belief"}
