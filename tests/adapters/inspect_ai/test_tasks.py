@@ -324,7 +324,8 @@ probes:
 MANY = """
 def told(log):
     # Inspect lists the counts of answers that are none as scores of their own.
-    return {name: each.value for found in log.results.scores for name, each in found.metrics.items()}
+    every = [found.metrics for found in log.results.scores]
+    return {name: each.value for metrics in every for name, each in metrics.items()}
 
 arguments = {"file": ["one.yaml", "two.yaml"], "world": "scripted", "variations": 3}
 models = {name: [] for name in ("beliefnest/chance", "beliefnest/scripted:answers.json")}
