@@ -9,7 +9,7 @@ import warnings
 
 import numpy as np
 import pytest
-from tests.profiles import few_by_day
+from tests.profiles import at_night, few_by_day
 from tests.studies import second_statistics as second
 
 from beliefnest.studies.counting import count_rows, paired_rows
@@ -27,7 +27,7 @@ KINDS = {
     "separated": (15, 2, 0.3, 0.3, 1.0),
     "clustered": (16, 5, 2.2, 0.0, 1.0),
 }
-EACH = [(kind, number) for number in range(40) for kind in KINDS]
+EACH = [(kind, number) for number in range(at_night(40, 2)) for kind in KINDS]
 TABLES = pytest.mark.parametrize(("kind", "number"), few_by_day(EACH, len(KINDS)))
 
 
