@@ -70,3 +70,25 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
         it.send_signal(signal.SIGINT)
         _, complaints = it.communicate(timeout=120)
     assert f"{tmp_path / 'run.bn'} is not a run file" in complaints
+
+
+def test_a_file_of_the_user_hides_no_module_from_the_run_that_is_served(tmp_path: Path) -> None:
+    (tmp_path / "random.py").write_text("raise SystemExit('mine')\n", encoding="utf-8")
+    beliefnest = Path(sys.executable).with_name("beliefnest")
+    command = [str(beliefnest), "serve", "sally-anne", "--condition", "1"]
+    with subprocess.Popen(
+        [*command, "--port", "0", "--out", "out"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as server:
+        assert server.stdout is not None
+        address = re.search(r"http://\S+", server.stdout.readline())
+        assert address is not None
+        # The page waits for the run file, which the child writes.
+        page = urllib.request.urlopen(address[0], timeout=120).read()
+        assert b"sally" in page
+        server.send_signal(signal.SIGINT)
+        _, errors = server.communicate()
+    assert "mine" not in errors

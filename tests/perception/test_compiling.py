@@ -149,3 +149,24 @@ class Watcher(numba.core.event.Listener):
 
     def on_end(self, event):
         """Do nothing."""
+
+
+def test_processes_that_begin_together_compile_a_kernel_once(tmp_path):
+    place = installed(tmp_path / "first")
+    command = [sys.executable, "-c", PROCESS]
+    begun = [
+        subprocess.Popen(command, cwd=place, stdout=subprocess.PIPE, text=True) for _ in range(3)
+    ]
+    compiled = [process.communicate()[0].strip() for process in begun]
+    assert sorted(compiled) == ["False", "False", "True"]
+    assert not list((tmp_path / "kept").rglob("*-lock*"))
+
+
+def test_kernels_run_as_python_where_compilation_is_switched_off(tmp_path, folder):
+    place = installed(tmp_path / "first")
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    ended = subprocess.run(
+        [sys.executable, "-c", PROCESS], cwd=place, env=environment, check=True, capture_output=True
+    )
+    assert not ended.stderr
+    assert not folder.exists()
