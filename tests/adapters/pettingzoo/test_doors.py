@@ -60,6 +60,7 @@ def scene(*, has_goal: bool = False) -> Scenario:
                     "path": "/**",
                     "blocks": things,
                     "containers": [{**each, "complete": True} for each in chests],
+                    "signs": [{"at": list(at(kind, "sign")), "text": "old"} for kind in SPOTS],
                     "agents": {name: each["position"] for name, each in people.items()},
                 }
             ],
