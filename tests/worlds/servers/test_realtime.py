@@ -90,10 +90,10 @@ def ran(arguments: list[str], folder: Path, capsys: pytest.CaptureFixture[str]) 
     return report
 
 
-def same_place(one: list[float] | None, other: list[float] | None) -> bool:
+def same_place(one: list[float] | None, other: list[float] | None, near: float = NEAR) -> bool:
     if one is None or other is None:
         return one is other
-    return max(abs(a - b) for a, b in zip(one, other, strict=True)) <= NEAR
+    return max(abs(a - b) for a, b in zip(one, other, strict=True)) <= near
 
 
 @pytest.mark.long
@@ -120,7 +120,8 @@ def test_the_experiments_come_out_as_in_the_embedded_world(
                 assert same_place(known["position"], its["agents"][agent]["position"]), agent
         for mine, its in zip(here["probes"], there["probes"], strict=True):
             assert (mine["opened"], mine["ok"]) == (its["opened"], its["ok"])
-            assert same_place(mine["arrived"], its["arrived"])
+            # Programs go to within two blocks of their targets, from whichever side time lets them.
+            assert same_place(mine["arrived"], its["arrived"], 2 * NEAR)
 
 
 def worked(scenario: Scenario, world: str) -> list[Any]:
