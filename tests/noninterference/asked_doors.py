@@ -11,6 +11,7 @@ import beliefnest as bn
 from beliefnest.episodes.agent_view import AgentView, Brief
 from beliefnest.episodes.decided import Ended
 from beliefnest.llm.messages import Answer, Message, Sampling
+from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.nest.face.imagining import ImaginationWarning
 from beliefnest.prompts import built_in_template
 from beliefnest.scenarios.believed import Believed
@@ -49,7 +50,7 @@ def questions(world: Played, path: str) -> object:
         probe = Probe(
             path=path, acts_in=path, agent="ann", task="", expect=(asked,), template=template
         )
-        ask_question(world.nest, probe, asked, model, world.seed, Sampling())
+        ask_question(world.nest, probe, asked, model, world.seed, Sampling(), ModelSettings())
     return model.asked
 
 
