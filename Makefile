@@ -1,5 +1,5 @@
 # Shortcuts for working on BeliefNest, inside an environment with `pip install -e ".[ci]"`.
-.PHONY: help test rest nightly check format schema notices picture notebooks pages baselines docs links bench ci
+.PHONY: help test rest nightly check size format schema notices picture notebooks pages baselines docs links bench ci
 
 help: ## What can be made
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /: /' | column -t -s: -o '  '
@@ -18,6 +18,7 @@ nightly: ## All that CI does, with every Python, Ray, and many more examples, ki
 check: ## Linters and type checkers
 	ruff check
 	python tools/openers.py
+	python tools/size.py
 	ruff format --check
 	mypy
 	mypy tools
@@ -25,6 +26,9 @@ check: ## Linters and type checkers
 	cd src/beliefnest/worlds/minecraft/node && $(NODE) node_modules/eslint/bin/eslint.js .
 	cd src/beliefnest/viewer/page/web && $(NODE) node_modules/eslint/bin/eslint.js .
 	cd src/beliefnest/studies/participants/web && $(NODE) ../../../viewer/page/web/node_modules/eslint/bin/eslint.js .
+
+size: ## Lower the figures of tools/size.csv to the lines of code of today
+	python tools/size.py --write
 
 format: ## Lay out the code
 	ruff format
