@@ -2,6 +2,7 @@
 
 import pytest
 import tests.noninterference.asked_doors
+import tests.noninterference.environment_doors
 import tests.noninterference.prose_doors
 import tests.noninterference.shown_doors  # noqa: F401 - these modules register doors
 from tests.noninterference.doors import DOORS, Door
