@@ -47,7 +47,7 @@ def test_the_file_of_a_policy_is_beside_its_study(tmp_path):
 @pytest.mark.parametrize(
     ("query", "told"),
     [
-        ("skill=names", "there is no setting 'skill'; give answer_seconds, first_token"),
+        ("skill=names", "there is no setting 'skill'; give answer, answer_seconds, first_token"),
         ("skills=few", "skills is 'few'; give one of none"),
         ("answer_seconds=soon", "answer_seconds is 'soon'; give seconds"),
         ("answer_seconds=-1", "answer_seconds is -1"),

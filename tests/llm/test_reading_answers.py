@@ -266,6 +266,19 @@ RIGHT = (
     'json\n{"answer": "A"}',
     'Here is the JSON:\n{"answer": "A"}\nHope this helps!',
     '{"thought": "B?", "answer": "A) red box"}',
+    # Hedges about one option, and others that are ruled out or stand in grounds.
+    "Probably A, but maybe not",
+    "Probably A, certainly not B",
+    "Answer: A, and maybe not B",
+    "Answer: A, B is not possible",
+    "Answer: A (B is impossible)",
+    "Answer: A. B is unlikely.",
+    "It could be B, but he did not see it, so A.",
+    "Could be A or B. Final answer: A",
+    "I'm torn between the red box and the blue box, but I'll go with the red box.",
+    "Answer: A, because Anne may have moved it to B",
+    "Answer: A. It may be in B now, but he did not see that.",
+    "Answer: A. B may be where it is now.",
 )
 OTHER = ("(B) the blue box",)
 UNKNOWN = (
@@ -296,6 +309,32 @@ AMBIGUOUS = (
     "Answer: A\nB",
     "red box\nblue box",
     "Answer:\nA) red box\nB) blue box",
+    # Hedges: two options are named, and none is ruled out.
+    "Probably A, but maybe B",
+    "Answer: Probably A, but maybe B",
+    "Answer: A (or maybe B)",
+    "Answer: A, possibly B",
+    "Answer: A, though B is possible",
+    "Answer: A. It could also be B.",
+    "Answer: A. Then again, B is possible.",
+    "Answer: A, although it might be B",
+    "Answer: A, but B cannot be excluded",
+    "Answer: A, but it could be B",
+    "Answer: A most likely, B otherwise",
+    "Answer: A, otherwise B",
+    "Answer: A - but B is a close second",
+    "Answer: A (second choice: B)",
+    "Answer: first A, then B",
+    "Answer: Both A and B are possible.",
+    "Answer: red box (blue box is also possible)",
+    "Answer: the red box (perhaps also the blue one)",
+    "Answer: red box ... or is it the blue box?",
+    "Answer: red box, though I could also see blue box",
+    "I would say A but I'm not sure; B could be right",
+    "It's probably A but B is also plausible",
+    "The red box; alternatively, the blue box.",
+    "Maybe A, maybe B",
+    "Probably the red box, but maybe he does not know.",
 )
 UNREAD = (
     "<think>B",
@@ -725,9 +764,9 @@ def test_long_answers_are_read_at_once() -> None:
         "```\n",
         "\n",
     ):
-        started = time.perf_counter()
+        started = time.process_time()
         read_answer(part * (50_000 // len(part)), OPTIONS)
-        assert time.perf_counter() - started < 5
+        assert time.process_time() - started < 5
 
 
 @pytest.mark.parametrize(

@@ -73,15 +73,32 @@ _ABOUT = frozenset(["from", "about", "unlike", "considering", "regarding", "cons
 """Words whose object is no answer."""
 _MANIFOLD = frozenset(["left", "right", "last", "kind", "mean"])
 """Words that tell things apart and have other meanings."""
-_CONDITIONS = frozenset(["if", "unless", "whether", "suppose", "supposing", "otherwise"])
+_CONDITIONS = frozenset(["if", "unless", "whether", "suppose", "supposing"])
 _LABEL_BEFORE = _words(
     "option choice answer letter is be choose pick select chose picked say and or not but so "
-    "than of with go either both neither nor between thus therefore number would will"
+    "than of with go either both neither nor between thus therefore number would will maybe "
+    "perhaps also otherwise else sometimes then first though although while see for"
 )
 _LABEL_NOUNS = frozenset(["option", "choice", "letter", "number", "answer"])
 _LABEL_AFTER = _words(
-    "and or but not nor because since as is instead rather seems would makes fits for"
+    "and or but not nor because since as is are instead rather seems would makes fits for maybe "
+    "perhaps also otherwise sometimes then though although unless can could might may too"
 )
+_HEDGES = _words("maybe perhaps possibly alternatively otherwise might could may sometimes second")
+"""Words that name an alternative, also in brackets and after `although`."""
+_CONCESSIONS = _words(
+    "although though while but also still well less unless else or yet best guess bet candidate "
+    "see argue consider some one case made"
+)
+_OPEN = re.compile(
+    r"(?:also |too )?(?:(?:is|are|seems|remains|stays) (?:(?:also|still|just|equally|as|quite|a"
+    r"|another|very|not) )*"
+    r"(?:possible|plausible|conceivable|likely|possibility|(?:close |near )?second|impossible)"
+    r"|(?:is|can|could) (?:not |also )*be (?:excluded|ruled out|dismissed)"
+    r"|(?:might|could|may) (?:(?:also|well|still|just as) )*be\b(?! (?:where|what|why))"
+    r"|possibly|otherwise|as well\b)"
+)
+"""Words after the name of an option that leave it open."""
 _WRONG = _words("wrong incorrect false out eliminated impossible not never")
 _SPEECH = _words(
     "will would is are looks look searches search thinks think believes believe goes go checks "
@@ -115,6 +132,7 @@ class Named:
         no: Numbers of options that it rules out.
         unsure: Numbers of options that it names, perhaps to rule them out.
         aside: Numbers of options that it names in grounds or conditions.
+        maybe: Numbers of the options in `yes` that it names as alternatives: `perhaps B`.
         bare: True if the text holds nothing but names of options.
         told: True if the text states where or what, rather than what happened.
     """
@@ -123,6 +141,7 @@ class Named:
     no: set[int] = field(default_factory=set)
     unsure: set[int] = field(default_factory=set)
     aside: set[int] = field(default_factory=set)
+    maybe: set[int] = field(default_factory=set)
     bare: bool = False
     told: bool = False
 
@@ -230,13 +249,16 @@ class Names:
         mentions = self._mentions(tokens)
         inside = {place: each for each in mentions for place in range(each.start, each.end)}
         words = [t.word for t in tokens]
-        conditional = any(w in _CONDITIONS for place, w in enumerate(words) if place not in inside)
+        outside = [w if place not in inside else "" for place, w in enumerate(words)]
+        supposed = not _CONDITIONS.isdisjoint(outside)
         found.bare = bool(mentions) and all(
             place in inside or not word or _is_fill(word) for place, word in enumerate(words)
         )
         grounds = _grounds(tokens, inside)
         for each in mentions:
-            if conditional or (each.start in grounds and not found.bare):
+            open_ = not supposed and _is_left_open(tokens, inside, each)
+            conditional = supposed or "otherwise" in outside[: each.start]
+            if not open_ and (conditional or (each.start in grounds and not found.bare)):
                 found.aside |= each.options
                 continue
             match _negated(tokens, inside, each):
@@ -246,6 +268,7 @@ class Names:
                     found.unsure |= each.options
                 case False:
                     found.yes |= each.options
+                    found.maybe |= each.options if open_ else set()
                     clause = _clause_before(tokens, each.start)
                     stated = any(w in _SPEECH for w in clause)
                     found.told |= stated and not any(w in _PAST for w in clause)
@@ -459,7 +482,30 @@ def _is_label(tokens: Sequence[Token], place: int) -> bool:  # noqa: PLR0911 - a
         return False
     if token.raw.isdigit():
         return place == 0 and after is not None and after.raw in ").:"
-    return after is None or not after.word or after.word in _LABEL_AFTER
+    at = place + 1
+    while at < len(tokens) and (tokens[at].word in ("first", "most") or _is_adverb(tokens[at])):
+        at += 1
+    return at >= len(tokens) or not tokens[at].word or tokens[at].word in _LABEL_AFTER
+
+
+def _is_adverb(token: Token) -> bool:
+    return token.word.endswith("ly")
+
+
+def _is_left_open(tokens: Sequence[Token], inside: dict[int, _Mention], mention: _Mention) -> bool:
+    """Return True if a mention names an alternative: `maybe B`, `B is possible too`."""
+    after = " ".join(t.word or t.raw for t in tokens[mention.end : mention.end + 8])
+    if _OPEN.match(after) and "impossible" not in after:
+        return True
+    hedged = False
+    for place in range(mention.start - 1, -1, -1):
+        word = tokens[place].word
+        if place in inside or not (word or tokens[place].raw == ":"):
+            break
+        hedged = hedged or word in _HEDGES
+        if word and word not in _FILL | _HEDGES | _CONCESSIONS and not _is_adverb(tokens[place]):
+            return False
+    return hedged
 
 
 def _grounds(tokens: Sequence[Token], inside: dict[int, _Mention]) -> set[int]:

@@ -224,15 +224,15 @@ class _Reader:
         whole = Named()
         parts = sentences(plain) or [""]
         if statement.kind == "mark":
-            parts = [each for each in parts if not each.endswith("?")] or parts
+            stated = [e for e in parts if not e.endswith("?") or re.match(r"\W*or\b", e, re.I)]
+            parts = stated or parts
         for number, sentence in enumerate(parts):
             named = self._names.named(_concluded(sentence, self._names))
             if named.yes and number == 0 and (named.bare or _is_headed(sentence, self._names)):
                 # Further sentences explain it; `_reconsidered` looks for second thoughts.
                 others = [self._names.named(each) for each in parts[1:]]
                 for other in others:
-                    if other.bare:
-                        named.yes |= other.yes
+                    named.yes |= other.yes if other.bare else other.maybe
                 return named
             if named.yes and _concludes(sentence):
                 whole = named
@@ -257,6 +257,7 @@ class _Reader:
             if self._is_bare(line):
                 whole.yes |= self._names.named(line).yes
         for sentence in sentences(rest):
+            whole.yes |= self._names.named(sentence).maybe
             inner = re.findall(r"(?<!\w)\(?([A-Z])\)\s", sentence)
             if inner:
                 whole.yes |= self._names.named(sentence).yes
