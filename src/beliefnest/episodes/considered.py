@@ -7,6 +7,8 @@ import msgspec
 
 __all__ = ["CourseOutcome", "SearchTrace", "TriedCourse", "considered_lines", "told_trace"]
 
+_COURSES_SHOWN = 5
+
 CourseOutcome = Literal["reached", "open", "violated", "expected"]
 """Imagined end of a course; `expected`: the mean over possible goals of others."""
 
@@ -69,20 +71,15 @@ def told_trace(trace: SearchTrace) -> dict[str, Any]:
     }
 
 
-def considered_lines(told: Mapping[str, Any], most: int = 5) -> Sequence[str]:
-    """Return a trace in lines of text: the reckoned acts of others, then the best courses.
-
-    Args:
-        told: Trace, as `told_trace` returns it.
-        most: Greatest number of courses.
-    """
+def considered_lines(told: Mapping[str, Any]) -> Sequence[str]:
+    """Return what `told_trace` returned in lines: the reckoned acts of others, the best courses."""
     lines = [
         f"expects that {name} does: {_flat(program) or 'nothing'}"
         for name, program in told["others"].items()
     ]
     lines += [
         f"{number}. {words}: {_flat(program) or 'nothing'}"
-        for number, (program, words) in enumerate(told["courses"][:most], 1)
+        for number, (program, words) in enumerate(told["courses"][:_COURSES_SHOWN], 1)
     ]
     if told["reason"]:
         lines.append(f"decided otherwise: {told['reason']}")

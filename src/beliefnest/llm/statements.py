@@ -311,7 +311,7 @@ def afterthoughts(text: str) -> tuple[str, str] | None:
     return found
 
 
-def without_made_up_turns(text: str, named: "re.Pattern[str] | None" = None) -> list[str]:
+def without_made_up_turns(text: str) -> list[str]:
     """Split a text before each line that begins another question or task."""
     parts: list[list[str]] = [[]]
     for line in text.split("\n"):

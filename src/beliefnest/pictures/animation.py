@@ -6,12 +6,13 @@ from pathlib import Path
 from PIL import Image
 
 from beliefnest.errors import InputError
-from beliefnest.pictures.figure import Figure, Size
+from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.palette import PAPER
 
 __all__ = ["check_animated", "save_animation"]
 
 _FORMS: Mapping[str, str] = {".gif": "GIF", ".webp": "WEBP"}
+_DPI = 110
 
 
 def check_animated(path: Path) -> str:
@@ -33,8 +34,6 @@ def save_animation(
     figures: Sequence[Figure],
     milliseconds: Sequence[int],
     path: Path,
-    size: Size | None = None,
-    dpi: float = 110,
 ) -> None:
     """Write figures as an animation that repeats forever.
 
@@ -42,14 +41,12 @@ def save_animation(
         figures: The figures, in order.
         milliseconds: Duration of each figure.
         path: A `.gif` or `.webp` file; an existing file is replaced.
-        size: As for `Figure.drawing`.
-        dpi: Pixels per inch.
 
     Raises:
         InputError: The suffix is unknown, or the file cannot be written.
     """
     form = check_animated(path)
-    images = [figure.image(size, dpi) for figure in figures]
+    images = [figure.image(dpi=_DPI) for figure in figures]
     width, height = max(i.width for i in images), max(i.height for i in images)
     pages = [Image.new("RGB", (width, height), PAPER) for _ in images]
     for page, image in zip(pages, images, strict=True):

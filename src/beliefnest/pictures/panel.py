@@ -71,7 +71,6 @@ def draw_panel(
     width: float,
     size: float,
     plan_at: float = 0.0,
-    trails: Mapping[str, tuple[XY, ...]] | None = None,
 ) -> Block:
     """Draw the panel of a scene.
 
@@ -82,11 +81,10 @@ def draw_panel(
         width: Width in points.
         size: Size of texts in points.
         plan_at: Least y of the plan; it aligns the plans of a row.
-        trails: Ways that agents have gone.
     """
     title = draw_title(scene, at, width, size)
     begin = max(title.bottom + 1.5, plan_at)
-    body = draw_body(scene, looks, (at[0], begin), width, size, trails)
+    body = draw_body(scene, looks, (at[0], begin), width, size)
     return Block([*title.marks, *body.marks], body.bottom, body.kinds)
 
 

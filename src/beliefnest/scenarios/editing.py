@@ -20,6 +20,7 @@ from beliefnest.errors import InputError
 from beliefnest.scenarios.document_form import check_written
 from beliefnest.scenarios.format import LegendEntry
 from beliefnest.scenarios.parameters import with_parameters
+from beliefnest.scenarios.writing import in_flow
 from beliefnest.scenarios.yaml_reading import parse_yaml
 from beliefnest.world.texts import quoted, shortened
 from beliefnest.world.values import Position
@@ -195,7 +196,7 @@ class _MapEdits:
                         meaning[name] = value
                     return str(character)
         character = self._free(thing)
-        self._legend[character] = _flow(thing)
+        self._legend[character] = in_flow(thing)
         return character
 
     def _free(self, thing: Any) -> str:
@@ -233,7 +234,7 @@ class _ListEdits:
         if "agent" in thing:
             self._agent(thing, [x + 0.5, y, z + 0.5])
         elif "place" in thing:
-            self._content.setdefault("places", CommentedMap())[thing["place"]] = _flow(list(at))
+            self._content.setdefault("places", CommentedMap())[thing["place"]] = in_flow(list(at))
         elif "door" in thing:
             facing, is_open = thing.get("facing", "north"), str(thing.get("open", False)).lower()
             for dy, half in enumerate(("lower", "upper")):
@@ -248,7 +249,7 @@ class _ListEdits:
             listed = self._content.setdefault(
                 "signs" if "sign" in thing else "containers", CommentedSeq()
             )
-            listed.append(_flow({**entry, "at": list(at)}))
+            listed.append(in_flow({**entry, "at": list(at)}))
 
     def clear(self, at: Position) -> None:
         """Remove what stands at a position."""
@@ -275,7 +276,9 @@ class _ListEdits:
         x, y, z = at
         high = [x, self._top(y, height), z]
         where = {"at": list(at)} if high == list(at) else {"fill": [list(at), high]}
-        self._content.setdefault("blocks", CommentedSeq()).append(_flow({"block": state, **where}))
+        self._content.setdefault("blocks", CommentedSeq()).append(
+            in_flow({"block": state, **where})
+        )
 
     def _top(self, y: int, height: int) -> int:
         low, high = self._box()
@@ -292,11 +295,11 @@ class _ListEdits:
         agents = self._content.setdefault("agents", CommentedMap())
         name = thing["agent"]
         if name not in agents:
-            agents[name] = _flow({"position": feet})
+            agents[name] = in_flow({"position": feet})
         position = agents[name].get("position") if isinstance(agents[name], dict) else agents[name]
         if isinstance(position, str) or any(isinstance(part, str) for part in position or ()):
             raise _parameter(f"the position of {name}", position)
-        agents[name]["position"] = _flow(feet)
+        agents[name]["position"] = in_flow(feet)
         for key, value in thing.items():
             if key != "agent":
                 agents[name][key] = value
@@ -376,16 +379,3 @@ def _thing(value: object) -> Any:
     if not value:
         raise InputError("the thing is empty; name a block")
     return value
-
-
-def _flow(value: Any) -> Any:
-    """Return a value as YAML on one line."""
-    made: Any
-    if isinstance(value, Mapping):
-        made = CommentedMap((key, _flow(part)) for key, part in value.items())
-    elif isinstance(value, list | tuple):
-        made = CommentedSeq(_flow(part) for part in value)
-    else:
-        return value
-    made.fa.set_flow_style()
-    return made

@@ -21,7 +21,7 @@ from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, Position
 
-__all__ = ["content_text", "scenario_text"]
+__all__ = ["content_text", "in_flow", "scenario_text"]
 
 _VISITOR = "visitor"
 _WIDTH = 100
@@ -52,7 +52,7 @@ def scenario_text(name: str, description: str, place: Snapshot) -> str:
     content = {
         "name": name,
         "description": description,
-        "box": [_flow(place.box.low), _flow(place.box.high)],
+        "box": [in_flow(place.box.low), in_flow(place.box.high)],
         "terrain": _terrain(place, registry) if blocks is None else None,
         "blocks": blocks,
         "containers": list(_containers(place, registry)),
@@ -87,10 +87,10 @@ def content_text(content: Mapping[str, Any], heading: str) -> str:
 def _by_line(value: Any) -> Any:
     """Return a value whose entries stand on lines of their own; positions stay on one line."""
     if isinstance(value, Mapping) and value:
-        return CommentedMap((key, _flow(part)) for key, part in value.items())
+        return CommentedMap((key, in_flow(part)) for key, part in value.items())
     if isinstance(value, list | tuple) and any(isinstance(each, Mapping) for each in value):
-        return CommentedSeq(_flow(part) for part in value)
-    return _flow(value)
+        return CommentedSeq(in_flow(part) for part in value)
+    return in_flow(value)
 
 
 def _blocks(place: Snapshot, registry: Registry) -> list[CommentedMap] | None:
@@ -104,8 +104,8 @@ def _blocks(place: Snapshot, registry: Registry) -> list[CommentedMap] | None:
     entries, values = [], 0
     for state, part in cuboids(blocks, registry.air):
         low, high = (_at(place.box, corner) for corner in (part.low, part.high))
-        where: dict[str, Any] = {"at": low} if low == high else {"fill": _flow([low, high])}
-        entries.append(_flow({"block": registry.text(state), **where}))
+        where: dict[str, Any] = {"at": low} if low == high else {"fill": in_flow([low, high])}
+        entries.append(in_flow({"block": registry.text(state), **where}))
         values += _values(entries[-1])
         if values > MAX_VALUES:
             return None
@@ -115,7 +115,7 @@ def _blocks(place: Snapshot, registry: Registry) -> list[CommentedMap] | None:
 def _terrain(place: Snapshot, registry: Registry) -> CommentedMap:
     entry = entry_of(place.blocks, registry)
     cells = LiteralScalarString(entry["cells"])
-    return CommentedMap({**entry, "states": _flow(entry["states"]), "cells": cells})
+    return CommentedMap({**entry, "states": in_flow(entry["states"]), "cells": cells})
 
 
 def _filled(content: Mapping[str, Any]) -> dict[str, Any]:
@@ -134,14 +134,14 @@ def _values(content: Any) -> int:
 def _containers(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
     for position, items in sorted(place.containers.items()):
         block = registry.text(place.blocks[place.box.index(position)])
-        yield _flow({"at": position, "block": block, **({"items": dict(items)} if items else {})})
+        yield in_flow({"at": position, "block": block, **({"items": dict(items)} if items else {})})
 
 
 def _signs(place: Snapshot, registry: Registry) -> Iterator[CommentedMap]:
     for position in _sign_places(place, registry):
         block = registry.text(place.blocks[place.box.index(position)])
         text = place.signs.get(position, "")
-        yield _flow({"at": position, "block": block, **({"text": text} if text else {})})
+        yield in_flow({"at": position, "block": block, **({"text": text} if text else {})})
 
 
 def _sign_places(place: Snapshot, registry: Registry) -> list[Position]:
@@ -156,7 +156,7 @@ def _agent(state: AgentState) -> Any:
     said |= {"equipment": worn} if worn else {}
     said |= {"health": state.health} if state.health != _FULL else {}
     said |= {"food": state.food} if state.food != _FULL else {}
-    return _flow(said)
+    return in_flow(said)
 
 
 def _standing(place: Snapshot, registry: Registry) -> tuple[float, float, float]:
@@ -203,13 +203,13 @@ def _at(box: Box, index: Any) -> Position:
     return (x, y, z)
 
 
-def _flow(value: Any) -> Any:
+def in_flow(value: Any) -> Any:
     """Return the value as YAML on one line."""
     made: Any
     if isinstance(value, Mapping):
-        made = CommentedMap((key, _flow(part)) for key, part in value.items())
+        made = CommentedMap((key, in_flow(part)) for key, part in value.items())
     elif isinstance(value, list | tuple):
-        made = CommentedSeq(_flow(part) for part in value)
+        made = CommentedSeq(in_flow(part) for part in value)
     else:
         return value
     made.fa.set_flow_style()

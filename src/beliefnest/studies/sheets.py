@@ -47,21 +47,13 @@ class Sheet:
     delimiter: str
 
 
-def read_sheet(file: Path, needed: Sequence[str] = ()) -> Sheet:
-    """Return the content of a CSV file.
-
-    Args:
-        file: The file.
-        needed: Columns that it must have.
-
-    Raises:
-        InputError: The file cannot be read, is no CSV, or lacks a column.
-    """
+def read_sheet(file: Path) -> Sheet:
+    """Return the content of a CSV file; raise InputError if it cannot be read or is none."""
     try:
         content = read_regular(file)
     except OSError as error:
         raise InputError(f"{file} cannot be read: {error.strerror}") from None
-    return decode_sheet(content, str(file), needed)
+    return decode_sheet(content, str(file))
 
 
 def decode_sheet(content: bytes, where: str, needed: Sequence[str] = ()) -> Sheet:

@@ -11,6 +11,7 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.files import read_regular_text
 from beliefnest.llm.model_settings import AskedForm, ModelSettings
 from beliefnest.llm.resolve import check_model, check_structured
+from beliefnest.locking import holding
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.sources import read_document
@@ -279,7 +280,7 @@ class Study:
             limits=self._design.limits,
         )
         self._check_models(terms, backend)
-        with place.lock():
+        with holding(place.path):
             self._write_plan(place, self._plan_json(part))
             run_cells(part.cells, place, terms, jobs, backend, on_progress or _say_nothing)
         return StudyResult(place)
@@ -374,7 +375,7 @@ class Study:
         )
         place = StudyFolder.open(folder)
         place.check_subjects(self._plan_json(self.plan()))
-        with place.lock():
+        with holding(place.path):
             if not place.has_plan:
                 self._write_plan(place, self._plan_json(self.plan()))
             place.write_people(name, found.cells, asdict(found.sessions))
@@ -495,7 +496,7 @@ class Study:
         planned = {cell.key.name for cell in plan.cells}
         place = StudyFolder.open(folder)
         place.check_subjects(self._plan_json(plan))
-        with place.lock():
+        with holding(place.path):
             return place.take_over([Path(other) for other in others], planned)
 
     def _check_models(self, terms: Terms, backend: str) -> None:

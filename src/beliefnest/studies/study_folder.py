@@ -4,7 +4,6 @@ import json
 import os
 import shutil
 from collections.abc import Collection, Iterable, Mapping
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import replace_file, replacing
-from beliefnest.locking import holding, is_lock
+from beliefnest.locking import is_lock
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
 from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form
 
@@ -89,10 +88,6 @@ class StudyFolder:
                 f"there is no study at {path}{run}; give a folder of `beliefnest study`"
             )
         return folder
-
-    def lock(self) -> AbstractContextManager[None]:
-        """Hold the folder; raise InputError if another process does."""
-        return holding(self.path)
 
     @property
     def cells(self) -> Path:

@@ -154,11 +154,9 @@ class History:
             position = self._journal.info(key).entries
         return TimelineState(self.shared(key, path, position), path, tick, key, self)
 
-    def view(
-        self, forest: Forest, path: BeliefPath, key: TimelineKey, tick: int | None = None
-    ) -> TimelineState:
-        """Return the state of a node of a forest of a timeline; `tick` as for `state`."""
-        return TimelineState(forest, path, tick, key, self)
+    def view(self, forest: Forest, path: BeliefPath, key: TimelineKey) -> TimelineState:
+        """Return the state of a node of a forest of a timeline."""
+        return TimelineState(forest, path, None, key, self)
 
     def shared(self, key: TimelineKey, path: BeliefPath, position: int) -> Forest:
         """Return a forest with a node, after some entries of a timeline.
