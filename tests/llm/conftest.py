@@ -151,6 +151,26 @@ def answers_with_a_page(handler: "Handler") -> None:
     handler.wfile.write(page)
 
 
+def answers_whole(body: bytes) -> Behaviour:
+    """Return an answer in one body, as servers give that cannot stream."""
+
+    def behave(handler: "Handler") -> None:
+        handler.send_response(200)
+        handler.send_header("Content-Type", "application/json")
+        handler.send_header("Content-Length", str(len(body)))
+        handler.end_headers()
+        handler.wfile.write(body)
+
+    return behave
+
+
+def completion(message, reason) -> bytes:
+    choice = {"index": 0, "message": message, "finish_reason": reason}
+    counts = {"prompt_tokens": 12, "completion_tokens": 3, "total_tokens": 15}
+    body = {"id": "x", "object": "chat.completion", "created": 1, "model": "m"}
+    return json.dumps({**body, "choices": [choice], "usage": counts}).encode()
+
+
 def garbles(handler: "Handler") -> None:
     handler.start_stream()
     handler.wfile.write(b'data: {"id": "x", "choi\n\n')
@@ -180,6 +200,8 @@ class FakeOpenAI:
     refuses = staticmethod(refuses)
     floods = staticmethod(floods)
     answers_with_a_page = staticmethod(answers_with_a_page)
+    answers_whole = staticmethod(answers_whole)
+    completion = staticmethod(completion)
     garbles = staticmethod(garbles)
     fails_halfway = staticmethod(fails_halfway)
     drips = staticmethod(drips)

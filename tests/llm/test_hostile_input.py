@@ -58,10 +58,13 @@ def compresses(handler):
     handler.end_headers()
 
 
-def asked(fake, *, name="openai:gpt-4o-mini", **limits):
+def remote(fake, *, name="openai:gpt-4o-mini", **limits):
     own = {"OPENAI_BASE_URL": fake.url, "OPENAI_API_KEY": "sk-secret"}
-    model = resolve_model(name, own, limits=AnswerLimits(**limits))
-    return model.answer(ASK, Sampling())
+    return resolve_model(name, own, limits=AnswerLimits(**limits))
+
+
+def asked(fake, **how):
+    return remote(fake, **how).answer(ASK, Sampling())
 
 
 def is_usable(answer):
@@ -236,10 +239,10 @@ WHOLE = told("Answer: red ", "box or", " the blüe box")
 ENDED = WHOLE.index(b'"stop"') + len(b'"stop", "delta": {}}], "usage": null}')
 
 
-def stops_after(count):
+def sends_raw(events):
     def behave(handler):
         handler.start_stream()
-        handler.wfile.write(WHOLE[:count])
+        handler.wfile.write(events)
 
     return behave
 
@@ -247,7 +250,7 @@ def stops_after(count):
 @pytest.mark.parametrize("step", [211, pytest.param(1, marks=pytest.mark.long)])
 def test_half_an_answer_is_none(neighbour, step):
     for count in range(0, len(WHOLE) + 1, step):
-        neighbour.will(stops_after(count))
+        neighbour.will(sends_raw(WHOLE[:count]))
         try:
             answer = asked(neighbour)
         except ModelError as fault:
@@ -263,6 +266,50 @@ def test_any_reason_ends_an_answer(neighbour, end):
         lambda handler: (handler.start_stream(), handler.wfile.write(told("go();", end=end)))
     )
     assert asked(neighbour).finish == "stop"
+
+
+UNEXPLAINED = told("Answer: red ", "box", end=None)
+
+
+@pytest.mark.parametrize("size", [1, 7, len(UNEXPLAINED)])
+def test_a_stream_to_its_mark_is_an_answer_without_a_reason(neighbour, size):
+    def behave(handler, events=UNEXPLAINED):
+        handler.start_stream()
+        for at in range(0, len(events), size):
+            handler.wfile.write(events[at : at + size])
+            handler.wfile.flush()
+
+    neighbour.will(behave)
+    answer = asked(neighbour)
+    assert (answer.text, answer.finish) == ("Answer: red box", "stop")
+
+
+def test_a_cut_stream_without_a_reason_is_none(neighbour):
+    said = json.dumps(delta(content="data: [DONE]\n\ndata: [DONE]")).encode()
+    for events in (UNEXPLAINED[:-16], UNEXPLAINED[:-4], b"data: " + said + b"\n\n"):
+        neighbour.will(sends_raw(events))
+        with pytest.raises(ModelError, match="ended the stream in the middle"):
+            asked(neighbour)
+
+
+@pytest.mark.parametrize("reason", ["stop", None, "length"])
+def test_a_server_that_does_not_stream_is_read(neighbour, reason):
+    message = {"role": "assistant", "content": "Answer: red box"}
+    neighbour.will(neighbour.answers_whole(neighbour.completion(message, reason)))
+    answer = asked(neighbour)
+    assert (answer.text, answer.finish) == ("Answer: red box", reason or "stop")
+    assert answer.usage.input_tokens == 12
+
+
+@pytest.mark.parametrize(
+    "body", [b"{}", b"[]", b'{"choices": []}', b'{"choices": [{"message": {"tool_calls": 3}}]}',
+             b'{"choices": [{"message": {"content": "Answer: A"', b"[" * 100_000, b"null", b""]
+)  # fmt: skip
+def test_a_whole_body_that_is_no_answer_is_refused(neighbour, body):
+    neighbour.will(neighbour.answers_whole(body))
+    with pytest.raises(ModelError) as caught:
+        asked(neighbour)
+    assert one_line(caught.value)
 
 
 def test_an_answer_of_10_mb_in_one_line_is_cut(neighbour):

@@ -37,6 +37,13 @@ def calls_a_tool(handler):
     handler.end_stream(reason="tool_calls")
 
 
+def calls_it_whole(handler):
+    function = {"name": "answer", "arguments": '{"answer": "red box"}'}
+    call = {"id": "c1", "type": "function", "function": function}
+    message = {"role": "assistant", "content": None, "tool_calls": [call]}
+    FakeOpenAI.answers_whole(FakeOpenAI.completion(message, "tool_calls"))(handler)
+
+
 def test_options_are_asked_for_by_a_schema_and_rows_say_so(server, tmp_path):
     server.will(FakeOpenAI.says('{"answer": "red box"}'))
     plain = study(tmp_path).plan().cells[0].key.name
@@ -54,7 +61,10 @@ def test_options_are_asked_for_by_a_schema_and_rows_say_so(server, tmp_path):
     assert len(server.requests) == 1
 
 
-def test_a_tool_takes_the_place_of_a_schema_that_a_model_lacks(server, tmp_path, monkeypatch):
+@pytest.mark.parametrize("calls", [calls_a_tool, calls_it_whole])
+def test_a_tool_takes_the_place_of_a_schema_that_a_model_lacks(
+    server, tmp_path, monkeypatch, calls
+):
     chosen = RemoteModel._parameters
 
     def without_schemas(self, model, options):
@@ -62,7 +72,7 @@ def test_a_tool_takes_the_place_of_a_schema_that_a_model_lacks(server, tmp_path,
         return chosen(self, model, options)
 
     monkeypatch.setattr(RemoteModel, "_parameters", without_schemas)
-    server.will(calls_a_tool)
+    server.will(calls)
     result = study(tmp_path, answer="structured").run(tmp_path / "st", jobs=1)
     (row,) = result.frame().to_dict("records")
     assert (row["answered"], row["form"]) == ("red box", "tool")

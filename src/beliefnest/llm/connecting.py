@@ -4,6 +4,8 @@ Limits on the length of answers are not enough: events of a stream, comments in 
 errors are not part of an answer, but must be held in memory.
 """
 
+import json
+import re
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -18,6 +20,11 @@ if TYPE_CHECKING:  # An extra, imported when a provider is asked.
 __all__ = ["ByteCount", "TooManyBytesError", "bounded_client"]
 
 
+_END = re.compile(rb"(?:^|[\r\n])data: ?\[DONE\]")
+"""Mark with which a stream of OpenAI's protocol ends; within its JSON no line ends."""
+_LONGEST_END = 16
+
+
 class TooManyBytesError(ModelError):
     """A server sent more bytes than any answer needs."""
 
@@ -29,10 +36,13 @@ class ByteCount:
     Attributes:
         most: Greatest number of bytes.
         received: Number of bytes so far.
+        ended: True after the mark of the end of a stream.
     """
 
     most: int
     received: int = 0
+    ended: bool = False
+    _last: bytes = b"\n"
 
     def add(self, piece: bytes) -> None:
         """Count a piece of the response.
@@ -43,6 +53,8 @@ class ByteCount:
         self.received += len(piece)
         if self.received > self.most:
             raise TooManyBytesError(f"the server sent more than {self.most:,} bytes without text")
+        self.ended = self.ended or _END.search(self._last + piece) is not None
+        self._last = (self._last + piece)[-_LONGEST_END:]
 
     def restart(self) -> None:
         """Count from 0 again."""
@@ -71,18 +83,28 @@ def bounded_client(endpoint: Endpoint, seconds: float, count: ByteCount) -> "htt
             )
         stream = response.stream
         if isinstance(stream, httpx2.AsyncByteStream):
-            response.stream = Bounded(stream)
+            kind = response.headers.get("content-type", "")
+            whole = response.is_success and kind.startswith("application/json")
+            response.stream = Bounded(stream, whole)
 
     class Bounded(httpx2.AsyncByteStream):
-        """Stream that counts its bytes."""
+        """Stream that counts its bytes; the events of an answer that came whole."""
 
-        def __init__(self, inner: httpx2.AsyncByteStream) -> None:
-            self._inner = inner
+        def __init__(self, inner: httpx2.AsyncByteStream, whole: bool) -> None:
+            self._inner, self._whole = inner, whole
 
         async def __aiter__(self) -> AsyncIterator[bytes]:
+            body = b""
             async for piece in self._inner:
                 count.add(piece)
-                yield piece
+                if self._whole:
+                    body += piece
+                else:
+                    yield piece
+            if self._whole:
+                events = _events(body)
+                count.add(events)
+                yield events
 
         async def aclose(self) -> None:
             await self._inner.aclose()
@@ -99,3 +121,21 @@ def bounded_client(endpoint: Endpoint, seconds: float, count: ByteCount) -> "htt
         verify=httpx2.create_ssl_context(trust_env=not is_plain),
         trust_env=not is_near,
     )
+
+
+def _events(body: bytes) -> bytes:
+    """Return a whole answer of OpenAI's protocol as its stream, and any other body as it is.
+
+    Servers that cannot stream send such answers.
+    """
+    try:
+        answer = json.loads(body)
+    except ValueError:
+        return body
+    match answer:
+        case {"choices": [{"message": {**message}, **choice}, *_]}:
+            calls = [{"index": n, **call} for n, call in enumerate(message.get("tool_calls") or ())]
+            choices = [{**choice, "delta": {**message, "tool_calls": calls or None}}]
+            chunk = {**answer, "object": "chat.completion.chunk", "choices": choices}
+            return f"data: {json.dumps(chunk)}\n\ndata: [DONE]\n\n".encode()
+    return body

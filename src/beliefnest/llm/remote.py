@@ -181,7 +181,7 @@ class RemoteModel:
                         cut = _answer(self, messages, stream.get(), _form(asked))
                         return replace(cut, finish="length")
                 response = stream.get()
-                if not _has_ended(response):
+                if not (count.ended or _has_ended(response)):
                     raise TransientModelError(
                         f"{self.name} at {self.endpoint.place} ended the stream in the middle of "
                         "its answer, before any reason for the end; ask again"
@@ -375,7 +375,8 @@ def _length(event: object) -> int:
 def _has_ended(response: "ModelResponse") -> bool:
     """Return True if the provider gave a reason for the end of an answer, of whatever name.
 
-    A connection that was cut may look like the end of a stream, and half an answer like another.
+    Without a reason and without the mark of its end, a stream may be that of a connection that was
+    cut, and its answer half of another.
     """
     told = (response.provider_details or {}).get("finish_reason")
     # Of a stream without a reason the library says `stop`.
@@ -521,7 +522,7 @@ def _refuse(model: RemoteModel, error: Exception) -> NoReturn:
         case library.ModelAPIError():
             message = f"{where} rejected the request ({said})"
         case library.UnexpectedModelBehavior():
-            message = f"{where} gave no usable answer ({said}); the server must stream its answers"
+            message = f"{where} gave no usable answer ({said}); check that it speaks this protocol"
         case _:
             message = f"{where} gave no usable answer ({said})"
     raise ModelError(message) from None
