@@ -1,18 +1,22 @@
-"""Import of Python objects that command lines and files name as `module:NAME` or `FILE.py:NAME`."""
+"""Import of Python objects by name: those of users, and parts of this package that lie above."""
 
 import difflib
 import importlib
 import importlib.util
 import sys
 from importlib.machinery import ModuleSpec
+from importlib.metadata import distribution
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from beliefnest.errors import InputError
 
-__all__ = ["imported_object", "is_importable", "is_object_name", "text_of_object"]
+__all__ = ["imported_object", "is_importable", "is_object_name", "part", "text_of_object"]
 
 _SUFFIX = ".py"
+_PARTS = "beliefnest.parts"
+"""Group of entry points that `pyproject.toml` declares."""
 
 
 def is_object_name(text: str) -> bool:
@@ -39,6 +43,20 @@ def imported_object(text: str, what: str) -> object:
         return getattr(module, name)
     except AttributeError:
         raise InputError(f"{place} has no {what} {name!r}{_hint(name, module)}") from None
+
+
+def part(name: str) -> Any:
+    """Return a part of this package that lies above the room which calls it.
+
+    Args:
+        name: Name of an entry point: `imagine` or `page`.
+
+    Raises:
+        InputError: The installed package does not declare it.
+    """
+    for entry in distribution("beliefnest").entry_points.select(group=_PARTS, name=name):
+        return entry.load()
+    raise InputError(f"the installed BeliefNest has no part {name!r}; install it again with pip")
 
 
 def is_importable(place: str) -> bool:

@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Self
 
+from beliefnest.importing import part
 from beliefnest.nest.face.reader import Reader
 from beliefnest.nest.face.shown import ShownNest
 from beliefnest.nest.face.turns import in_turn
@@ -13,8 +14,8 @@ from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import parse_path
 
 if TYPE_CHECKING:  # The page lies above; see `view`.
+    from beliefnest.adapters.notebook import PageView
     from beliefnest.minds.inference import Inference
-    from beliefnest.viewer.page.notebook import PageView
 
 __all__ = ["NestBase"]
 
@@ -115,8 +116,5 @@ class NestBase(ShownNest, ABC):
                 it, and tints the plan by the places that it predicts.
             steps: Number of actions after which places are predicted.
         """
-        # The only import of a higher room: a page reads nests, and rounds of episodes.
-        from beliefnest.episodes.telling import told_episode
-        from beliefnest.viewer.page.notebook import PageView
-
-        return PageView(self.reader, depth, height, lambda: told_episode(self), inference, steps)
+        page: PageView = part("page")(self.reader, self, depth, height, inference, steps)
+        return page

@@ -1,8 +1,9 @@
 """Imagination of unseen events: weighted histories that explain an owner's percepts."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from random import Random
+from typing import Any
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.errors import InputError
@@ -38,11 +39,20 @@ class ImaginationWarning(UserWarning):
 def imagine_in(
     recording: Recording,
     path: BeliefPath,
-    asked: Asked,
-    faces: Faces,
+    arguments: tuple[Any, ...],
+    simulators: tuple[Callable[..., Any], Callable[..., Any]],
     on_progress: Progress | None,
 ) -> Imagined:
-    """Draw histories; see `ShownSimulator.imagine`."""
+    """Draw histories; see `ShownSimulator.imagine`.
+
+    Args:
+        recording: Recording of the nest.
+        path: Path of the simulator that imagines.
+        arguments: Values of `Asked`.
+        simulators: Values of `Faces`.
+        on_progress: As for `ShownSimulator.imagine`.
+    """
+    asked, faces = Asked(*arguments), Faces(*simulators)
     checked = Checked.of(recording, path, asked)
     base, end = checked.base, checked.end
     journal, history = recording.journal, recording.history

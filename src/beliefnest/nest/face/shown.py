@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from beliefnest.belief.view import State
 from beliefnest.errors import BeliefNestError, BranchError, InputError, PathError
+from beliefnest.importing import part
 from beliefnest.nest.explain.chain import element_of, explain
 from beliefnest.nest.explain.comparison import Difference, compare, false_beliefs
 from beliefnest.nest.explain.explanation import Explanation
@@ -271,14 +272,13 @@ class ShownSimulator(ABC):
             PathError: There is no such agent.
             TickError: A tick is in the future or before the start, or `since` is after `until`.
         """
-        from beliefnest.nest.face.histories import Faces
-        from beliefnest.nest.face.imagine_arguments import Asked
-        from beliefnest.nest.face.imagining import imagine_in
-
         last = self._tick if until is None else until
-        asked = Asked(since, last, actors, n, seed, weights, evidence, tolerance)
-        faces = Faces(PastSimulator, self._live_on)
-        return imagine_in(self._recording, self._path, asked, faces, on_progress)
+        asked = (since, last, actors, n, seed, weights, evidence, tolerance)
+        imagine_in = part("imagine")
+        imagined: Imagined = imagine_in(
+            self._recording, self._path, asked, (PastSimulator, self._live_on), on_progress
+        )
+        return imagined
 
     def _live_on(self, recording: Recording) -> Any:
         """Return the simulator, able to act, on other timelines."""

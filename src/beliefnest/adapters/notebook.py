@@ -1,11 +1,11 @@
-"""Page inside a notebook."""
+"""Page of a nest inside a notebook of Jupyter."""
 
 import html
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
+from beliefnest.episodes.record import Keeps
+from beliefnest.episodes.telling import told_episode
 from beliefnest.minds.inference import Inference
 from beliefnest.nest.face.reader import Reader
 from beliefnest.viewer.page.posteriors import told_inference
@@ -24,17 +24,17 @@ class PageView:
 
     Attributes:
         reader: Reader of the nest.
+        run: The nest, which keeps the rounds of its episode if it has one.
         depth: Depth of the beliefs that are included.
         height: Height of the frame in pixels.
-        episode: Function that returns the rounds of the nest's episode, as for `About`.
         inference: Posterior that is shown with the nest; None: there is none.
         steps: Number of actions after which the posterior predicts places.
     """
 
     reader: Reader
+    run: Keeps
     depth: int
     height: int
-    episode: Callable[[], Mapping[str, Any] | None] = lambda: None
     inference: Inference | None = None
     steps: int = 5
 
@@ -48,7 +48,10 @@ class PageView:
         setting = self.reader.setting
         told = [] if self.inference is None else [told_inference(self.inference, self.steps)]
         about = About(
-            self._title, labels=setting.labels, episode=self.episode, inferences=lambda: told
+            self._title,
+            labels=setting.labels,
+            episode=lambda: told_episode(self.run),
+            inferences=lambda: told,
         )
         # Predictions are drawn on the plan.
         first = {"view": "plan"} if told else None

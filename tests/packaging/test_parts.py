@@ -1,0 +1,27 @@
+"""Parts that rooms call from below are declared, can be loaded, and are named if they are missing."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from beliefnest.errors import InputError
+from beliefnest.importing import part
+
+PROJECT = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())
+PARTS = PROJECT["project"]["entry-points"]["beliefnest.parts"]
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_a_declared_part_can_be_called(name):
+    assert callable(part(name))
+
+
+def test_a_missing_part_is_named():
+    with pytest.raises(InputError, match="no part 'roof'; install it again"):
+        part("roof")
+
+
+def test_no_contract_has_an_exception():
+    contracts = PROJECT["tool"]["importlinter"]["contracts"]
+    assert [each["name"] for each in contracts if "ignore_imports" in each] == []
