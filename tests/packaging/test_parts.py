@@ -1,4 +1,4 @@
-"""Parts that rooms call from below are declared, can be loaded, and are named if they are missing."""
+"""Parts that rooms call from below are declared and can be loaded; a missing one is named."""
 
 import tomllib
 from pathlib import Path
