@@ -96,3 +96,15 @@ def test_a_table_without_room_for_its_words_is_printed_as_lists(
         assert max(map(len, printed.splitlines())) <= int(columns)
         assert ("/believer/of/ann  diamond 0" in printed) is is_list
         assert all(heading in printed for heading in headings)
+
+
+def test_a_table_in_a_pipe_breaks_no_word(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
+    words = [f"a-name-of-{'x' * 20}-{number}" for number in range(9)]
+    table = Table(*words, title="wide")
+    table.add_row(*(f"{word}-below and more" for word in words))
+    print_table(stdout(), table)
+    printed = capsys.readouterr().out.split()
+    assert {*words, *(f"{word}-below" for word in words)} <= set(printed)

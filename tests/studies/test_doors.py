@@ -71,7 +71,7 @@ def test_runs_and_what_is_written_about_them(server, room, capsys):
     assert f"5 rows without an answer to judge ({TOLD})" in capsys.readouterr().out
 
 
-def test_studies_their_tables_pages_and_statistics(server, room, capsys):
+def test_studies_their_tables_pages_and_statistics(server, room, capsys, monkeypatch):
     server.will(*SAID.values())
     study = bn.Study(str(room), models=["vllm:m"], repeats=7, world="scripted")
     result = study.run("out", jobs=1)
@@ -84,6 +84,7 @@ def test_studies_their_tables_pages_and_statistics(server, room, capsys):
     assert "1 of 7" in page
     for name in NOT_ANSWERED:
         assert f"<th>{name.replace('_', ' ')}</th>" in page
+    monkeypatch.setenv("COLUMNS", "100")
     assert run_command_line(["stats", "out"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "judged 7 right 1 accuracy 0.143" in printed

@@ -1,11 +1,13 @@
 """Lists of a Latin square hold each right answer equally often, or the study says so."""
 
+import json
 import warnings
 from collections import Counter
 
 import pytest
 
 import beliefnest as bn
+from beliefnest.cli.app import run_command_line
 from beliefnest.scenarios.probing import resolved
 from beliefnest.studies.list_balance import ListsWarning
 
@@ -89,3 +91,22 @@ def test_lists_that_cannot_be_balanced_are_told_with_a_table(tmp_path):
     # Two values that alternate leave one answer for each list, however they are exchanged.
     with pytest.warns(ListsWarning, match=r"boxes cannot be balanced .* where, blue box: 0 2; whe"):
         square(tmp_path, [["apple", 2, 6], ["bone", 6, 2]]).plan()
+
+
+def test_what_was_warned_of_stands_below_the_table(tmp_path, capsys):
+    values = [["apple", 2, 6], ["bone", 6, 2]]
+    square(tmp_path, values)
+    names = {"scenarios": [str(tmp_path / "boxes.yaml")], "models": ["chance", "first-option"]}
+    chosen = {"variations": {"set": values}, "design": "latin-square"}
+    file = tmp_path / "s.yaml"
+    file.write_text(json.dumps({**names, **chosen, "world": "scripted"}), encoding="utf-8")
+    with warnings.catch_warnings(record=True):
+        warnings.simplefilter("always", ListsWarning)
+        run_command_line(["study", str(file), "--out", str(tmp_path / "out"), "--jobs", "1"])
+    printed = capsys.readouterr().out
+    table, _, below = printed.partition("warning: the lists of boxes cannot be balanced")
+    assert "first-option" in table
+    assert below
+    methods = bn.StudyResult.read(tmp_path / "out").methods()
+    assert "`chance` and `first-option` are no language models of a provider" in methods
+    assert "Models were asked" not in methods

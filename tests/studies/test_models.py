@@ -47,6 +47,7 @@ def test_no_program_is_an_unread_answer_and_counts(server, tmp_path):
     assert result.rows[0]["asked_again"] == 1
     assert result.summary().loc[0, ["judged", "right", "unread"]].tolist() == [1, 0, 1]
     told = result.methods()
+    assert "with at most 2 requests for a program" in told
     assert "1 row without an answer to judge (1 unread) count as not right" in told
     assert "asked again after 1 unreadable answer" in told
 

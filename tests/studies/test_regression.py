@@ -228,4 +228,6 @@ def test_stats_tell_of_each_fit_if_it_is_sound(tmp_path, capsys):
     assert run_command_line(["stats", folder, "--effect", "count"]) == 0
     assert "not sound" in capsys.readouterr().out
     assert run_command_line(["stats", folder, "--by", "count", "--effect", "count"]) == 2
-    assert "count is an effect and defines groups" in capsys.readouterr().err
+    assert "count cannot be compared, or be an effect, within groups" in capsys.readouterr().err
+    assert run_command_line(["stats", folder, "--by", "count", "--between", "count"]) == 2
+    assert "count cannot be compared, or be an effect, within groups" in capsys.readouterr().err

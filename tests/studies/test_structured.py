@@ -82,8 +82,12 @@ def test_a_tool_takes_the_place_of_a_schema_that_a_model_lacks(
 
 def test_usual_answers_are_text_and_requests_are_as_they_were(server, tmp_path):
     server.will(FakeOpenAI.says("Answer: red box"))
-    (row,) = study(tmp_path).run(tmp_path / "st", jobs=1).frame().to_dict("records")
+    result = study(tmp_path).run(tmp_path / "st", jobs=1)
+    (row,) = result.frame().to_dict("records")
     assert row["form"] == "text"
+    told = result.methods()
+    assert "Models were asked at temperature 0" in told
+    assert "for a program" not in told
     assert "response_format" not in server.requests[0].body
     stored = next((tmp_path / "st" / "answers").glob("*.json")).read_text(encoding="utf-8")
     assert set(json.loads(stored)["sampling"]) == {"temperature", "seed", "max_output_tokens"}

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.segment import Segment
@@ -19,9 +20,10 @@ if TYPE_CHECKING:  # Importing nests takes long, and many commands need none.
 __all__ = ["folded", "print_table", "progress_on", "stdout"]
 
 _PLAIN_WIDTH = 140
+_PIPE_WIDTH = 280
 _NARROWEST = 20
 _WORD = 12
-"""Letters of a word that every column must have room for."""
+"""Letters of a word that every column of a terminal must have room for."""
 
 
 class _SafeConsole(Console):
@@ -66,12 +68,19 @@ def _shown(cell: RenderableType) -> RenderableType:
 def print_table(console: Console, table: Table) -> None:
     """Print a table, or each row as a list if the columns are too narrow for words.
 
+    In a pipe without COLUMNS, no word of a table is broken, and there is room for wide ones.
+
     Args:
         console: Console to print to.
         table: The table; its cells are folded and never cut.
     """
-    if sum(map(_least, table.columns)) + 3 * len(table.columns) <= console.width:
-        console.print(folded(table))
+    piped = not (console.is_terminal or _wanted_width())
+    room, longest = (_PIPE_WIDTH, _PIPE_WIDTH) if piped else (console.width, _WORD)
+    least = [min(_longest_word(column), longest) for column in table.columns]
+    if sum(least) + 3 * len(least) <= room:
+        for column, width in zip(folded(table).columns, least, strict=True):
+            column.min_width = width if piped else None
+        console.print(table, crop=not piped)
         return
     if table.title is not None:
         console.print(table.title)
@@ -83,19 +92,20 @@ def print_table(console: Console, table: Table) -> None:
         console.print()
 
 
-def _least(column: Column) -> int:
-    """Return the least width in characters at which usual words of a column are not broken."""
+def _longest_word(column: Column) -> int:
+    """Return the width in characters of the longest word of a column."""
     texts = [str(each) for each in (column.header, *column.cells)]
-    longest = max((len(word) for text in texts for word in text.split()), default=0)
-    return min(longest, _WORD)
+    return max((cell_len(word) for text in texts for word in text.split()), default=0)
 
 
 def _width(*, terminal: bool) -> int | None:
     """Return the width of a console in characters; None: the width of the terminal."""
+    return _wanted_width() or (None if terminal else _PLAIN_WIDTH)
+
+
+def _wanted_width() -> int | None:
     wanted = os.environ.get("COLUMNS", "")
-    if wanted.isdecimal() and int(wanted) >= _NARROWEST:
-        return int(wanted)
-    return None if terminal else _PLAIN_WIDTH
+    return int(wanted) if wanted.isdecimal() and int(wanted) >= _NARROWEST else None
 
 
 @contextmanager

@@ -30,6 +30,7 @@ from beliefnest.cli.report import (
 )
 from beliefnest.cli.run_cells import RunCell, plan_run_cells
 from beliefnest.cli.run_report import report_html
+from beliefnest.cli.streams import noted_warnings
 from beliefnest.cli.terminal_text import printable
 from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
@@ -103,7 +104,11 @@ def _run_in(
     cells = plan_run_cells(scenarios, options.named_models, options.repeat, options.seed)
     status: Status = "failed"
     try:
-        with Worlds(options.seed, launch=launch) as worlds, kernels_ahead():
+        with (
+            noted_warnings() as warned,
+            Worlds(options.seed, launch=launch) as worlds,
+            kernels_ahead(),
+        ):
             for cell in cells:
                 run.do(cell, worlds)
                 if run.unavailable:
@@ -121,7 +126,7 @@ def _run_in(
         report["scores"] = scores_json(score_runs(run.results, run.failures))
         folder.write_report(report)
         folder.write_page(_page(report, options, first))
-    _print(run, cells, report, as_json=options.json)
+    _print(run, cells, report, warned, as_json=options.json)
     if run.failures:
         missing = len(cells) - len(run.results)
         raise ModelError(_failures_text(run.failures, missing, len(cells), folder))
@@ -315,7 +320,12 @@ def _failures_text(
 
 
 def _print(
-    run: _Run, cells: Sequence[RunCell], report: Mapping[str, object], *, as_json: bool
+    run: _Run,
+    cells: Sequence[RunCell],
+    report: Mapping[str, object],
+    warned: Mapping[str, str],
+    *,
+    as_json: bool,
 ) -> None:
     console = stdout()
     with console.capture() as captured:
@@ -326,7 +336,7 @@ def _print(
         if _is_one_round(run, cells):
             for line in (line for row in run.rows for line in row.notes):
                 console.print(printable(line), highlight=False, markup=False, soft_wrap=True)
-        for line in _unread(run.results):
+        for line in (*_unread(run.results), *warned.values()):
             console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
         console.print(f"recorded in {run.folder.path}", highlight=False, soft_wrap=True)
     text = captured.get()

@@ -8,12 +8,14 @@ import io
 import os
 import sys
 import warnings
-from typing import TYPE_CHECKING, TextIO
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:  # There is no such module when the program runs.
     from _typeshed import ReadableBuffer
 
-__all__ = ["open_streams", "print_warnings_as_lines"]
+__all__ = ["noted_warnings", "open_streams", "print_warnings_as_lines"]
 
 _STANDARD = (0, 1, 2)
 _ERRORS = 2
@@ -75,7 +77,7 @@ def print_warnings_as_lines() -> None:
         file: TextIO | None = None,
         line: str | None = None,
     ) -> None:
-        if category.__module__.partition(".")[0] == __name__.partition(".")[0]:
+        if _is_own(category):
             subject = str(getattr(message, "subject", message))
             if subject not in shown:
                 print(f"beliefnest: warning: {message}", file=sys.stderr)  # noqa: T201
@@ -84,3 +86,25 @@ def print_warnings_as_lines() -> None:
             usual(message, category, filename, lineno, file, line)
 
     warnings.showwarning = show
+
+
+@contextmanager
+def noted_warnings() -> Iterator[dict[str, str]]:
+    """Note the warnings of this package, by subject, to repeat them below results."""
+    shown = warnings.showwarning
+    noted: dict[str, str] = {}
+
+    def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+        if _is_own(category):
+            noted.setdefault(str(getattr(message, "subject", message)), f"warning: {message}")
+        shown(message, category, *place)
+
+    warnings.showwarning = show
+    try:
+        yield noted
+    finally:
+        warnings.showwarning = shown
+
+
+def _is_own(category: type[Warning]) -> bool:
+    return category.__module__.partition(".")[0] == __name__.partition(".")[0]

@@ -15,6 +15,7 @@ from rich.table import Table
 from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.options import StudyOptions
 from beliefnest.cli.report import cost_text
+from beliefnest.cli.streams import noted_warnings
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
 from beliefnest.scenarios.judging import OUTCOMES, unanswered_words
@@ -29,6 +30,9 @@ from beliefnest.world.words import counted
 __all__ = ["run_study", "write_files"]
 
 _MOST_TOLD = 10
+_MANY = 100
+"""Number of variations whose check takes no time that needs a report."""
+_REPORTS = 10
 
 
 def run_study(options: StudyOptions) -> int:
@@ -47,8 +51,14 @@ def run_study(options: StudyOptions) -> int:
     study = Study.load(options.study, options.claims_from, **given)
     now = datetime.now()
     folder = options.out or Path("studies", f"{options.study.stem}-{now:%Y%m%d-%H%M%S}")
-    with progress_on(options.study.stem) as on_progress:
+    with noted_warnings() as warned, progress_on(options.study.stem) as on_progress:
         on_progress("checking all variations", 0, 0)
+
+        def checked(done: int, total: int) -> None:
+            if done * _REPORTS // total > (done - 1) * _REPORTS // total and total > _MANY:
+                on_progress("checked variations", done, total)
+
+        study.plan(checked)
         if options.merge:
             taken = study.take_over(folder, options.merge)
             on_progress(f"took over {taken} cells", 0, 0)
@@ -74,7 +84,7 @@ def run_study(options: StudyOptions) -> int:
     if options.json:
         sys.stdout.write(json.dumps(_report(result, by), indent=2) + "\n")
     else:
-        _print(result, by)
+        _print(result, by, warned)
     return _status(result)
 
 
@@ -115,12 +125,12 @@ def _report(result: StudyResult, by: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _print(result: StudyResult, by: Sequence[str]) -> None:
+def _print(result: StudyResult, by: Sequence[str], warned: Mapping[str, str]) -> None:
     console = stdout()
     print_table(console, _table(by, result.counted(by)))
     told = [f"no result: {why}" for why in dict.fromkeys(result.failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
-    told += _lost_rounds(result.rows)
+    told += [*_lost_rounds(result.rows), *warned.values()]
     for line in told[:_MOST_TOLD]:
         console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
     if len(told) > _MOST_TOLD:

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -226,12 +226,18 @@ class Plan(Generic[C]):
         return replace(self, cells=tuple(own))
 
 
-def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
+def plan_cells(
+    design: Design,
+    documents: Mapping[str, Document],
+    on_variation: Callable[[int, int], None] = lambda done, total: None,
+) -> Plan[Cell]:
     """Return the plan of a study.
 
     Args:
         design: Design of the study.
         documents: Documents of its scenarios, by name or path.
+        on_variation: Function that receives the number of checked variations of a scenario, and
+            the number of all.
 
     Raises:
         ScenarioError: A scenario is wrong even without any variation.
@@ -252,7 +258,8 @@ def plan_cells(design: Design, documents: Mapping[str, Document]) -> Plan[Cell]:
         invalid += _unknown_conditions(design, name, document)
         found: list[dict[int, list[Cell]]] = []
         variations = _variations(design, document)
-        for variation in variations:
+        for done, variation in enumerate(variations):
+            on_variation(done, len(variations))
             found.append({})
             for number, condition in enumerate(conditions):
                 try:

@@ -189,7 +189,7 @@ def study_facts(result: StudyRecord) -> Facts:
         factors=list(_factors(plan)),
         seed=None if "seed" not in plan else f"seed {plan['seed']}",
         models=answered(names, list(exchanges_in(result.folder.answers))),
-        asking=_asking(plan),
+        asking=_asking(plan, rows),
         templates=_templates(result),
         cells=sum(PARTICIPANT not in cell["key"] for cell in plan["cells"]),
         rows=sum(row.get(PARTICIPANT) is None for row in rows),
@@ -255,7 +255,7 @@ def run_facts(result: RunResult) -> Facts:
         factors=factors,
         seed=f"seed {settings['seed']}",
         models=answered(names, result.exchanges()),
-        asking=_asking(settings),
+        asking=_asking(settings, rows),
         templates={},
         cells=len(report["runs"]) + len(report.get("failures", [])),
         rows=len(rows),
@@ -347,12 +347,14 @@ def _varied(plan: Mapping[str, Any]) -> list[str]:
     return [_code(name) for name, values in texts.items() if len(values) > 1]
 
 
-def _asking(plan: Mapping[str, Any]) -> str:
+def _asking(plan: Mapping[str, Any], rows: Sequence[Row]) -> str:
     if "attempts" not in plan:
         return ""
     heat = plan["temperature"]
     told = "the provider's default temperature" if heat is None else f"temperature {heat:g}"
-    parts = [f"at {told}", f"with at most {counted(plan['attempts'], 'request')} for a program"]
+    parts = [f"at {told}"]
+    if any(row.get("attempts", 1) for row in rows):
+        parts.append(f"with at most {counted(plan['attempts'], 'request')} for a program")
     if "retry_unread" in plan:
         again = counted(plan["retry_unread"], "further request")
         parts.append(f"{again} after an unreadable answer")
@@ -431,7 +433,7 @@ def _sentences(facts: Facts) -> Iterator[str]:
     seed = "" if facts.seed is None else f"; all random numbers derive from {facts.seed}"
     yield f"This makes {counted(facts.cells, 'cell')} and {counted(facts.rows, 'row')}{seed}."
     if facts.models:
-        yield f"{_listed([_model(each) for each in facts.models], first=True)}."
+        yield f"{'; '.join(_models(facts.models))}."
     for people in facts.people:
         yield f"{_person(people)}."
         if people.sessions:
@@ -498,9 +500,16 @@ def _exclusion(name: str, count: int) -> str:
     return told
 
 
+def _models(models: Sequence[ModelFacts]) -> Iterator[str]:
+    """Yield a clause for each model of a provider, and one for all others."""
+    yield from (_model(each) for each in models if can_vary(each.name))
+    others = [_code(each.name) for each in models if not can_vary(each.name)]
+    if others:
+        are = "are no language models" if len(others) > 1 else "is no language model"
+        yield f"{_listed(others)} {are} of a provider"
+
+
 def _model(model: ModelFacts) -> str:
-    if not can_vary(model.name):
-        return f"{_code(model.name)} is no language model of a provider"
     if not model.answers:
         return f"{_code(model.name)} gave no recorded answer"
     given = f"{_code(model.name)} gave {counted(model.answers, 'recorded answer')}"
@@ -554,10 +563,10 @@ def _several(noun: str, names: Sequence[object], mark: str = _MARK, plural: str 
     return f"{word} {_listed(told)}"
 
 
-def _listed(parts: Sequence[str], *, first: bool = False) -> str:
-    """Return parts as `a, b and c`; with `first`, as clauses separated by semicolons."""
-    if first or len(parts) < 2:
-        return "; ".join(parts)
+def _listed(parts: Sequence[str]) -> str:
+    """Return parts as `a, b and c`."""
+    if len(parts) < 2:
+        return "".join(parts)
     return f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 

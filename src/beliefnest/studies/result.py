@@ -153,14 +153,8 @@ class StudyResult(StudyRecord):
         wanted: list[Effect] = [effects] if isinstance(effects, str) else list(effects)
         if not wanted:
             raise InputError("effects is empty; name at least one column")
-        groups = self.checked(by)
-        for each in wanted:
-            for name in self.checked(each if isinstance(each, str) else list(each)):
-                if name in groups:
-                    raise InputError(
-                        f"{name} is an effect and defines groups, in which it does not vary; leave "
-                        "it out of one of both"
-                    )
+        parts = [[each] if isinstance(each, str) else list(each) for each in wanted]
+        groups = self.grouping(by, [name for each in parts for name in self.checked(each)])
         rows: dict[tuple[Any, ...], list[dict[str, Any]]] = {} if groups else {(): self.rows}
         for row in self.rows if groups else ():
             rows.setdefault(tuple(row.get(name) for name in groups), []).append(row)

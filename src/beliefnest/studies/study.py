@@ -1,6 +1,6 @@
 """Studies: from a design to a folder of results."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -212,8 +212,14 @@ class Study:
         """Return the design: the values that the study combines."""
         return self._design
 
-    def plan(self) -> Plan[Cell] | Plan[EpisodeCell]:
+    def plan(
+        self, on_variation: Callable[[int, int], None] = lambda done, total: None
+    ) -> Plan[Cell] | Plan[EpisodeCell]:
         """Return all cells, each checked, and the invalid combinations.
+
+        Args:
+            on_variation: Function that receives the number of checked variations of a scenario,
+                and the number of all.
 
         Raises:
             ScenarioError: A scenario is wrong even without any variation.
@@ -223,7 +229,7 @@ class Study:
         if self._plan is None:
             design = self._design
             if isinstance(design, Design):
-                plan = plan_cells(design, self._documents)
+                plan = plan_cells(design, self._documents, on_variation)
                 if design.design == "latin-square":
                     plan = with_balanced_lists(plan)
                 self._plan = _told_apart(plan, self._table)

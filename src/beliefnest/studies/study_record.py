@@ -163,7 +163,7 @@ class StudyRecord:
     def compared(self, between: str, by: Sequence[str] | str | None = None) -> list[dict[str, Any]]:
         """Return the rows of `differences` as plain values; raise as it does."""
         self.checked(between)
-        names = self.checked(self.apart(between) if by is None else by)
+        names = list(self.apart(between)) if by is None else self.grouping(by, (between,))
         compared = self.paired(between, names)
         levels = list(dict.fromkeys(row[between] for row in self.rows))
 
@@ -239,6 +239,17 @@ class StudyRecord:
     def default_between(self) -> str | None:
         """Return the first column of the table's comparisons with several values; None: none."""
         return next(iter(self._several(self.table.compared)), None)
+
+    def grouping(self, by: Sequence[str] | str, used: Sequence[str]) -> list[str]:
+        """Return columns of groups; raise InputError if one is unknown, or is one of `used`."""
+        names = self.checked(by)
+        for name in used:
+            if name in names:
+                raise InputError(
+                    f"{name} cannot be compared, or be an effect, within groups of the same "
+                    f"{name}; leave it out of `by`, or out of what is compared"
+                )
+        return names
 
     def checked(self, names: Sequence[str] | str) -> list[str]:
         """Return one or several names of columns as a list; raise InputError if one is unknown."""
