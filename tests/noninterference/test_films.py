@@ -3,13 +3,13 @@
 import pytest
 
 import beliefnest as bn
-from beliefnest.studies.participants.film import Film, read_film
+from beliefnest.studies.participants.film import SceneFilm, read_film
 
 FLOOR = {(x, 0, z): "stone" for x in range(12) for z in range(5)}
 WALL = {(6, y, z): "bricks" for y in range(4) for z in range(5)}
 
 
-def film(quiet: int, act: str) -> Film:
+def film(quiet: int, act: str) -> SceneFilm:
     """Return the film of Ann, after whose last act Bob goes on behind a wall."""
     world = bn.ScriptedWorld(
         ((0, 0, 0), (11, 3, 4)),

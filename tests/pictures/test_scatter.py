@@ -6,12 +6,12 @@ import pytest
 from tests.pictures.measuring import faults, texts
 
 from beliefnest.pictures.marks import Circle
-from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
+from beliefnest.pictures.scatter import Dot, ScatterPanel, ScatterRow, scatter_figure
 
 
 def rows(count, scale=1.0):
     points = [
-        Point(scale * (number - 20), 1 + number / 8, "KLM"[number % 3], 0.2) for number in range(45)
+        Dot(scale * (number - 20), 1 + number / 8, "KLM"[number % 3], 0.2) for number in range(45)
     ]
     panels = [
         ScatterPanel(f"desires: model {n}", "r = 0.9", points[: 45 - n]) for n in range(count)
@@ -40,5 +40,5 @@ def test_dots_stand_where_their_values_are_and_panels_share_axes():
 
 
 def test_equal_values_have_an_axis():
-    panel = ScatterPanel("one", "", [Point(0.0, 3.0, "K"), Point(0.0, 3.0, "K")])
+    panel = ScatterPanel("one", "", [Dot(0.0, 3.0, "K"), Dot(0.0, 3.0, "K")])
     assert faults(scatter_figure([ScatterRow("x", "y", [panel])], "about").drawing()) == []

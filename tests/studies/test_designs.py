@@ -11,7 +11,7 @@ import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.studies.allocation import balanced, latin_lists
 from beliefnest.studies.positions import choices_of, count_positions
-from beliefnest.studies.power import Assumed, Resampled, power_rows
+from beliefnest.studies.power import AssumedRates, Resampled, power_rows
 from beliefnest.studies.regression import fit_rows
 
 SQUARE = [{"a": str(one), "b": str(other)} for one in range(3) for other in range(3)]
@@ -135,13 +135,13 @@ def test_positions_show_a_model_that_prefers_the_first_option():
 
 
 def test_power_grows_with_variations_and_intervals_cover_the_assumed_accuracy():
-    source = Assumed(accuracy=0.7, difference=0.2, correlation=0.3, rows=3, pairs=3)
+    source = AssumedRates(accuracy=0.7, difference=0.2, correlation=0.3, rows=3, pairs=3)
     rows = power_rows([("x", source)], [20, 80], 60, 1)
     assert rows == power_rows([("x", source)], [20, 80], 60, 1)
     assert rows[0]["width"] > 1.6 * rows[1]["width"]
     assert rows[1]["power"] > rows[0]["power"]
     assert all(row["coverage"] > 0.85 for row in rows)
-    nothing = Assumed(accuracy=0.7, difference=0.0, correlation=0.3, rows=1, pairs=3)
+    nothing = AssumedRates(accuracy=0.7, difference=0.0, correlation=0.3, rows=1, pairs=3)
     assert power_rows([("x", nothing)], [40], 100, 1)[0]["power"] < 0.12
 
 

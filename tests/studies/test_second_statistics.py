@@ -14,7 +14,7 @@ from tests.studies import second_statistics as second
 
 from beliefnest.studies.counting import count_rows, paired_rows
 from beliefnest.studies.positions import count_positions
-from beliefnest.studies.power import Assumed, power_rows
+from beliefnest.studies.power import AssumedRates, power_rows
 from beliefnest.studies.regression import fit_rows
 
 pytestmark = pytest.mark.extra("statsmodels")
@@ -270,7 +270,7 @@ def test_counts_of_positions(kind, number):
 
 @pytest.mark.parametrize(("difference", "pairs"), [(0.0, 20), (0.25, 30)])
 def test_power_of_independent_pairs(difference, pairs):
-    source = Assumed(accuracy=0.7, difference=difference, correlation=0.0, rows=1, pairs=1)
+    source = AssumedRates(accuracy=0.7, difference=difference, correlation=0.0, rows=1, pairs=1)
     simulations = 800
     (found,) = power_rows([("x", source)], [pairs], simulations, 1)
     exact = second.mcnemar_power(0.7, 0.7 - difference, pairs)

@@ -8,13 +8,13 @@ from beliefnest.cli.console import progress_on
 from beliefnest.cli.terminal_text import say
 from beliefnest.studies.archive import write_zip
 from beliefnest.studies.bundling import bundled, facts_of, opened
-from beliefnest.studies.methods import Format, methods_text
+from beliefnest.studies.methods import MethodsForm, methods_text
 from beliefnest.world.words import counted
 
 __all__ = ["print_methods", "write_bundle"]
 
 
-def print_methods(folder: Path, form: Format) -> None:
+def print_methods(folder: Path, form: MethodsForm) -> None:
     """Print the paragraph for a methods section; raise InputError if there are no results."""
     say(methods_text(facts_of(opened(folder)), form))
 

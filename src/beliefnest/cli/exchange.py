@@ -13,8 +13,8 @@ from beliefnest.episodes.telling import goal_rows, round_rows, told_episode
 from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.past.trace_import import import_trace
-from beliefnest.timeline.export import Format, export
-from beliefnest.timeline.export_tables import BeliefRow, Row, program_row, prompt_row, run_row
+from beliefnest.timeline.export import ExportForm, export
+from beliefnest.timeline.export_tables import BeliefRow, TableRow, program_row, prompt_row, run_row
 from beliefnest.timeline.run_records import Records
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.trace import load_trace
@@ -30,9 +30,9 @@ def export_run(options: ExportOptions) -> None:
     Raises:
         BeliefNestError: There is no such run, path or format, or the folder cannot be written.
     """
-    if options.format not in get_args(Format):
+    if options.format not in get_args(ExportForm):
         raise InputError(
-            f"there is no format {options.format!r}; there are {', '.join(get_args(Format))}"
+            f"there is no format {options.format!r}; there are {', '.join(get_args(ExportForm))}"
         )
     store, paths = store_in(options.run), options.path or ()
     # The run may still be recorded: read all tables from one moment.
@@ -42,7 +42,7 @@ def export_run(options: ExportOptions) -> None:
             parse_path(path, nest.agents)
         counts = export(
             journal,
-            cast(Format, options.format),
+            cast(ExportForm, options.format),
             options.out,
             registry=Registry.load(),
             first=nest.setting.snapshot,
@@ -53,13 +53,13 @@ def export_run(options: ExportOptions) -> None:
         say(f"{table}: {count}\n")
 
 
-def _notes(records: Records) -> Iterator[Row]:
+def _notes(records: Records) -> Iterator[TableRow]:
     yield run_row(records.run(), records.versions())
     yield from map(program_row, records.programs())
     yield from map(prompt_row, records.prompts())
 
 
-def _rounds(nest: RecordedNest) -> Iterator[Row]:
+def _rounds(nest: RecordedNest) -> Iterator[TableRow]:
     """Yield the decisions of an episode's rounds, and the tick at which its goal was reached."""
     told = told_episode(nest)
     if told is not None:

@@ -15,11 +15,11 @@ from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.locking import holding
-from beliefnest.pictures.scatter import Point, ScatterPanel, ScatterRow, scatter_figure
+from beliefnest.pictures.scatter import Dot, ScatterPanel, ScatterRow, scatter_figure
 from beliefnest.studies.plainframe import Typed, write_csv, write_parquet
 from beliefnest.suites import FILMS
-from beliefnest.suites.films.agreement import PUBLISHED, Agreement, agreement, interval
-from beliefnest.suites.films.film import ABOUT, About, Film, FilmParameters, grid_for
+from beliefnest.suites.films.agreement import PUBLISHED, JudgesAgreement, agreement, interval
+from beliefnest.suites.films.film import ABOUT, Film, FilmParameters, JudgedPart, grid_for
 from beliefnest.suites.films.film_files import read_films
 from beliefnest.suites.films.film_inference import LESIONS, Judgment, Lesion, judge
 
@@ -31,12 +31,12 @@ _WORDS: Mapping[Lesion | None, str] = {
     "true_belief": "true belief",
     "no_cost": "no cost",
 }
-_SINGULAR: Mapping[About, str] = {
+_SINGULAR: Mapping[JudgedPart, str] = {
     "desires": "desire",
     "beliefs": "belief",
     "locations": "location",
 }
-_AXES: Mapping[About, tuple[str, str]] = {
+_AXES: Mapping[JudgedPart, tuple[str, str]] = {
     "desires": ("model: expected utility", "people: rating"),
     "beliefs": ("model: expected credence", "people: credence"),
     "locations": ("model: probability", "people: probability"),
@@ -241,15 +241,15 @@ def _scatter_rows(
     return rows
 
 
-def _points(pairs: Agreement) -> list[Point]:
+def _points(pairs: JudgesAgreement) -> list[Dot]:
     columns = (pairs.model.tolist(), pairs.people.tolist(), pairs.names, pairs.errors.tolist())
     return [
-        Point(x, y, name, 0.0 if math.isnan(error) else error)
+        Dot(x, y, name, 0.0 if math.isnan(error) else error)
         for x, y, name, error in zip(*columns, strict=True)
     ]
 
 
-def _coefficient(pairs: Agreement, seed: int) -> str:
+def _coefficient(pairs: JudgesAgreement, seed: int) -> str:
     ends = interval(pairs, seed)
     r = None if math.isnan(pairs.r) else pairs.r
     told = [f"r = {_r_text(r)}", f"n = {len(pairs.names)}"]
@@ -317,7 +317,7 @@ def _alone(judgments: Sequence[Judgment]) -> Table:
     table = Table(title="films without judgments of people", title_justify="left")
     table.box = box.SIMPLE_HEAVY
     table.add_column("film")
-    shown: list[About] = [a for a in ABOUT if any(a in each.model for each in judgments)]
+    shown: list[JudgedPart] = [a for a in ABOUT if any(a in each.model for each in judgments)]
     for about in shown:
         table.add_column(about)
     for each in judgments:
@@ -330,7 +330,7 @@ def _film_text(film: Film) -> str:
     return film.name if film.scored else f"{film.name} (not scored)"
 
 
-def _means(judgment: Judgment, about: About) -> str:
+def _means(judgment: Judgment, about: JudgedPart) -> str:
     digits = 1 if about == "desires" else 3
     means = judgment.model.get(about, {})
     return ", ".join(f"{name} {value:.{digits}f}" for name, value in means.items())

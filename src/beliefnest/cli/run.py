@@ -59,7 +59,7 @@ _MOST_TIMES = 10_000
 _HOTTEST = 10.0
 """Greatest temperature; more than any provider accepts."""
 
-Status = Literal["running", "done", "failed", "interrupted"]
+RunStatus = Literal["running", "done", "failed", "interrupted"]
 
 
 def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
@@ -102,7 +102,7 @@ def _run_in(
     first, settings = scenarios[0], options.settings
     run = _Run(options, folder)
     cells = plan_run_cells(scenarios, options.named_models, options.repeat, options.seed)
-    status: Status = "failed"
+    status: RunStatus = "failed"
     try:
         with (
             noted_warnings() as warned,

@@ -20,7 +20,7 @@ from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.archive import damaged_files, unpack
 from beliefnest.studies.bundling import Results, kind_of, opened
-from beliefnest.studies.comparing import ERROR, Difference, differing_contents, differing_rows
+from beliefnest.studies.comparing import ERROR, PairedDifference, differing_contents, differing_rows
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
 from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.methods import run_facts
@@ -109,7 +109,7 @@ def _code_of(result: Results) -> list[Code]:
 
 
 def _report(
-    found: Reproduction, differences: Sequence[Difference], other: Mapping[str, Any]
+    found: Reproduction, differences: Sequence[PairedDifference], other: Mapping[str, Any]
 ) -> dict[str, Any]:
     return {
         "equal": not differences,
@@ -124,7 +124,7 @@ def _report(
 
 
 def _lines(
-    found: Reproduction, differences: Sequence[Difference], other: Mapping[str, Any]
+    found: Reproduction, differences: Sequence[PairedDifference], other: Mapping[str, Any]
 ) -> Iterator[str]:
     for name, (before, now) in other.items():
         yield f"other version: {name} {before}, now {now}"
@@ -236,7 +236,7 @@ def _replaying(result: RunResult, folder: Path) -> dict[str, str]:
 
 def _differences(
     recorded: RunResult, again: RunResult, models: Mapping[str, str]
-) -> Iterator[Difference]:
+) -> Iterator[PairedDifference]:
     file = recorded.folder / "rows.csv"
     if file.is_file():
         yield from differing_rows(
@@ -254,6 +254,6 @@ def _differences(
         where = f"run.json, runs.{number}"
         known = key(before, models[before["model"]])
         if known in failed:
-            yield Difference(where, ERROR, None, failed[known])
+            yield PairedDifference(where, ERROR, None, failed[known])
         else:
             yield from differing_contents(before, after.get(known, {}), where, _OF_MACHINE)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width
 from beliefnest.pictures.marks import XY, Lines, Rectangle, Text
 from beliefnest.pictures.palette import INK, PAPER, QUIET, mix
-from beliefnest.pictures.panel import Block, paragraph
+from beliefnest.pictures.panel import PanelBlock, paragraph
 
 __all__ = ["BarChart", "BarGroup", "draw_bars", "number_text"]
 
@@ -52,7 +52,7 @@ def number_text(value: float, digits: int = 2) -> str:
     return f"{round(value, digits) + 0.0:g}"
 
 
-def draw_bars(chart: BarChart, at: XY, width: float, size: float) -> Block:
+def draw_bars(chart: BarChart, at: XY, width: float, size: float) -> PanelBlock:
     """Draw the bars of a posterior, with a name to the left and a value to the right of each.
 
     Args:
@@ -62,7 +62,7 @@ def draw_bars(chart: BarChart, at: XY, width: float, size: float) -> Block:
         size: Size of texts in points.
     """
     left, top = at
-    block = Block(bottom=top)
+    block = PanelBlock(bottom=top)
     paragraph(block, chart.title, left, width, size * 1.15, bold=True)
     paragraph(block, chart.note, left, width, size * 0.95, QUIET)
     names = [name for group in chart.groups for name in group.bars]

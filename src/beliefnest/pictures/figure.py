@@ -9,7 +9,7 @@ from beliefnest.files import replace_file
 from beliefnest.pictures.bars import BarChart, draw_bars
 from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import XY, Drawing, scaled
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import agent_looks
 from beliefnest.pictures.panel import draw_panel, draw_title
 from beliefnest.pictures.scene import Scene

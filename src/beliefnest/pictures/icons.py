@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from beliefnest.pictures.lettering import ASCENT, text_width
 from beliefnest.pictures.marks import XY, Bounds, Circle, Lines, Polygon, Rectangle, Text
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, AgentLook, Mark, mix
 from beliefnest.pictures.scene import Device, Store
 

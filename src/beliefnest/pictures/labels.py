@@ -7,7 +7,7 @@ from beliefnest.pictures.lettering import ASCENT, DESCENT
 from beliefnest.pictures.marks import XY, Bounds
 from beliefnest.pictures.room import Room, near
 
-__all__ = ["LINE", "Label", "Put", "leader", "put_labels"]
+__all__ = ["LINE", "Label", "PlacedLabel", "leader", "put_labels"]
 
 LINE = ASCENT + DESCENT
 """Distance between the lines of a label, relative to the text size."""
@@ -33,7 +33,7 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
-class Put:
+class PlacedLabel:
     """A placed label.
 
     Attributes:
@@ -47,7 +47,7 @@ class Put:
     beside: bool
 
 
-def put_labels(labels: Sequence[Label], room: Room, *, only_beside: bool) -> list[Put]:
+def put_labels(labels: Sequence[Label], room: Room, *, only_beside: bool) -> list[PlacedLabel]:
     """Place labels, as many as possible beside their icons.
 
     A label without room at its icon goes to the nearest free place, or nowhere if `only_beside` is
@@ -55,7 +55,7 @@ def put_labels(labels: Sequence[Label], room: Room, *, only_beside: bool) -> lis
     runs several times: labels that found no room beside their icons are placed first in the next
     try. The best try wins.
     """
-    best: list[Put] = []
+    best: list[PlacedLabel] = []
     first: list[Label] = []
     for number in range(_TRIES):
         put = _arranged(labels, first, room, only_beside=only_beside)
@@ -70,13 +70,13 @@ def put_labels(labels: Sequence[Label], room: Room, *, only_beside: bool) -> lis
 
 def _arranged(
     labels: Sequence[Label], first: Sequence[Label], free: Room, *, only_beside: bool
-) -> list[Put]:
+) -> list[PlacedLabel]:
     """Place labels greedily: those in `first`, then always the label with the fewest places."""
     room = free.copy()
     waiting = [*first, *(label for label in labels if label not in first)]
     # Places only ever become fewer, so each label keeps its list.
     left = [room.beside(label.icon, *label.size) for label in waiting]
-    put: list[Put] = []
+    put: list[PlacedLabel] = []
     while waiting:
         chooses = len(put) >= len(first)
         number = (
@@ -92,7 +92,7 @@ def _arranged(
             x0, y0, x1, y1 = label.icon
             spot = room.spot(((x0 + x1) / 2, (y0 + y1) / 2), wide, high)
             at = None if spot is None else (spot[0] - wide / 2, spot[1] - high / 2)
-        put.append(Put(label, at, beside=bool(found)))
+        put.append(PlacedLabel(label, at, beside=bool(found)))
         if at is not None:
             new = (*at, at[0] + wide, at[1] + high)
             left = [
@@ -102,7 +102,7 @@ def _arranged(
     return put
 
 
-def leader(put: Put) -> tuple[XY, XY]:
+def leader(put: PlacedLabel) -> tuple[XY, XY]:
     """Return the line from an icon to its label."""
     assert put.at is not None
     (x0, y0, x1, y1), at, size = put.label.icon, put.at, put.label.size

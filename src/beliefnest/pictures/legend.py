@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Mapping
 from beliefnest.pictures import icons
 from beliefnest.pictures.lettering import ASCENT, text_width
 from beliefnest.pictures.marks import XY, Circle, Lines, Polygon, Rectangle, Text
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, mix
-from beliefnest.pictures.panel import Block
+from beliefnest.pictures.panel import PanelBlock
 from beliefnest.pictures.plan import hatching, heat_colour
 from beliefnest.pictures.scene import Device, Store
 
@@ -23,7 +23,7 @@ def draw_legend(
     width: float,
     size: float,
     words: Mapping[str, str] | None = None,
-) -> Block:
+) -> PanelBlock:
     """Draw signs with their meanings, as many in a line as fit.
 
     Args:
@@ -35,7 +35,7 @@ def draw_legend(
         words: Meanings of signs that replace the usual ones.
     """
     left, top = at
-    block = Block(bottom=top)
+    block = PanelBlock(bottom=top)
     x = left
     height = size * 1.2
     for kind in sorted(kinds, key=_order):

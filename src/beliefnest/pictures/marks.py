@@ -16,12 +16,12 @@ __all__ = [
     "Bounds",
     "Circle",
     "Drawing",
+    "DrawnMark",
     "Lines",
-    "Mark",
+    "MarkRole",
     "Pixels",
     "Polygon",
     "Rectangle",
-    "Role",
     "Text",
     "scaled",
 ]
@@ -30,7 +30,7 @@ XY = tuple[float, float]
 Bounds = tuple[float, float, float, float]
 """Left, top, right, bottom."""
 
-Role = Literal["area", "line", "icon", "part", "text", "card"]
+MarkRole = Literal["area", "line", "icon", "part", "text", "card"]
 """Purpose of a mark. `part` is a piece of an icon, including letters inside it; `text` stands
 alone."""
 
@@ -48,7 +48,7 @@ class Rectangle:
     thick: float = 0.5
     radius: float = 0.0
     dash: float = 0.0
-    role: Role = "area"
+    role: MarkRole = "area"
 
     @property
     def bounds(self) -> Bounds:
@@ -67,7 +67,7 @@ class Circle:
     stroke: str | None = None
     thick: float = 0.5
     dash: float = 0.0
-    role: Role = "part"
+    role: MarkRole = "part"
 
     @property
     def bounds(self) -> Bounds:
@@ -86,7 +86,7 @@ class Polygon:
     thick: float = 0.5
     dash: float = 0.0
     closed: bool = True
-    role: Role = "part"
+    role: MarkRole = "part"
 
     @property
     def bounds(self) -> Bounds:
@@ -102,7 +102,7 @@ class Lines:
     segments: tuple[tuple[XY, XY], ...]
     stroke: str
     thick: float = 0.5
-    role: Role = "line"
+    role: MarkRole = "line"
 
     @property
     def bounds(self) -> Bounds:
@@ -123,7 +123,7 @@ class Text:
     bold: bool = False
     anchor: Literal["start", "middle", "end"] = "start"
     halo: str | None = None
-    role: Role = "text"
+    role: MarkRole = "text"
 
     @property
     def width(self) -> float:
@@ -163,7 +163,7 @@ class Pixels:
     height: float
     columns: int
     colours: bytes
-    role: Role = "area"
+    role: MarkRole = "area"
 
     @property
     def bounds(self) -> Bounds:
@@ -176,7 +176,7 @@ class Pixels:
         return len(self.colours) // (3 * self.columns)
 
 
-Mark = Rectangle | Circle | Polygon | Lines | Text | Pixels
+DrawnMark = Rectangle | Circle | Polygon | Lines | Text | Pixels
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,10 +192,10 @@ class Drawing:
 
     width: float
     height: float
-    marks: tuple[Mark, ...]
+    marks: tuple[DrawnMark, ...]
     title: str = ""
 
-    def having(self, *roles: Role) -> Iterator[Mark]:
+    def having(self, *roles: MarkRole) -> Iterator[DrawnMark]:
         """Yield the marks with some roles."""
         return (mark for mark in self.marks if mark.role in roles)
 
@@ -213,7 +213,7 @@ def scaled(drawing: Drawing, factor: float) -> Drawing:
 _LENGTHS = ("x", "y", "width", "height", "thick", "radius", "dash", "size")
 
 
-def _scaled(mark: Mark, factor: float) -> Mark:
+def _scaled(mark: DrawnMark, factor: float) -> DrawnMark:
     given: dict[str, Any] = {
         name: getattr(mark, name) * factor for name in mark.__dataclass_fields__ if name in _LENGTHS
     }

@@ -7,9 +7,9 @@ from beliefnest.pictures import icons
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure, columns_for
 from beliefnest.pictures.legend import draw_legend
 from beliefnest.pictures.marks import XY, Drawing, Rectangle
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, PAPER, QUIET, AgentLook, Mark, agent_looks, mix
-from beliefnest.pictures.panel import Block, paragraph
+from beliefnest.pictures.panel import PanelBlock, paragraph
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Scene, Store
 
@@ -94,7 +94,7 @@ class _Page:
     marks: list[Drawn]
     kinds: set[str]
 
-    def add(self, block: Block) -> None:
+    def add(self, block: PanelBlock) -> None:
         self.marks += block.marks
         self.kinds |= block.kinds
 
@@ -102,7 +102,7 @@ class _Page:
 def _draw(conditions: Sequence[ConditionPicture], title: str, width: float) -> Drawing:
     page = _Page(agent_looks(conditions[0].scene.agents), [], set())
     inner = width - 2 * MARGIN
-    head = Block(bottom=MARGIN)
+    head = PanelBlock(bottom=MARGIN)
     if len(conditions) > 1:
         paragraph(head, title, MARGIN, inner, TEXT_SIZE * 1.6, bold=True)
     page.add(head)
@@ -133,7 +133,7 @@ def _row(
         plan = draw_plan(each.scene, page.looks, (left, level), wide, TEXT_SIZE, each.trails)
         page.marks += plan.marks
         page.kinds |= plan.kinds
-        below = Block(bottom=plan.bottom + 4)
+        below = PanelBlock(bottom=plan.bottom + 4)
         if plan.unnamed:
             words = f"too close for a name: {', '.join(plan.unnamed)}"
             paragraph(below, words, left, wide, TEXT_SIZE)
@@ -183,7 +183,7 @@ def _beside(page: _Page, condition: ConditionPicture, at: XY, inner: float) -> f
     plan = draw_plan(condition.scene, page.looks, (left, level), wide, TEXT_SIZE, condition.trails)
     page.marks += plan.marks
     page.kinds |= plan.kinds
-    story = Block(bottom=plan.bottom + 5)
+    story = PanelBlock(bottom=plan.bottom + 5)
     if plan.unnamed:
         paragraph(story, f"too close for a name: {', '.join(plan.unnamed)}", left, wide, TEXT_SIZE)
     for number, step in enumerate(condition.story, start=1):
@@ -196,8 +196,8 @@ def _beside(page: _Page, condition: ConditionPicture, at: XY, inner: float) -> f
     return max(bottom, story.bottom, top)
 
 
-def _head(condition: ConditionPicture, at: XY, width: float) -> Block:
-    block = Block(bottom=at[1])
+def _head(condition: ConditionPicture, at: XY, width: float) -> PanelBlock:
+    block = PanelBlock(bottom=at[1])
     paragraph(block, condition.title, at[0], width, TEXT_SIZE * 1.2, bold=True)
     paragraph(block, condition.about, at[0], width, TEXT_SIZE, QUIET)
     words = f"the real world at tick {condition.scene.tick}, after the script"
@@ -219,9 +219,9 @@ def _cards(page: _Page, cards: Sequence[tuple[Card, float]], top: float, width: 
     return bottom
 
 
-def _card(card: Card, at: XY, width: float) -> Block:
+def _card(card: Card, at: XY, width: float) -> PanelBlock:
     left, top = at
-    block = Block(bottom=top + _INSET)
+    block = PanelBlock(bottom=top + _INSET)
     inner = width - 2 * _INSET
     radius = TEXT_SIZE * 0.6
     room = inner if card.ok is None else inner - 2.6 * radius
@@ -240,7 +240,7 @@ def _card(card: Card, at: XY, width: float) -> Block:
     return block
 
 
-def _note(block: Block, note: Note, left: float, width: float) -> None:
+def _note(block: PanelBlock, note: Note, left: float, width: float) -> None:
     if not note.false:
         paragraph(block, note.text, left, width, TEXT_SIZE)
         return
@@ -252,7 +252,7 @@ def _note(block: Block, note: Note, left: float, width: float) -> None:
     paragraph(block, note.text, left + inset, width - inset, TEXT_SIZE)
 
 
-def _store(block: Block, store: Store, left: float, width: float) -> None:
+def _store(block: PanelBlock, store: Store, left: float, width: float) -> None:
     icon = TEXT_SIZE * 1.2
     false = store.mark is Mark.FALSE
     # Put the sign before the words, as with all false entries of a card.

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from beliefnest.pictures import icons
 from beliefnest.pictures.lettering import ASCENT, text_width, wrap
 from beliefnest.pictures.marks import XY, Text
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import (
     INK,
     MARKS,
@@ -20,7 +20,7 @@ from beliefnest.pictures.palette import (
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Device, DrawnAgent, Scene, Store
 
-__all__ = ["Block", "belief_words", "draw_body", "draw_panel", "draw_title", "paragraph"]
+__all__ = ["PanelBlock", "belief_words", "draw_body", "draw_panel", "draw_title", "paragraph"]
 
 _LINE = 1.32
 _MOST = 12
@@ -28,7 +28,7 @@ _MOST = 12
 
 
 @dataclass
-class Block:
+class PanelBlock:
     """Part of a page under construction, from the top downwards.
 
     Attributes:
@@ -49,7 +49,7 @@ def belief_words(path: str) -> str:
 
 
 def paragraph(
-    block: Block,
+    block: PanelBlock,
     text: str,
     left: float,
     width: float,
@@ -71,7 +71,7 @@ def draw_panel(
     width: float,
     size: float,
     plan_at: float = 0.0,
-) -> Block:
+) -> PanelBlock:
     """Draw the panel of a scene.
 
     Args:
@@ -85,7 +85,7 @@ def draw_panel(
     title = draw_title(scene, at, width, size)
     begin = max(title.bottom + 1.5, plan_at)
     body = draw_body(scene, looks, (at[0], begin), width, size)
-    return Block([*title.marks, *body.marks], body.bottom, body.kinds)
+    return PanelBlock([*title.marks, *body.marks], body.bottom, body.kinds)
 
 
 def draw_body(
@@ -96,7 +96,7 @@ def draw_body(
     size: float,
     trails: Mapping[str, tuple[XY, ...]] | None = None,
     listed: Sequence[Store] | None = None,
-) -> Block:
+) -> PanelBlock:
     """Draw the panel of a scene without its title.
 
     Args:
@@ -110,7 +110,7 @@ def draw_body(
     """
     left, top = at
     plan = draw_plan(scene, looks, (left, top), width, size, trails)
-    block = Block(list(plan.marks), plan.bottom + size * 0.7, set(plan.kinds))
+    block = PanelBlock(list(plan.marks), plan.bottom + size * 0.7, set(plan.kinds))
     below = scene if listed is None else replace(scene, stores=tuple(listed))
     _margin(block, below, looks, left, width, size)
     if plan.unnamed:
@@ -118,10 +118,10 @@ def draw_body(
     return block
 
 
-def draw_title(scene: Scene, at: XY, width: float, size: float) -> Block:
+def draw_title(scene: Scene, at: XY, width: float, size: float) -> PanelBlock:
     """Draw the head of a panel: path, meaning of the path, tick."""
     left, top = at
-    block = Block(bottom=top)
+    block = PanelBlock(bottom=top)
     paragraph(block, scene.path, left, width, size * 1.15, bold=True)
     note = f", {scene.note}" if scene.note else ""
     words = f"{belief_words(scene.path)}, tick {scene.tick}{note}"
@@ -130,7 +130,7 @@ def draw_title(scene: Scene, at: XY, width: float, size: float) -> Block:
 
 
 def _margin(
-    block: Block,
+    block: PanelBlock,
     scene: Scene,
     looks: Mapping[str, AgentLook],
     left: float,
@@ -157,7 +157,7 @@ def _margin(
 
 
 def _store_line(
-    block: Block, store: Store, against: str, left: float, width: float, size: float
+    block: PanelBlock, store: Store, against: str, left: float, width: float, size: float
 ) -> None:
     """Draw a container: icon, name, known contents, and the contents elsewhere."""
     icon = size * 1.15
@@ -176,7 +176,7 @@ def _store_line(
 
 
 def _device_line(
-    block: Block, shown: Device, against: str, line: tuple[float, float, float]
+    block: PanelBlock, shown: Device, against: str, line: tuple[float, float, float]
 ) -> None:
     """Draw a false device: its believed state, the speaker, and its state elsewhere."""
     assert shown.false is not None
@@ -194,7 +194,7 @@ def _device_line(
 
 
 def _person_line(
-    block: Block,
+    block: PanelBlock,
     look: AgentLook,
     wrong: tuple[str, str],
     against: str,
@@ -220,7 +220,7 @@ def _person_line(
     block.bottom = max(block.bottom, top + 2 * radius) + 0.8
 
 
-def _false_line(block: Block, text: str, left: float, right: float, size: float) -> None:
+def _false_line(block: PanelBlock, text: str, left: float, right: float, size: float) -> None:
     radius = size * 0.34
     at = (left + radius * 1.35, block.bottom + size * 0.45)
     block.marks += icons.false_sign(at, radius)
@@ -230,7 +230,7 @@ def _false_line(block: Block, text: str, left: float, right: float, size: float)
 
 
 def _lost_line(
-    block: Block,
+    block: PanelBlock,
     lost: list[DrawnAgent],
     looks: Mapping[str, AgentLook],
     left: float,

@@ -7,8 +7,8 @@ from beliefnest.pictures.lettering import font_bytes, lettered
 from beliefnest.pictures.marks import (
     Circle,
     Drawing,
+    DrawnMark,
     Lines,
-    Mark,
     Pixels,
     Polygon,
     Rectangle,
@@ -42,7 +42,7 @@ def pdf_bytes(drawing: Drawing) -> bytes:
     return out.getvalue()
 
 
-def _draw(canvas: Any, height: float, mark: Mark) -> None:
+def _draw(canvas: Any, height: float, mark: DrawnMark) -> None:
     """Draw a mark on a reportlab canvas, whose y axis points up."""
     match mark:
         case Text():

@@ -10,10 +10,10 @@ import numpy as np
 
 from beliefnest.belief.grounds import Source
 from beliefnest.pictures import icons
-from beliefnest.pictures.labels import LINE, Label, Put, leader, put_labels
+from beliefnest.pictures.labels import LINE, Label, PlacedLabel, leader, put_labels
 from beliefnest.pictures.lettering import ASCENT, text_width
 from beliefnest.pictures.marks import XY, Bounds, Lines, Pixels, Polygon, Rectangle, Text
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import (
     INK,
     MARKS,
@@ -545,7 +545,7 @@ class _Sheet:
         for each in put_labels(self._labels, self._room, only_beside=only_beside):
             self._write(each)
 
-    def _write(self, put: Put) -> None:
+    def _write(self, put: PlacedLabel) -> None:
         label = put.label
         if put.at is None:
             self.unnamed.append(" ".join(text for text, _ in label.lines))

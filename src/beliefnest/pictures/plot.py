@@ -8,9 +8,9 @@ from beliefnest.pictures import icons
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width, wrap
 from beliefnest.pictures.marks import XY, Drawing, Lines, Rectangle, Text
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, Mark, colours_of, mix
-from beliefnest.pictures.panel import Block, paragraph
+from beliefnest.pictures.panel import PanelBlock, paragraph
 from beliefnest.pictures.plan import hatching
 from beliefnest.pictures.time_axis import NotedAct, TimeAxis
 
@@ -75,7 +75,7 @@ def belief_plot(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str) -
 
 
 def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: float) -> Drawing:
-    head = Block(bottom=MARGIN)
+    head = PanelBlock(bottom=MARGIN)
     paragraph(head, title, MARGIN, width - 2 * MARGIN, TEXT_SIZE * 1.2, bold=True)
     # Put names beside their rows if that leaves most of the width to the rows, else above.
     widest = max(text_width(row.path, TEXT_SIZE, bold=True) for row in rows)
@@ -94,7 +94,7 @@ def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: 
             base = top + _HIGH / 2 + TEXT_SIZE * ASCENT * 0.48
             marks.append(Text(MARGIN, base, row.path, TEXT_SIZE, INK, bold=True))
         else:
-            block = Block(bottom=top)
+            block = PanelBlock(bottom=top)
             paragraph(block, row.path, MARGIN, width - 2 * MARGIN, TEXT_SIZE, bold=True)
             marks += block.marks
             top = block.bottom + above

@@ -8,9 +8,9 @@ from beliefnest.pictures.bars import number_text
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width
 from beliefnest.pictures.marks import XY, Drawing, Lines, Polygon, Rectangle, Text
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, PAPER, QUIET, mix
-from beliefnest.pictures.panel import Block, paragraph
+from beliefnest.pictures.panel import PanelBlock, paragraph
 from beliefnest.pictures.time_axis import NotedAct, TimeAxis
 
 __all__ = ["PosteriorPanel", "posterior_plot"]
@@ -65,7 +65,7 @@ def posterior_plot(
 def _draw(
     panels: Sequence[PosteriorPanel], end: int, notes: Sequence[NotedAct], title: str, width: float
 ) -> Drawing:
-    head = Block(bottom=MARGIN)
+    head = PanelBlock(bottom=MARGIN)
     paragraph(head, title, MARGIN, width - 2 * MARGIN, TEXT_SIZE * 1.2, bold=True)
     marks: list[Drawn] = list(head.marks)
     scales = [number_text(value) for panel in panels for value in (panel.low, panel.high)]

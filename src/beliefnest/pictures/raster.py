@@ -13,8 +13,8 @@ from beliefnest.pictures.marks import (
     XY,
     Circle,
     Drawing,
+    DrawnMark,
     Lines,
-    Mark,
     Pixels,
     Polygon,
     Rectangle,
@@ -60,7 +60,7 @@ class _Pen:
         self._draw = ImageDraw.Draw(image)
         self._scale = scale
 
-    def draw(self, mark: Mark) -> None:
+    def draw(self, mark: DrawnMark) -> None:
         """Draw one mark."""
         match mark:
             case Text():

@@ -11,7 +11,15 @@ from beliefnest.belief.view import State
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
 
-__all__ = ["NOWHERE", "UNKNOWN", "Relief", "Window", "is_wide", "read_relief", "standing_columns"]
+__all__ = [
+    "NOWHERE",
+    "UNKNOWN",
+    "Relief",
+    "ReliefWindow",
+    "is_wide",
+    "read_relief",
+    "standing_columns",
+]
 
 WIDE = 64
 """Width or depth in blocks from which plans show the ground in place of one storey. The page has
@@ -35,7 +43,7 @@ _Numbers = npt.NDArray[np.int32]
 _CELLS = 4_000_000
 """Number of blocks that are looked at together."""
 
-Window = tuple[tuple[int, int], tuple[int, int]]
+ReliefWindow = tuple[tuple[int, int], tuple[int, int]]
 """Lowest and highest x and z of a part of a box."""
 
 
@@ -62,7 +70,7 @@ def is_wide(box: Box) -> bool:
 
 
 def read_relief(
-    state: State, window: Window, height: int, sights: Mapping[str, npt.NDArray[np.bool_]]
+    state: State, window: ReliefWindow, height: int, sights: Mapping[str, npt.NDArray[np.bool_]]
 ) -> tuple[Relief, Mapping[str, npt.NDArray[np.bool_]]]:
     """Return the ground of a state from a height downwards, and who sees which column of it.
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from beliefnest.pictures.figure import MARGIN, TEXT_SIZE, Figure, columns_for
 from beliefnest.pictures.lettering import ASCENT, text_width
 from beliefnest.pictures.marks import XY, Circle, Drawing, Lines, Rectangle, Text
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import AGENT_COLOURS, INK, PAPER, QUIET, mix
-from beliefnest.pictures.panel import Block, paragraph
+from beliefnest.pictures.panel import PanelBlock, paragraph
 
-__all__ = ["Point", "ScatterPanel", "ScatterRow", "scatter_figure"]
+__all__ = ["Dot", "ScatterPanel", "ScatterRow", "scatter_figure"]
 
 _PANEL = 104.0
 """Least width of a panel, in points."""
@@ -25,7 +25,7 @@ _PAD = 0.06
 
 
 @dataclass(frozen=True, slots=True)
-class Point:
+class Dot:
     """A dot.
 
     Attributes:
@@ -53,7 +53,7 @@ class ScatterPanel:
 
     title: str
     note: str
-    points: Sequence[Point]
+    points: Sequence[Dot]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ def scatter_figure(rows: Sequence[ScatterRow], about: str) -> Figure:
 
 
 def _draw(rows: Sequence[ScatterRow], width: float, about: str) -> Drawing:
-    block = Block(bottom=MARGIN)
+    block = PanelBlock(bottom=MARGIN)
     inner = width - 2 * MARGIN
     paragraph(block, about, MARGIN, inner, TEXT_SIZE * 1.2, bold=True)
     for row in rows:
@@ -86,7 +86,7 @@ def _draw(rows: Sequence[ScatterRow], width: float, about: str) -> Drawing:
     return Drawing(width, block.bottom + MARGIN, tuple(block.marks), about)
 
 
-def _row(block: Block, row: ScatterRow, inner: float) -> None:
+def _row(block: PanelBlock, row: ScatterRow, inner: float) -> None:
     points = [point for panel in row.panels for point in panel.points]
     kinds = tuple(dict.fromkeys(point.kind for point in points))
     xs = _axis(point.x for point in points)
@@ -98,7 +98,7 @@ def _row(block: Block, row: ScatterRow, inner: float) -> None:
         shown = row.panels[start : start + columns]
         heads = []
         for number, panel in enumerate(shown):
-            head = Block(bottom=top)
+            head = PanelBlock(bottom=top)
             left = MARGIN + number * (wide + _GAP)
             paragraph(head, panel.title, left, wide, TEXT_SIZE, bold=True)
             paragraph(head, panel.note, left, wide, TEXT_SIZE, QUIET)
@@ -145,7 +145,7 @@ class _Chart:
         )
 
     def draw(
-        self, block: Block, row: ScatterRow, points: Sequence[Point], kinds: Sequence[str]
+        self, block: PanelBlock, row: ScatterRow, points: Sequence[Dot], kinds: Sequence[str]
     ) -> None:
         """Append the panel to a block."""
         left, top, wide, high = self._area
@@ -186,7 +186,7 @@ class _Chart:
         block.bottom = max(block.bottom, across + TEXT_SIZE * 0.5)
 
 
-def _legend(block: Block, kinds: Sequence[str], inner: float) -> None:
+def _legend(block: PanelBlock, kinds: Sequence[str], inner: float) -> None:
     x, top = MARGIN, block.bottom + 2
     for kind in kinds:
         taken = 2 * _DOT + 4 + text_width(kind, TEXT_SIZE)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.pictures.palette import Mark
-from beliefnest.pictures.relief import Relief, Window, is_wide, read_relief
+from beliefnest.pictures.relief import Relief, ReliefWindow, is_wide, read_relief
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_words
@@ -355,7 +355,7 @@ class _Ground:
 
 def _ground(
     state: State,
-    window: Window,
+    window: ReliefWindow,
     level: int,
     wrong: Mapping[Position | str, Wrong],
     sights: Mapping[str, npt.NDArray[np.bool_]],
@@ -386,7 +386,7 @@ def _ground(
     return _Ground(cells, {name: seen[cut] for name, seen in sights.items()}, standing)
 
 
-def _window(state: State, places: Mapping[str, Position]) -> Window:
+def _window(state: State, places: Mapping[str, Position]) -> ReliefWindow:
     """Return the corners of the plan: the box, or the part of it around things and agents."""
     (x0, _, z0), (x1, _, z1) = state.box.low, state.box.high
     if max(x1 - x0, z1 - z0) < _WIDEST:

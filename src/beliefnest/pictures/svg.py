@@ -7,8 +7,8 @@ from beliefnest.pictures.lettering import FAMILIES
 from beliefnest.pictures.marks import (
     Circle,
     Drawing,
+    DrawnMark,
     Lines,
-    Mark,
     Pixels,
     Polygon,
     Rectangle,
@@ -53,7 +53,7 @@ def svg_text(drawing: Drawing, *, inline: bool = False) -> str:
     return ElementTree.tostring(root, encoding="unicode")
 
 
-def _add(root: ElementTree.Element, mark: Mark) -> None:
+def _add(root: ElementTree.Element, mark: DrawnMark) -> None:
     match mark:
         case Rectangle():
             given = {"x": mark.x, "y": mark.y, "width": mark.width, "height": mark.height}

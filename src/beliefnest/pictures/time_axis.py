@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from beliefnest.pictures.figure import TEXT_SIZE
 from beliefnest.pictures.lettering import ASCENT, ellipsis, text_width
 from beliefnest.pictures.marks import XY, Lines, Text
-from beliefnest.pictures.marks import Mark as Drawn
+from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, QUIET
 
 __all__ = ["NotedAct", "TimeAxis"]

@@ -14,7 +14,7 @@ from beliefnest.belief.grounds import (
 )
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import PathError, PositionError
-from beliefnest.prompts.observations import Found, Happened, Observation, Outset, Read, Sight
+from beliefnest.prompts.observations import Found, Happened, Observation, Outset, Read, SightChange
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
@@ -138,7 +138,7 @@ def example_branch() -> ExampleBranch:
             {"sally": (-0.5, -51, 3.5), "anne": (2.5, -51, -0.5)},
             {"sally": {"diamond": 1}, "anne": {"iron_helmet": 1}},
         ),
-        Sight(0, "sally", {"anne": (2.5, -51, -0.5)}, (_LEFT, _RIGHT, _SIGN)),
+        SightChange(0, "sally", {"anne": (2.5, -51, -0.5)}, (_LEFT, _RIGHT, _SIGN)),
         Read(0, _SIGN, "keep shut\nplease"),
         Happened(68, PerceivedEvent(68, EventKind.OPEN_CONTAINER, "sally", {"position": _LEFT})),
         Found(68, _LEFT, {}),
@@ -146,7 +146,7 @@ def example_branch() -> ExampleBranch:
         Happened(80, PerceivedEvent(80, EventKind.CHAT, "anne", {"text": "Where are you going?"})),
         Happened(95, PerceivedEvent(95, EventKind.CHAT, "sally", {"text": "Out. Back soon!"})),
         Happened(131, lever),
-        Sight(131, "sally", lost_agents={"anne": (2.5, -51, -5.5)}, lost_places=(_RIGHT,)),
+        SightChange(131, "sally", lost_agents={"anne": (2.5, -51, -5.5)}, lost_places=(_RIGHT,)),
     )
     return ExampleBranch(
         _state(("sally",), (deposit, lever), frozenset({_LEFT, _LEVER})),

@@ -8,11 +8,11 @@ from beliefnest.prompts.observations import Observation
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import Position
 
-__all__ = ["MindView", "Told"]
+__all__ = ["MindView", "ToldMind"]
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class ToldMind:
     """Observations of a simulator's owner, and the names that it has for things.
 
     Attributes:
@@ -44,11 +44,11 @@ class MindView:
     __slots__ = ("_below", "_told", "_told_once", "state")
 
     def __init__(
-        self, state: State, told: Callable[[], Told], below: Callable[[str], "MindView"]
+        self, state: State, told: Callable[[], ToldMind], below: Callable[[str], "MindView"]
     ) -> None:
         self.state = state
         self._told, self._below = told, below
-        self._told_once: Told | None = None
+        self._told_once: ToldMind | None = None
 
     @property
     def path(self) -> str:
@@ -95,7 +95,7 @@ class MindView:
         return self if agent == self.owner else self._below(agent)
 
     @property
-    def _read(self) -> Told:
+    def _read(self) -> ToldMind:
         if self._told_once is None:
             self._told_once = self._told()
         return self._told_once

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Final
 
 from beliefnest.belief.view import State
-from beliefnest.prompts.observations import Happened, Observation, Sight
+from beliefnest.prompts.observations import Happened, Observation, SightChange
 from beliefnest.prompts.simulator_view import blocks_where
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.double_chests import is_left_half
@@ -82,7 +82,7 @@ def _seen_kinds(observations: Iterable[Observation]) -> dict[Position, str]:
     """Return the kinds of the named things in observations, the latest of each position."""
     kinds: dict[Position, str] = {}
     for each in observations:
-        if isinstance(each, Sight):
+        if isinstance(each, SightChange):
             kinds |= each.kinds
         elif isinstance(each, Happened) and each.event.detail.get("position") is not None:
             block = block_name(str(each.event.detail.get("block") or each.block or ""))

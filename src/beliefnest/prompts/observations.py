@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = ["Assumed", "Found", "Happened", "Lying", "Observation", "Outset", "Read", "Sight"]
+__all__ = ["Assumed", "Found", "Happened", "Lying", "Observation", "Outset", "Read", "SightChange"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Assumed:
 
 
 @dataclass(frozen=True, slots=True)
-class Sight:
+class SightChange:
     """Change of what a viewer can see.
 
     Attributes:
@@ -112,4 +112,4 @@ class Happened:
     heard: tuple[str, ...] | None = None
 
 
-Observation = Outset | Assumed | Sight | Found | Read | Lying | Happened
+Observation = Outset | Assumed | SightChange | Found | Read | Lying | Happened

@@ -13,7 +13,7 @@ from beliefnest.prompts.observations import (
     Observation,
     Outset,
     Read,
-    Sight,
+    SightChange,
 )
 from beliefnest.prompts.simulator_view import BranchView
 from beliefnest.world.event_words import happened
@@ -91,7 +91,7 @@ def _scene(told: Sequence[Observation]) -> Iterator[Observation]:
     """Yield the observations before the first event and the first later change of sight."""
     first = told[0].tick if told else 0
     for each in told:
-        if isinstance(each, Happened) or (isinstance(each, Sight) and each.tick > first):
+        if isinstance(each, Happened) or (isinstance(each, SightChange) and each.tick > first):
             return
         yield each
 
@@ -114,14 +114,14 @@ def _rows(each: Observation, owner: str | None) -> Iterator[str]:
         case Lying(name=name, count=count, position=point):
             lying = text.mapping({name: count})
             yield f"{at};lying;-;position:{text.point(point)} & items:{lying}"
-        case Sight():
+        case SightChange():
             yield from _sight_rows(each, owner)
         case Happened(event=event):
             if not event.kind.is_speech:
                 yield event_rows.row(event)
 
 
-def _sight_rows(sight: Sight, owner: str | None) -> Iterator[str]:
+def _sight_rows(sight: SightChange, owner: str | None) -> Iterator[str]:
     seen = (
         ("visible", sight.agents, sight.places),
         ("lastSeen", sight.lost_agents, sight.lost_places),
@@ -166,12 +166,12 @@ class _Teller:
     def scene(self, told: Iterable[Observation]) -> Iterator[str]:
         """Yield sentences about the beginning."""
         all_ = list(told)
-        sights = [each for each in all_ if isinstance(each, Sight)]
+        sights = [each for each in all_ if isinstance(each, SightChange)]
         found = [each for each in all_ if isinstance(each, Found)]
         if self._owner is not None:
             yield from self._first_sights(sights)
         for each in all_:
-            if not isinstance(each, Sight | Found):
+            if not isinstance(each, SightChange | Found):
                 yield from self._one(each)
         yield from self._contents(found)
         yield from self._looks()
@@ -192,11 +192,11 @@ class _Teller:
             before: Earlier observations.
         """
         for sight in before:
-            if isinstance(sight, Sight):
+            if isinstance(sight, SightChange):
                 self._keep_sight(sight)
         groups = [list(group) for _, group in itertools.groupby(told, key=_sight_of)]
         for group in groups:
-            sights = [sight for sight in group if isinstance(sight, Sight)]
+            sights = [sight for sight in group if isinstance(sight, SightChange)]
             if sights:
                 yield from ((sights[0].tick, words) for words in self._changes(sights))
                 continue
@@ -237,7 +237,7 @@ class _Teller:
                 self._it = (event.actor, event.detail.get("position"))
                 if each.heard is not None:
                     yield self._told_to(each.heard, {event.actor})
-            case Sight():
+            case SightChange():
                 yield from self._changes([each])
             case Found(place=place, items=items):
                 thing = "it" if self._it == (self._owner, place) else self._thing(place)
@@ -284,7 +284,7 @@ class _Teller:
             if knowing or (self._owner is None and len(self._agents) > 1):
                 yield self._told_of(knowing, {name})
 
-    def _first_sights(self, sights: Sequence[Sight]) -> Iterator[str]:
+    def _first_sights(self, sights: Sequence[SightChange]) -> Iterator[str]:
         """Yield sentences about what can be seen at first."""
         places = {at for each in sights for at in each.places}
         viewers = {each.viewer for each in sights}
@@ -302,7 +302,7 @@ class _Teller:
                 continue
             yield _sentence(f"At first {self._object(each.viewer)} could see {listed(seen)}")
 
-    def _changes(self, sights: Sequence[Sight]) -> Iterator[str]:
+    def _changes(self, sights: Sequence[SightChange]) -> Iterator[str]:
         """Yield sentences about changes of sight at one tick."""
         lost = {each.viewer: list(each.lost_agents) for each in sights}
         seen = {each.viewer: list(each.agents) for each in sights}
@@ -339,7 +339,7 @@ class _Teller:
             changed[name].remove(viewer)
         return [self._object(name) for name in back]
 
-    def _keep_sight(self, sight: Sight) -> None:
+    def _keep_sight(self, sight: SightChange) -> None:
         known = self._in_sight.setdefault(sight.viewer, set())
         known.difference_update(sight.lost_places)
         known.update(sight.places)
@@ -461,7 +461,7 @@ def _titled(name: str) -> str:
 
 def _sight_of(each: Observation) -> int | None:
     """Return the tick of a change of sight; None: it is another observation."""
-    return each.tick if isinstance(each, Sight) else None
+    return each.tick if isinstance(each, SightChange) else None
 
 
 def _sentence(words: str) -> str:

@@ -17,7 +17,7 @@ from beliefnest.errors import InputError
 from beliefnest.files import open_regular, read_regular, replacing
 from beliefnest.llm.secrets import Secrets
 from beliefnest.scenarios.record_forms import read_json
-from beliefnest.studies.comparing import ADDED, HASH, Difference
+from beliefnest.studies.comparing import ADDED, HASH, PairedDifference
 from beliefnest.world.texts import is_well_formed, quoted, shortened
 
 __all__ = [
@@ -183,7 +183,7 @@ def inside(folder: Path, name: str) -> Path:
     return path
 
 
-def damaged_files(folder: Path, kind: str) -> list[Difference]:
+def damaged_files(folder: Path, kind: str) -> list[PairedDifference]:
     """Return the files of a supplement that are missing, have changed, or were added.
 
     The list is empty if there is no manifest: the folder is no supplement.
@@ -214,7 +214,7 @@ def damaged_files(folder: Path, kind: str) -> list[Difference]:
         path = inside(folder, name)
         there = hashlib.sha256(read_regular(path)).hexdigest() if path.is_file() else None
         if there != known:
-            found.append(Difference(name, HASH, known, there))
+            found.append(PairedDifference(name, HASH, known, there))
     held = {
         path.relative_to(folder).as_posix()
         for name in _READ_BELOW
@@ -222,4 +222,4 @@ def damaged_files(folder: Path, kind: str) -> list[Difference]:
         if path.is_file() and path.suffix != ".lock"
     }
     added = sorted(held - manifest.sha256.keys())
-    return [*found, *(Difference(name, ADDED, None, None) for name in added)]
+    return [*found, *(PairedDifference(name, ADDED, None, None) for name in added)]

@@ -12,7 +12,7 @@ from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.archive import check_secrets, with_manifest
 from beliefnest.studies.filter_packages import PACKAGES, filter_packages
 from beliefnest.studies.inputs import no_inputs
-from beliefnest.studies.methods import Facts, methods_text, run_facts, study_facts
+from beliefnest.studies.methods import RunFacts, methods_text, run_facts, study_facts
 from beliefnest.studies.page import page_text
 from beliefnest.studies.plainframe import csv_text
 from beliefnest.studies.run_result import RunResult
@@ -39,7 +39,7 @@ def opened(folder: Path) -> Results:
     )
 
 
-def facts_of(result: Results) -> Facts:
+def facts_of(result: Results) -> RunFacts:
     """Return the recorded facts about a study or run; raise InputError if a file is damaged."""
     return study_facts(result) if isinstance(result, StudyRecord) else run_facts(result)
 
@@ -132,7 +132,7 @@ def _secrets(environment: Mapping[str, str]) -> Secrets:
     return Secrets(values)
 
 
-def _readme(result: Results, facts: Facts, files: Mapping[str, bytes]) -> str:
+def _readme(result: Results, facts: RunFacts, files: Mapping[str, bytes]) -> str:
     version = facts.versions.get("beliefnest", "")
     pin = f"=={version}" if version else ""
     kind = kind_of(result)

@@ -12,7 +12,7 @@ from beliefnest.errors import InputError
 from beliefnest.scenarios.format import TerrainEntry
 from beliefnest.scenarios.terrain_entry import numbers_in, packed_entry
 from beliefnest.studies.program_rewriting import Rewriting, rewritten
-from beliefnest.studies.scene_changes import Kind
+from beliefnest.studies.scene_changes import SceneKind
 from beliefnest.studies.symmetry import Placing
 from beliefnest.world.registry import Registry
 
@@ -35,7 +35,7 @@ class MovedBySymmetry:
     placing: Placing
     registry: Registry
 
-    def value(self, kind: Kind, value: Any) -> Any:
+    def value(self, kind: SceneKind, value: Any) -> Any:
         """Return the moved value.
 
         Raises:
@@ -44,7 +44,7 @@ class MovedBySymmetry:
         change = self._changes().get(kind)
         return value if change is None else change(value)
 
-    def _changes(self) -> Mapping[Kind, Callable[[Any], Any]]:
+    def _changes(self) -> Mapping[SceneKind, Callable[[Any], Any]]:
         placing, symmetry = self.placing, self.placing.symmetry
         return {
             "block": lambda value: placing.block(_triple(value)),
@@ -142,12 +142,12 @@ class Renamed:
     agents: Mapping[str, str]
     items: Mapping[str, str]
 
-    def value(self, kind: Kind, value: Any) -> Any:
+    def value(self, kind: SceneKind, value: Any) -> Any:
         """Return the renamed value; raise InputError if a program cannot be parsed."""
         change = self._changes().get(kind)
         return value if change is None else change(value)
 
-    def _changes(self) -> Mapping[Kind, Callable[[Any], Any]]:
+    def _changes(self) -> Mapping[SceneKind, Callable[[Any], Any]]:
         return {
             "agent": lambda value: self.agents.get(value, value),
             "item": lambda value: self.items.get(value, value),

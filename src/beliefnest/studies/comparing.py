@@ -6,7 +6,7 @@ from typing import Any
 
 from beliefnest.world.texts import quoted
 
-__all__ = ["ADDED", "ERROR", "HASH", "Difference", "differing_contents", "differing_rows"]
+__all__ = ["ADDED", "ERROR", "HASH", "PairedDifference", "differing_contents", "differing_rows"]
 
 
 ERROR = "error"
@@ -20,7 +20,7 @@ ADDED = "added"
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class PairedDifference:
     """Difference of one value.
 
     Attributes:
@@ -55,7 +55,7 @@ def differing_rows(
     recorded: Sequence[Mapping[str, Any]],
     again: Sequence[Mapping[str, Any]],
     where: Callable[[int], str],
-) -> Iterator[Difference]:
+) -> Iterator[PairedDifference]:
     """Yield the differing values of two tables, row by row.
 
     Args:
@@ -64,18 +64,18 @@ def differing_rows(
         where: Function that returns the place of a recorded row, from its number from 1.
     """
     if len(recorded) != len(again):
-        yield Difference(where(len(again)), "number of rows", len(recorded), len(again))
+        yield PairedDifference(where(len(again)), "number of rows", len(recorded), len(again))
     for number, (before, after) in enumerate(zip(recorded, again, strict=False), 1):
         # Later versions have more columns.
         for name in before:
             one, other = before[name], after.get(name, "missing")
             if one != other:
-                yield Difference(where(number), name, one, other)
+                yield PairedDifference(where(number), name, one, other)
 
 
 def differing_contents(
     recorded: object, again: object, where: str, ignored: Collection[str] = (), path: str = ""
-) -> Iterator[Difference]:
+) -> Iterator[PairedDifference]:
     """Yield the differing values of two structures of plain values.
 
     Args:
@@ -94,7 +94,7 @@ def differing_contents(
         for number, (one, other) in enumerate(zip(recorded, again, strict=True)):
             yield from differing_contents(one, other, where, ignored, _under(path, number))
     elif recorded != again:
-        yield Difference(where, path or "content", recorded, again)
+        yield PairedDifference(where, path or "content", recorded, again)
 
 
 def _under(path: str, key: object) -> str:

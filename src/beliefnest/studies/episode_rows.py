@@ -7,8 +7,8 @@ from beliefnest.studies.cells import variation_id
 from beliefnest.studies.episode_design import policy_named
 from beliefnest.studies.table import (
     Column,
-    Kind,
-    Source,
+    ColumnType,
+    RowSource,
     Table,
     lost,
     of_key,
@@ -30,7 +30,7 @@ def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapp
     yield {**found["measures"], **told}
 
 
-def _variation(source: Source) -> str:
+def _variation(source: RowSource) -> str:
     key = source.cell["key"]
     # Plans of earlier versions do not have this key.
     return source.cell.get("variation") or variation_id(
@@ -38,7 +38,7 @@ def _variation(source: Source) -> str:
     )
 
 
-def _measure(name: str, kind: Kind = "int64", *, shown: bool = False) -> Column:
+def _measure(name: str, kind: ColumnType = "int64", *, shown: bool = False) -> Column:
     """Return the column of a measure, see `Measures`."""
     return Column(name, kind, of_result(name, plain_value), shown)
 

@@ -12,7 +12,7 @@ from beliefnest.world.words import counted
 
 __all__ = [
     "FEWEST",
-    "Columns",
+    "ColumnNames",
     "certainty_fault",
     "level_of",
     "rows_fault",
@@ -23,7 +23,7 @@ __all__ = [
 FEWEST = 3
 """Least number of variations from which an error between variations can be estimated."""
 
-Columns = tuple[str, ...]
+ColumnNames = tuple[str, ...]
 """Name of a column, or names of columns that interact."""
 
 
@@ -49,7 +49,7 @@ def rows_fault(rows: Sequence[Row], names: Sequence[str]) -> str:
 
 def support_fault(
     rows: Sequence[Row],
-    effects: Sequence[Columns],
+    effects: Sequence[ColumnNames],
     design: Array,
     groups: Any,
     terms: Sequence[str],
@@ -95,7 +95,7 @@ def certainty_fault(right: Array, design: Array) -> str:
 
 def separation_fault(
     rows: Sequence[Row],
-    effects: Sequence[Columns],
+    effects: Sequence[ColumnNames],
     right: Array,
     design: Array,
     terms: Sequence[str],
@@ -147,8 +147,8 @@ def _endless(right: Array, design: Array) -> list[int]:
 
 
 def _cells(
-    rows: Sequence[Row], effects: Sequence[Columns]
-) -> Iterator[tuple[Columns, tuple[str, ...], list[int]]]:
+    rows: Sequence[Row], effects: Sequence[ColumnNames]
+) -> Iterator[tuple[ColumnNames, tuple[str, ...], list[int]]]:
     """Yield each combination of levels of each effect, and of the columns in it."""
     every = itertools.chain.from_iterable(
         itertools.combinations(names, size)
@@ -163,5 +163,5 @@ def _cells(
             yield names, values, own
 
 
-def _told(names: Columns, values: Sequence[str]) -> str:
+def _told(names: ColumnNames, values: Sequence[str]) -> str:
     return " and ".join(f"{name} {value}" for name, value in zip(names, values, strict=True))

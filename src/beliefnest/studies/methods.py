@@ -25,9 +25,9 @@ from beliefnest.world.words import counted
 
 __all__ = [
     "FORMATS",
-    "Facts",
-    "Format",
+    "MethodsForm",
     "ModelFacts",
+    "RunFacts",
     "answered",
     "exchanges_in",
     "methods_text",
@@ -36,8 +36,8 @@ __all__ = [
     "usage_of",
 ]
 
-Format = Literal["markdown", "latex"]
-FORMATS: tuple[Format, ...] = get_args(Format)
+MethodsForm = Literal["markdown", "latex"]
+FORMATS: tuple[MethodsForm, ...] = get_args(MethodsForm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class PeopleFacts:
 
 
 @dataclass(frozen=True)
-class Facts:
+class RunFacts:
     """Recorded facts about a study or a run.
 
     Attributes:
@@ -170,7 +170,7 @@ def usage_of(rows: Sequence[Row]) -> tuple[int, float, int]:
     )
 
 
-def study_facts(result: StudyRecord) -> Facts:
+def study_facts(result: StudyRecord) -> RunFacts:
     """Return the facts about a study, from its folder.
 
     Raises:
@@ -181,7 +181,7 @@ def study_facts(result: StudyRecord) -> Facts:
     names += [plan["claims_from"]] if plan.get("claims_from") else []
     tokens, cost, unpriced = usage_of(rows)
     judged = [row for row in rows if row["ok"] is not None and row["copy_of"] is None]
-    return Facts(
+    return RunFacts(
         kind="study",
         versions=plan.get("versions", {}),
         world=plan["world"],
@@ -228,7 +228,7 @@ def _people(result: StudyRecord) -> Iterator[PeopleFacts]:
         )
 
 
-def run_facts(result: RunResult) -> Facts:
+def run_facts(result: RunResult) -> RunFacts:
     """Return the facts about a run, from its folder.
 
     Raises:
@@ -247,7 +247,7 @@ def run_facts(result: RunResult) -> Facts:
     excluded = {
         "unjudged": sum(row["ok"] is None for row in rows),
     }
-    return Facts(
+    return RunFacts(
         kind="run",
         versions=report.get("versions", {}),
         world=settings["world"],
@@ -410,7 +410,7 @@ _NOUNS = {
 }
 
 
-def methods_text(facts: Facts, form: Format) -> str:
+def methods_text(facts: RunFacts, form: MethodsForm) -> str:
     """Return the paragraph; it contains recorded facts only.
 
     Raises:
@@ -422,7 +422,7 @@ def methods_text(facts: Facts, form: Format) -> str:
     return " ".join(written(sentence) for sentence in _sentences(facts)) + "\n"
 
 
-def _sentences(facts: Facts) -> Iterator[str]:
+def _sentences(facts: RunFacts) -> Iterator[str]:
     versions = facts.versions
     program = f"BeliefNest {versions['beliefnest']}" if "beliefnest" in versions else "BeliefNest"
     details = [f"Python {versions['python']}"] if "python" in versions else []
@@ -477,7 +477,7 @@ def _sentences(facts: Facts) -> Iterator[str]:
         yield f"The 95 % intervals of accuracies are by {_listed(facts.intervals)}."
 
 
-def _exclusions(facts: Facts) -> Iterator[str]:
+def _exclusions(facts: RunFacts) -> Iterator[str]:
     """Yield the sentences about what was excluded."""
     if facts.excluded:
         told = [_exclusion(name, count) for name, count in facts.excluded.items()]

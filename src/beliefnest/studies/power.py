@@ -15,11 +15,11 @@ from beliefnest.studies.counting import Pairs
 from beliefnest.world.words import counted
 
 __all__ = [
-    "Assumed",
+    "AssumedRates",
     "OnPowerProgress",
     "Power",
     "Resampled",
-    "Source",
+    "VariationSource",
     "power_rows",
 ]
 
@@ -33,7 +33,7 @@ Cluster = tuple[tuple[bool, ...], tuple[tuple[bool, bool], ...]]
 """Rows of one variation (True: right), and its pairs of rows of two levels."""
 
 
-class Source(Protocol):
+class VariationSource(Protocol):
     """Source of simulated variations."""
 
     @property
@@ -49,7 +49,7 @@ class Source(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Assumed:
+class AssumedRates:
     """Source of variations with an assumed accuracy, difference and correlation.
 
     Rows are right by a probit model with a normal random intercept for each variation: a row is
@@ -174,7 +174,7 @@ class Power:
 
 
 def _simulated(
-    sources: Sequence[tuple[str, Source]],
+    sources: Sequence[tuple[str, VariationSource]],
     sizes: Sequence[int],
     simulations: int,
     seed: int,
@@ -202,7 +202,7 @@ def _simulated(
 
 
 def power_rows(
-    sources: Sequence[tuple[str, Source]],
+    sources: Sequence[tuple[str, VariationSource]],
     sizes: Sequence[int],
     simulations: int,
     seed: int,
@@ -244,7 +244,7 @@ def _analysed(clusters: Sequence[Cluster]) -> _Study:
     )
 
 
-def _power(source: Source, size: int, studies: Sequence[_Study]) -> Power:
+def _power(source: VariationSource, size: int, studies: Sequence[_Study]) -> Power:
     intervals = [each.accuracy for each in studies if each.accuracy is not None]
     widths = [high - low for low, high in intervals]
     covering = [low <= source.accuracy <= high for low, high in intervals]

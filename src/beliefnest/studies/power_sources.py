@@ -6,14 +6,14 @@ from typing import Any
 
 from beliefnest.errors import InputError
 from beliefnest.studies.counting import Pairs, Row, judged_rows
-from beliefnest.studies.power import Assumed, Resampled, Source
+from beliefnest.studies.power import AssumedRates, Resampled, VariationSource
 
 __all__ = ["SIZES", "assumed_sources", "recorded_sources"]
 
 SIZES = (10, 20, 40, 80, 160, 320)
 """Numbers of variations of simulated studies."""
 
-Named = tuple[str, Source]
+NamedSource = tuple[str, VariationSource]
 """Source with the group of rows or the comparison that it stands for."""
 
 
@@ -23,13 +23,13 @@ def assumed_sources(
     assumed: Mapping[str, float],
     *,
     between: str | None,
-) -> Iterator[Named]:
+) -> Iterator[NamedSource]:
     """Yield a source for each number of rows that variations of a planned study have in a group.
 
     Args:
         rows: Planned rows.
         by: Columns that define the groups.
-        assumed: `accuracy`, `difference` and `correlation` of `Assumed`.
+        assumed: `accuracy`, `difference` and `correlation` of `AssumedRates`.
         between: Column whose values are compared on the same variations; None: none.
     """
     counts: dict[tuple[Any, ...], Counter[str]] = {}
@@ -42,14 +42,14 @@ def assumed_sources(
         told = f"{size} row{'' if size == 1 else 's'} in each variation"
         if between is not None:
             told += f" and {between}"
-        yield told, Assumed(**assumed, rows=size, pairs=0 if between is None else size)
+        yield told, AssumedRates(**assumed, rows=size, pairs=0 if between is None else size)
 
 
 def recorded_sources(
     rows: Sequence[Row],
     by: Sequence[str],
     compared: Sequence[tuple[Sequence[tuple[str, Any]], str, Pairs]],
-) -> Iterator[Named]:
+) -> Iterator[NamedSource]:
     """Yield a source for each group of recorded rows, and for each comparison.
 
     Args:

@@ -12,7 +12,7 @@ from beliefnest.errors import InputError
 from beliefnest.studies.counting import Row, count_rows, judged_rows
 from beliefnest.studies.fit_checks import (
     FEWEST,
-    Columns,
+    ColumnNames,
     certainty_fault,
     level_of,
     rows_fault,
@@ -30,15 +30,15 @@ __all__ = [
     "KINDS",
     "Effect",
     "Family",
-    "Kind",
+    "FitKind",
     "Regression",
     "Substitute",
     "Term",
     "fit_rows",
 ]
 
-Kind = Literal["gee", "mixed"]
-KINDS: tuple[Kind, ...] = ("gee", "mixed")
+FitKind = Literal["gee", "mixed"]
+KINDS: tuple[FitKind, ...] = ("gee", "mixed")
 FAMILIES: tuple[Family, ...] = ("binomial", "gaussian")
 Effect = str | tuple[str, ...]
 """Name of a column, or names of columns that interact."""
@@ -122,7 +122,7 @@ class Regression:
         raw: Result object of statsmodels or SciPy; None if the fit is not sound.
     """
 
-    kind: Kind
+    kind: FitKind
     family: Family
     sound: bool
     note: str
@@ -173,7 +173,7 @@ class Regression:
 
 
 def fit_rows(
-    rows: Sequence[Row], effects: Sequence[Effect], kind: Kind, family: Family
+    rows: Sequence[Row], effects: Sequence[Effect], kind: FitKind, family: Family
 ) -> Regression:
     """Fit a regression of `ok` to the judged rows of a study, grouped by `variation`.
 
@@ -194,7 +194,9 @@ def fit_rows(
         raise InputError(f"kind is {kind!r}; give one of {', '.join(KINDS)}")
     if family not in FAMILIES:
         raise InputError(f"family is {family!r}; give one of {', '.join(FAMILIES)}")
-    wanted: list[Columns] = [(each,) if isinstance(each, str) else tuple(each) for each in effects]
+    wanted: list[ColumnNames] = [
+        (each,) if isinstance(each, str) else tuple(each) for each in effects
+    ]
     names = list(dict.fromkeys(name for each in wanted for name in each))
     if "variation" in names:
         raise InputError("variation is the group of the model; name other effects")
@@ -233,9 +235,9 @@ def _counts(rows: Sequence[Row], names: Sequence[str]) -> list[dict[str, Any]]:
 
 def _fitted(
     rows: Sequence[Row],
-    effects: Sequence[Columns],
+    effects: Sequence[ColumnNames],
     names: Sequence[str],
-    kind: Kind,
+    kind: FitKind,
     family: Family,
 ) -> tuple[Fit, Sequence[str], Substitute | None]:
     """Return the fit, the names of its terms, and what is sound in its place."""
@@ -279,7 +281,7 @@ def _substitute(
     design: Array,
     groups: Any,
     terms: Sequence[str],
-    kind: Kind,
+    kind: FitKind,
     family: Family,
     *,
     solid: bool,
@@ -324,7 +326,7 @@ _BOOTSTRAP = (
 )
 
 
-def _method(kind: Kind, family: Family, told: str) -> str:
+def _method(kind: FitKind, family: Family, told: str) -> str:
     """Return a method in words."""
     software = f"statsmodels {statsmodels().__version__}"
     if kind == "gee":
@@ -350,7 +352,7 @@ def _codes(values: Sequence[object]) -> "np.ndarray[Any, Any]":
 
 
 def _design(
-    rows: Sequence[Row], effects: Sequence[Columns], names: Sequence[str]
+    rows: Sequence[Row], effects: Sequence[ColumnNames], names: Sequence[str]
 ) -> tuple[Array, list[str]]:
     """Return the design matrix in treatment coding, and the names of its columns."""
     levels = {name: list(dict.fromkeys(level_of(row, name) for row in rows)) for name in names}

@@ -19,7 +19,7 @@ from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.allocation import LABEL, PARTICIPANT
 from beliefnest.studies.archive import inside
 from beliefnest.studies.cells import Cell, CellKey, Keyed, planned_cell
-from beliefnest.studies.comparing import ERROR, Difference, differing_contents, differing_rows
+from beliefnest.studies.comparing import ERROR, PairedDifference, differing_contents, differing_rows
 from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
 from beliefnest.studies.inputs import InputIndex, no_inputs
@@ -47,7 +47,7 @@ class Reproduction:
     cells: int
     left_out: int
     rows: int
-    differences: tuple[Difference, ...]
+    differences: tuple[PairedDifference, ...]
 
     @property
     def is_equal(self) -> bool:
@@ -149,7 +149,7 @@ def _renamed(value: Any, names: Mapping[str, str]) -> Any:
     return value
 
 
-def _differing_table(recorded: StudyRecord) -> Iterator[Difference]:
+def _differing_table(recorded: StudyRecord) -> Iterator[PairedDifference]:
     """Yield differences of `rows.csv` from the cells beside it."""
     file = recorded.folder.path / "rows.csv"
     if file.is_file():
@@ -163,7 +163,7 @@ def _differing_table(recorded: StudyRecord) -> Iterator[Difference]:
 
 def _differing_cells(
     recorded: StudyRecord, again: StudyRecord, ended: Sequence[Mapping[str, Any]]
-) -> Iterator[Difference]:
+) -> Iterator[PairedDifference]:
     """Yield differences of each cell: of its rows, or, if these are equal, of its content."""
     rows: dict[str, tuple[list[dict[str, Any]], list[dict[str, Any]]]]
     rows = {cell["name"]: ([], []) for cell in ended}
@@ -176,7 +176,7 @@ def _differing_cells(
         where = f"cells/{name}.json"
         failed = again.folder.cell(name)
         if failed is not None and failed["error"] is not None:
-            yield Difference(where, ERROR, None, failed["error"])
+            yield PairedDifference(where, ERROR, None, failed["error"])
             continue
         found = list(differing_rows(before, after, _probe_in(where)))
         yield from found or differing_contents(recorded.folder.cell(name), failed, where, ("run",))

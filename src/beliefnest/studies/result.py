@@ -11,11 +11,11 @@ from beliefnest.files import replace_file
 from beliefnest.studies.archive import write_zip
 from beliefnest.studies.bundling import bundled
 from beliefnest.studies.counting import count_rows
-from beliefnest.studies.methods import Format, methods_text, study_facts
+from beliefnest.studies.methods import MethodsForm, methods_text, study_facts
 from beliefnest.studies.plainframe import Typed, plain_frame, write_csv, write_parquet
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
-from beliefnest.studies.regression import Effect, Family, Kind, Regression, fit_rows
+from beliefnest.studies.regression import Effect, Family, FitKind, Regression, fit_rows
 from beliefnest.studies.reproducing import Reproduction, reproduce_study
 from beliefnest.studies.study_record import COMPARED, StudyRecord
 
@@ -104,7 +104,7 @@ class StudyResult(StudyRecord):
     def fit(
         self,
         effects: Sequence[Effect] | str,
-        kind: Kind = "gee",
+        kind: FitKind = "gee",
         family: Family = "binomial",
     ) -> Regression:
         """Fit a regression of right answers, with variations as groups.
@@ -131,7 +131,7 @@ class StudyResult(StudyRecord):
     def fits(
         self,
         effects: Sequence[Effect] | str,
-        kind: Kind = "gee",
+        kind: FitKind = "gee",
         family: Family = "binomial",
         by: Sequence[str] | str = (),
     ) -> list[tuple[dict[str, Any], Regression]]:
@@ -269,7 +269,7 @@ class StudyResult(StudyRecord):
         write_zip(bundled(self.whole, os.environ, runs=runs), path)
         return path
 
-    def methods(self, form: Format = "markdown") -> str:
+    def methods(self, form: MethodsForm = "markdown") -> str:
         """Return the paragraph for a methods section, which contains recorded facts only.
 
         Args:

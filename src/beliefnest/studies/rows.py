@@ -9,7 +9,7 @@ from beliefnest.studies.guessing import chance_of
 from beliefnest.studies.probe_orders import order_of
 from beliefnest.studies.table import (
     Column,
-    Source,
+    RowSource,
     Table,
     lost,
     of_key,
@@ -49,13 +49,13 @@ def _beliefs(expectations: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     }
 
 
-def _variation(source: Source) -> str:
+def _variation(source: RowSource) -> str:
     key = source.cell["key"]
     # Plans of earlier versions do not have this key.
     return source.cell.get("variation") or variation_id(key["scenario"], key["variation"])
 
 
-def _order(source: Source) -> int | None:
+def _order(source: RowSource) -> int | None:
     path = source.result.get("path")
     return None if path is None else order_of(path, source.result.get("expected"))
 
@@ -82,12 +82,12 @@ def _cost(usage: Mapping[str, Any] | None) -> float | None:
     return None if usage is None else usage["cost"]
 
 
-def _beliefs_ok(source: Source) -> bool | None:
+def _beliefs_ok(source: RowSource) -> bool | None:
     expectations = source.found.get("expectations")
     return all(each["ok"] for each in expectations) if expectations else None
 
 
-def _script_ticks(source: Source) -> int | None:
+def _script_ticks(source: RowSource) -> int | None:
     return source.found.get("ticks")
 
 

@@ -20,9 +20,9 @@ from beliefnest.scenarios.expected_state import ExpectationEntry
 from beliefnest.scenarios.yaml_reading import template_text
 from beliefnest.world.forms import scene_kinds
 
-__all__ = ["Kind", "SceneChange", "changed_scene"]
+__all__ = ["SceneChange", "SceneKind", "changed_scene"]
 
-Kind = str
+SceneKind = str
 """Kind of a value: `keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`,
 `state`, `program`, `text` (read by models), `label` (read only by people), `agent`, `item`, `path`,
 `wanted` (a partial block state: only written properties count), `static` (a block's name, or a
@@ -32,7 +32,7 @@ position), `template` (Jinja2 text), `terrain` (the key `terrain`)."""
 class SceneChange(Protocol):
     """Function from values to new values, by kind."""
 
-    def value(self, kind: Kind, value: Any) -> Any:
+    def value(self, kind: SceneKind, value: Any) -> Any:
         """Return the new value.
 
         Raises:
@@ -51,7 +51,7 @@ class _Each:
 class _Map:
     """Mapping with keys of one kind and values of one shape."""
 
-    key: Kind
+    key: SceneKind
     shape: Any
 
 
@@ -294,12 +294,12 @@ def _changed(
     return YamlNode(inner, node.line)
 
 
-def _key(document: Document, key: str, kind: Kind, path: KeyPath, change: SceneChange) -> str:
+def _key(document: Document, key: str, kind: SceneKind, path: KeyPath, change: SceneChange) -> str:
     return str(_leaf(document, YamlNode(key), kind, path, change).value)
 
 
 def _leaf(
-    document: Document, node: YamlNode, kind: Kind, path: KeyPath, change: SceneChange
+    document: Document, node: YamlNode, kind: SceneKind, path: KeyPath, change: SceneChange
 ) -> YamlNode:
     try:
         return wrapped(change.value(kind, plain(node)))

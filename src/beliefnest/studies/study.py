@@ -38,13 +38,13 @@ from beliefnest.studies.list_balance import with_balanced_lists
 from beliefnest.studies.participants.playing import OnItem
 from beliefnest.studies.participants.running import (
     Page,
-    Shown,
+    ShownForm,
     join_answers,
     make_page,
     write_answers,
 )
 from beliefnest.studies.plainframe import Typed, plain_frame
-from beliefnest.studies.power import Source, power_rows
+from beliefnest.studies.power import VariationSource, power_rows
 from beliefnest.studies.power_sources import SIZES, assumed_sources
 from beliefnest.studies.result import StudyResult
 from beliefnest.studies.rows import PROBES
@@ -294,7 +294,7 @@ class Study:
     def participants(
         self,
         folder: str | Path,
-        show: Shown = "both",
+        show: ShownForm = "both",
         *,
         instructions: str | Path | None = None,
         ending: str | Path | None = None,
@@ -413,7 +413,7 @@ class Study:
         difference: float = 0.1,
         correlation: float = 0.3,
         between: str | None = None,
-    ) -> list[tuple[str, Source]]:
+    ) -> list[tuple[str, VariationSource]]:
         """Return the groups of planned rows that `power` simulates; raise as `power` does."""
         plan = self._plan_json(self.plan())
         rows = list(self._table.planned(plan))

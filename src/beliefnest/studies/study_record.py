@@ -13,7 +13,7 @@ from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.guessing import mean_chance
 from beliefnest.studies.plainframe import Typed
 from beliefnest.studies.positions import choices_of, count_positions
-from beliefnest.studies.power import Source
+from beliefnest.studies.power import VariationSource
 from beliefnest.studies.power_sources import recorded_sources
 from beliefnest.studies.row_filter import RowFilter
 from beliefnest.studies.rows import PROBES
@@ -220,7 +220,7 @@ class StudyRecord:
 
     def power_sources(
         self, between: str | None = None, by: Sequence[str] | None = None
-    ) -> list[tuple[str, Source]]:
+    ) -> list[tuple[str, VariationSource]]:
         """Return the groups and comparisons of recorded rows that `power` draws from.
 
         Raises:

@@ -13,8 +13,8 @@ from beliefnest.studies.study_folder import StudyFolder
 
 __all__ = [
     "Column",
-    "Kind",
-    "Source",
+    "ColumnType",
+    "RowSource",
     "Table",
     "lost",
     "of_key",
@@ -33,12 +33,12 @@ _NOT_ASKED = tuple(each.__name__ for each in NOT_ASKED)
 _NO_ANSWER_KINDS = ("ModelError", "TransientModelError", "UnusableAnswerError")
 """Kinds of errors of cells whose model gave no answer."""
 
-Kind = Literal["string", "int64", "float64", "bool"]
+ColumnType = Literal["string", "int64", "float64", "bool"]
 """Type of a column in data frames and Parquet files."""
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class RowSource:
     """Plain values from which one row is read.
 
     Attributes:
@@ -65,8 +65,8 @@ class Column:
     """
 
     name: str
-    kind: Kind
-    read: Callable[[Source], Any]
+    kind: ColumnType
+    read: Callable[[RowSource], Any]
     shown: bool = False
     identifies: bool = False
 
@@ -99,7 +99,7 @@ class Table:
     same: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     means: Mapping[str, bool] = field(default_factory=dict)
 
-    def kinds(self, varied: Iterable[str]) -> dict[str, Kind | None]:
+    def kinds(self, varied: Iterable[str]) -> dict[str, ColumnType | None]:
         """Return the type of each column, by name; None: a column of variations."""
         return {
             **{column.name: column.kind for column in self.first},
@@ -147,7 +147,7 @@ class Table:
         """
         variation = _varied(cell)
         for result in self.results(cell, found):
-            source = Source(cell, found, result)
+            source = RowSource(cell, found, result)
             yield {
                 **{column.name: column.read(source) for column in self.first},
                 **{name: plain_value(variation.get(name)) for name in varied},
@@ -174,14 +174,14 @@ def lost(found: Mapping[str, Any], *, is_judged: bool) -> dict[str, Any]:
     }
 
 
-def of_key(name: str) -> Callable[[Source], Any]:
+def of_key(name: str) -> Callable[[RowSource], Any]:
     """Return the reader of a part of the cell's key."""
     return lambda source: source.cell["key"][name]
 
 
 def of_result(
     name: str, form: Callable[[Any], Any] = lambda value: value
-) -> Callable[[Source], Any]:
+) -> Callable[[RowSource], Any]:
     """Return the reader of a part of the result, in a form; None if the result lacks it."""
     return lambda source: form(source.result.get(name))
 

@@ -12,7 +12,7 @@ from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.drawn_map import with_map
 from beliefnest.scenarios.parameters import with_parameters
 from beliefnest.studies.changes import MovedBySymmetry, Renamed
-from beliefnest.studies.scene_changes import Kind, SceneChange, changed_scene
+from beliefnest.studies.scene_changes import SceneChange, SceneKind, changed_scene
 from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
@@ -136,7 +136,7 @@ class _NamedItems:
         self.found: set[str] = set()
         self.words: set[str] = set()
 
-    def value(self, kind: Kind, value: Any) -> Any:
+    def value(self, kind: SceneKind, value: Any) -> Any:
         """Return the same value."""
         if kind == "item":
             self.found.add(value)

@@ -26,11 +26,11 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import AgentState, Box, Event, Position
 
-__all__ = ["Bounds"]
+__all__ = ["RunBounds"]
 
 
 @dataclass(frozen=True)
-class Bounds:
+class RunBounds:
     """Box, agents and game to which all entries of a run belong.
 
     Attributes:

@@ -15,7 +15,7 @@ import zstandard
 
 from beliefnest.errors import BranchError, StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.bounds import Bounds
+from beliefnest.timeline.bounds import RunBounds
 from beliefnest.timeline.database import Database, damage
 from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_found
 from beliefnest.world.frames import Frame
@@ -65,7 +65,7 @@ class Chunks:
 
     def __init__(self, database: Database) -> None:
         self._database = database
-        self.bounds: Bounds | None = None
+        self.bounds: RunBounds | None = None
         self._packer = zstandard.ZstdCompressor(level=_COMPRESSION)
         self._unpacker = zstandard.ZstdDecompressor()
 

@@ -31,11 +31,11 @@ from beliefnest.timeline.store_schema import (
 )
 from beliefnest.world.texts import shortened
 
-__all__ = ["Database", "OlderFormat", "Row", "checked", "checksum", "damage"]
+__all__ = ["Database", "DatabaseRow", "OlderFormat", "checked", "checksum", "damage"]
 
 T = TypeVar("T")
 
-Row = tuple[Any, ...]
+DatabaseRow = tuple[Any, ...]
 
 _MAGIC = b"SQLite format 3\0"
 _HEADER_BYTES = 100
@@ -101,7 +101,7 @@ def damage(path: Path, detail: str) -> StoreError:
     return StoreError(f"{path} {_DAMAGED} ({shortened(detail, _LONGEST_DETAIL)})")
 
 
-def checked(row: Row, path: Path, what: str, form: type[T]) -> T:
+def checked(row: DatabaseRow, path: Path, what: str, form: type[T]) -> T:
     """Check a row against its last value, the checksum, and return the other values as `form`.
 
     Raises:
@@ -241,7 +241,7 @@ class Database(Owned):
         except _REFUSALS as fault:
             raise self._fault(fault) from fault
 
-    def rows(self, sql: str, values: Iterable[object] = ()) -> list[Row]:
+    def rows(self, sql: str, values: Iterable[object] = ()) -> list[DatabaseRow]:
         """Return all rows of a query."""
         self.check_own(str(self.path))
         try:
@@ -249,7 +249,7 @@ class Database(Owned):
         except _REFUSALS as fault:
             raise self._fault(fault) from fault
 
-    def row(self, sql: str, values: Iterable[object] = ()) -> Row | None:
+    def row(self, sql: str, values: Iterable[object] = ()) -> DatabaseRow | None:
         """Return the first row of a query, or None."""
         rows = self.rows(sql, values)
         return rows[0] if rows else None

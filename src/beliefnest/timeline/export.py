@@ -19,8 +19,8 @@ from beliefnest.timeline.export_tables import (
     IF_ANY,
     TABLES,
     BeliefRow,
-    Column,
-    Row,
+    ColumnForm,
+    TableRow,
     belief_row,
     entry_rows,
     snapshot_rows,
@@ -30,10 +30,10 @@ from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 
-__all__ = ["FORMATS", "Format", "export"]
+__all__ = ["FORMATS", "ExportForm", "export"]
 
-Format = Literal["jsonl", "parquet"]
-FORMATS: tuple[Format, ...] = ("jsonl", "parquet")
+ExportForm = Literal["jsonl", "parquet"]
+FORMATS: tuple[ExportForm, ...] = ("jsonl", "parquet")
 
 _ROW_GROUP = 50_000
 """Number of rows that are written to a Parquet file at a time."""
@@ -51,14 +51,14 @@ class _Table(Protocol):
 
 def export(
     journal: Journal,
-    format: Format,
+    format: ExportForm,
     out: Path,
     *,
     registry: Registry,
     first: Snapshot | None = None,
     timelines: Iterable[TimelineKey] | None = None,
     beliefs: Iterable[BeliefRow] = (),
-    notes: Iterable[Row] = (),
+    notes: Iterable[TableRow] = (),
 ) -> Mapping[str, int]:
     """Write a journal into a new folder, completely or not at all.
 
@@ -100,7 +100,7 @@ def _timeline_rows(
     registry: Registry,
     first: Snapshot | None,
     timelines: Iterable[TimelineKey] | None,
-) -> Iterator[Row]:
+) -> Iterator[TableRow]:
     chosen = [i.key for i in journal.timelines()] if timelines is None else list(timelines)
     for key in chosen:
         info = journal.info(key)
@@ -112,7 +112,7 @@ def _timeline_rows(
 
 
 def _written(
-    rows: Iterable[Row], folder: Path, opener: Callable[[Path, str], _Table]
+    rows: Iterable[TableRow], folder: Path, opener: Callable[[Path, str], _Table]
 ) -> dict[str, int]:
     counts = {name: 0 for name in TABLES if name not in IF_ANY}
     with ExitStack() as stack:
@@ -183,7 +183,7 @@ class _Parquet:
     def __init__(self, arrow: Any, parquet: Any, folder: Path, name: str) -> None:
         self._columns = TABLES[name]
         self._arrow = arrow
-        types: Mapping[Column, Any] = {
+        types: Mapping[ColumnForm, Any] = {
             "text": arrow.string(),
             "integer": arrow.int64(),
             "number": arrow.float64(),

@@ -25,8 +25,8 @@ __all__ = [
     "IF_ANY",
     "TABLES",
     "BeliefRow",
-    "Column",
-    "Row",
+    "ColumnForm",
+    "TableRow",
     "belief_row",
     "entry_rows",
     "program_row",
@@ -36,10 +36,10 @@ __all__ = [
     "timeline_row",
 ]
 
-Column = Literal["text", "integer", "number", "boolean", "object"]
+ColumnForm = Literal["text", "integer", "number", "boolean", "object"]
 """Type of a column's values. Every value may also be null. An object is a JSON object or array."""
 
-Row = tuple[str, dict[str, Any]]
+TableRow = tuple[str, dict[str, Any]]
 """Name of a table, and the values of one row by column."""
 
 
@@ -62,22 +62,22 @@ class BeliefRow:
     blocks: Mapping[str, str | None]
 
 
-_PLACE: Mapping[str, Column] = {
+_PLACE: Mapping[str, ColumnForm] = {
     "path": "text",
     "branch": "text",
     "entry": "integer",
     "tick": "integer",
 }
-_ON_TIMELINE: Mapping[str, Column] = {
+_ON_TIMELINE: Mapping[str, ColumnForm] = {
     "path": "text",
     "timeline_path": "text",
     "timeline_branch": "text",
     "tick": "integer",
 }
-_CELL: Mapping[str, Column] = {"x": "integer", "y": "integer", "z": "integer"}
-_POINT: Mapping[str, Column] = {"x": "number", "y": "number", "z": "number"}
+_CELL: Mapping[str, ColumnForm] = {"x": "integer", "y": "integer", "z": "integer"}
+_POINT: Mapping[str, ColumnForm] = {"x": "number", "y": "number", "z": "number"}
 
-TABLES: Mapping[str, Mapping[str, Column]] = MappingProxyType(
+TABLES: Mapping[str, Mapping[str, ColumnForm]] = MappingProxyType(
     {
         "run": {
             "scenario": "text",
@@ -201,7 +201,7 @@ FIRST_ENTRY = -1
 """Entry number of the rows that describe the first state of a timeline."""
 
 
-def timeline_row(info: TimelineInfo) -> Row:
+def timeline_row(info: TimelineInfo) -> TableRow:
     """Return the row of a timeline."""
     base = info.base
     return _row(
@@ -216,7 +216,9 @@ def timeline_row(info: TimelineInfo) -> Row:
     )
 
 
-def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) -> Iterator[Row]:
+def entry_rows(
+    key: TimelineKey, number: int, entry: Entry, registry: Registry
+) -> Iterator[TableRow]:
     """Yield the rows of one entry; UnknownNameError if the registry lacks a block state."""
     place = _place(key, number, entry.tick)
     edited = path_text(entry.path) if isinstance(entry, Edit) else None
@@ -241,7 +243,7 @@ def entry_rows(key: TimelineKey, number: int, entry: Entry, registry: Registry) 
             )
 
 
-def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
+def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> Iterator[TableRow]:
     """Yield the rows of a timeline's first state; air has no rows.
 
     If there are very many blocks, only those with a text have rows of their own; cuboids tell all.
@@ -258,7 +260,9 @@ def snapshot_rows(key: TimelineKey, snapshot: Snapshot, registry: Registry) -> I
     yield from _item_rows(place, snapshot.items.items())
 
 
-def _cuboid_rows(place: Mapping[str, Any], snapshot: Snapshot, registry: Registry) -> Iterator[Row]:
+def _cuboid_rows(
+    place: Mapping[str, Any], snapshot: Snapshot, registry: Registry
+) -> Iterator[TableRow]:
     for state, part in cuboids(snapshot.blocks, registry.air):
         low, high = (
             [int(i) + first for i, first in zip(corner, snapshot.box.low, strict=True)]
@@ -282,12 +286,12 @@ def _solid(snapshot: Snapshot, registry: Registry) -> Iterator[tuple[Position, B
             yield place, Sign(state, snapshot.signs[place]) if is_written else state
 
 
-def run_row(run: RunRecord, versions: Sequence[Mapping[str, str]]) -> Row:
+def run_row(run: RunRecord, versions: Sequence[Mapping[str, str]]) -> TableRow:
     """Return the row of the run itself."""
     return _row("run", run, condition=run.condition or None, versions=versions)
 
 
-def program_row(program: ProgramRecord) -> Row:
+def program_row(program: ProgramRecord) -> TableRow:
     """Return the row of a program."""
     path, detail = path_text(program.path), _program_detail(program)
     return _row("programs", program, path=path, call=program.group, detail=detail)
@@ -304,20 +308,20 @@ def _program_detail(program: ProgramRecord) -> dict[str, str]:
     }
 
 
-def prompt_row(prompt: PromptRecord) -> Row:
+def prompt_row(prompt: PromptRecord) -> TableRow:
     """Return the row of a request to a model."""
     place = _on_timeline(prompt.path, prompt.timeline, prompt.tick)
     messages = [{"role": role, "text": text} for role, text in prompt.messages]
     return _row("prompts", prompt, **place, messages=messages)
 
 
-def belief_row(row: BeliefRow) -> Row:
+def belief_row(row: BeliefRow) -> TableRow:
     """Return the row of one node's state at one tick."""
     place = _on_timeline(row.path, row.timeline, row.tick)
     return "beliefs", {**place, "state": dict(row.state), "blocks": dict(row.blocks)}
 
 
-def _row(table: str, record: object, **others: object) -> Row:
+def _row(table: str, record: object, **others: object) -> TableRow:
     """Return a row with the values of `others`; the record's attributes fill the other columns."""
     columns = TABLES[table]
     return table, {
@@ -344,7 +348,7 @@ def _block_rows(
     claims: Mapping[Position, Iterable[Claim]],
     registry: Registry,
     edited: str | None,
-) -> Iterator[Row]:
+) -> Iterator[TableRow]:
     for (x, y, z), block in cells:
         state = plain_state(block)
         text = None if state < 0 else registry.text(state)
@@ -359,7 +363,7 @@ def _container_rows(
     place: Mapping[str, Any],
     contents: Iterable[tuple[Position, Items | None]],
     edited: str | None,
-) -> Iterator[Row]:
+) -> Iterator[TableRow]:
     for (x, y, z), items in contents:
         held = None if items is None else dict(items)
         yield "containers", {**place, "x": x, "y": y, "z": z, "items": held, "edited": edited}
@@ -367,7 +371,7 @@ def _container_rows(
 
 def _agent_rows(
     place: Mapping[str, Any], agents: Iterable[tuple[str, AgentState | None]]
-) -> Iterator[Row]:
+) -> Iterator[TableRow]:
     for name, agent in agents:
         values: dict[str, Any] = dict.fromkeys(TABLES["agents"])
         values |= {**place, "agent": name}
@@ -381,7 +385,7 @@ def _agent_rows(
 
 def _item_rows(
     place: Mapping[str, Any], items: Iterable[tuple[int, DroppedItem | None]]
-) -> Iterator[Row]:
+) -> Iterator[TableRow]:
     for number, item in items:
         values: dict[str, Any] = dict.fromkeys(TABLES["items"])
         values |= {**place, "item": number}

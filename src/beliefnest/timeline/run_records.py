@@ -9,7 +9,7 @@ import msgspec
 
 from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.timeline import codec
-from beliefnest.timeline.database import Database, Row, checked, checksum
+from beliefnest.timeline.database import Database, DatabaseRow, checked, checksum
 from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.texts import quoted
@@ -295,7 +295,9 @@ class Records:
             _with_branch(codec.decode(body, kind), branch) for _, (_, branch, body) in rows
         )
 
-    def _rows(self, table: str, where: str, values: Row) -> Iterator[tuple[int, Row]]:
+    def _rows(
+        self, table: str, where: str, values: DatabaseRow
+    ) -> Iterator[tuple[int, DatabaseRow]]:
         rows = self._database.rows(
             f"SELECT id, path, branch, body, seal FROM {table} {where} ORDER BY id", values
         )

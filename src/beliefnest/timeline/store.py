@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from beliefnest.errors import BranchError
 from beliefnest.timeline import codec
-from beliefnest.timeline.bounds import Bounds
+from beliefnest.timeline.bounds import RunBounds
 from beliefnest.timeline.chunks import Chunks
 from beliefnest.timeline.database import Database, OlderFormat, checksum, damage
 from beliefnest.timeline.format_2 import FORMAT_2, convert_2
@@ -143,7 +143,7 @@ class SqliteJournal:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def keep_within(self, bounds: Bounds) -> None:
+    def keep_within(self, bounds: RunBounds) -> None:
         """Check all entries that are read from now on: StoreError if one is out of bounds.
 
         StoreError also if a timeline is that of a simulator that cannot be.

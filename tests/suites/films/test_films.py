@@ -13,7 +13,7 @@ from tests.profiles import NIGHTLY
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import InputError
-from beliefnest.suites.films.agreement import Agreement, agreement, interval
+from beliefnest.suites.films.agreement import JudgesAgreement, agreement, interval
 from beliefnest.suites.films.film import FilmParameters, grid_for
 from beliefnest.suites.films.film_files import films_from, parameters_from, read_films
 from beliefnest.suites.films.film_inference import LESIONS, judge
@@ -232,7 +232,7 @@ def test_a_step_that_no_hypothesis_explains_is_told_and_counts_for_nothing():
 
 
 def pairs_of(model, people, films):
-    return Agreement(
+    return JudgesAgreement(
         "desires",
         ("K",) * len(model),
         np.array(model, dtype=float),

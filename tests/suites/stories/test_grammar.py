@@ -19,7 +19,7 @@ from beliefnest.suites.stories.grammar import (
     Wait,
     parse_lines,
 )
-from beliefnest.suites.stories.story import Come, Go, Hand, Move, Place, Put, Take
+from beliefnest.suites.stories.story import Come, Go, HandOver, Move, Place, Put, Take
 
 
 @pytest.mark.parametrize(
@@ -247,7 +247,7 @@ def test_a_thing_may_pass_through_hands():
         "Ann and Bob are in the den.\nAnn put the fig into the box.\nBob took it from the box.\n"
         "Bob put it in the jar."
     )
-    assert story.things == {"fig": Hand("Ann")}
+    assert story.things == {"fig": HandOver("Ann")}
     assert story.acts == (
         Wait(),
         Put("Ann", "fig", Place("den", "box")),

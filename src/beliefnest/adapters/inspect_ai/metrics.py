@@ -21,7 +21,7 @@ from inspect_ai.scorer import (
 
 from beliefnest.scenarios.judging import NOT_ANSWERED
 from beliefnest.studies.clusters import rate_interval
-from beliefnest.suites.films.film import About
+from beliefnest.suites.films.film import JudgedPart
 
 __all__ = [
     "CLUSTER",
@@ -132,7 +132,7 @@ def rated() -> Metric:
     return value
 
 
-def _correlation(scores: Sequence[SampleScore], about: About) -> float:
+def _correlation(scores: Sequence[SampleScore], about: JudgedPart) -> float:
     """Return Pearson's coefficient over all epochs of all samples; nan if a side is constant."""
     told = [each.score.metadata or {} for each in scores]
     pairs = np.array([pair for each in told for pair in each.get(about, [])]).reshape(-1, 2)

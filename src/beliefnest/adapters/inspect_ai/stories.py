@@ -19,7 +19,7 @@ from beliefnest.adapters.inspect_ai.task_parts import (
 from beliefnest.errors import InputError
 from beliefnest.llm.reading_answers import read_answer
 from beliefnest.studies.cells import variation_id
-from beliefnest.suites.stories.data import Item, StoryItems, read_items
+from beliefnest.suites.stories.data import BatteryItem, StoryItems, read_items
 from beliefnest.suites.stories.explaining import explain_answer
 from beliefnest.suites.stories.own import read_own
 from beliefnest.suites.stories.played_story import PlayedStory
@@ -61,7 +61,13 @@ def _options(asked: StoryItems) -> list[str]:
 
 
 def _sample(
-    suite: str, file: str, place: int, number: int, asked: StoryItems, item: Item, prefix: str
+    suite: str,
+    file: str,
+    place: int,
+    number: int,
+    asked: StoryItems,
+    item: BatteryItem,
+    prefix: str,
 ) -> Sample:
     lines = [line.text for line in asked.story.lines]
     options = _options(asked)

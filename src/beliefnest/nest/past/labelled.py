@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from beliefnest.belief.grounds import Source
 from beliefnest.belief.view import State
 from beliefnest.nest.past.recording import Recording
-from beliefnest.prompts.observations import Observation, Sight
+from beliefnest.prompts.observations import Observation, SightChange
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry, block_name
@@ -59,7 +59,9 @@ class Labelled:
             observations: Observations of its owner.
             labels: All labels.
         """
-        seen = {at for each in observations if isinstance(each, Sight) for at in each.labelled}
+        seen = {
+            at for each in observations if isinstance(each, SightChange) for at in each.labelled
+        }
         return {
             at: label for at, label in labels.items() if at in seen or self._believed(at, state)
         }

@@ -20,7 +20,7 @@ from beliefnest.prompts.observations import (
     Observation,
     Outset,
     Read,
-    Sight,
+    SightChange,
 )
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.doors import is_door
@@ -334,7 +334,7 @@ class _Observer:
         for viewer, look in looks.items():
             past = self._seen.get(viewer, _NOTHING_SEEN)
             new = tuple(sorted(look.places - past.places))
-            sight = Sight(
+            sight = SightChange(
                 tick,
                 viewer,
                 {name: at for name, at in look.agents.items() if name not in past.agents},

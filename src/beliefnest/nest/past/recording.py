@@ -18,8 +18,8 @@ from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.nest.past.turn import Turn
 from beliefnest.owned import Barred, is_own
 from beliefnest.prompts import Renderer
-from beliefnest.prompts.mind_view import Told
-from beliefnest.timeline.bounds import Bounds
+from beliefnest.prompts.mind_view import ToldMind
+from beliefnest.timeline.bounds import RunBounds
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import Records, RunJournal
 from beliefnest.timeline.store import SqliteJournal
@@ -59,7 +59,7 @@ class Recording(Barred):
         self.setting = setting
         self.world = world
         self.remembered: dict[object, object] = {}
-        self.told: tuple[tuple[BeliefPath, ForkPoint], Told] | None = None
+        self.told: tuple[tuple[BeliefPath, ForkPoint], ToldMind] | None = None
         self.journal = journal
         self.seed = seed
         self.renderer = Renderer() if renderer is None else renderer
@@ -197,7 +197,7 @@ def read_start(journal: SqliteJournal) -> tuple[Setting, str]:
     """
     setting, world = decode_start(journal.records.run().setting)
     agents = frozenset({*setting.snapshot.agents, *setting.absent})
-    journal.keep_within(Bounds(setting.snapshot.box, agents, Registry.load()))
+    journal.keep_within(RunBounds(setting.snapshot.box, agents, Registry.load()))
     return setting, world
 
 

@@ -5,7 +5,7 @@ from beliefnest.nest.past.labelled import Labelled
 from beliefnest.nest.past.observing import observations_of
 from beliefnest.nest.past.place_names import object_names
 from beliefnest.nest.past.recording import Recording
-from beliefnest.prompts.mind_view import MindView, Told
+from beliefnest.prompts.mind_view import MindView, ToldMind
 from beliefnest.prompts.naming import believed_names, known_places
 from beliefnest.world.paths import BeliefPath, normalised
 
@@ -29,7 +29,7 @@ def mind_view(recording: Recording, path: BeliefPath, tick: int | None) -> MindV
     return MindView(recording.state(path, tick), lambda: _told(recording, path, tick), below)
 
 
-def _told(recording: Recording, path: BeliefPath, tick: int | None) -> Told:
+def _told(recording: Recording, path: BeliefPath, tick: int | None) -> ToldMind:
     """Return what a simulator's owner is told; the latest is kept, as it is asked for again."""
     of = (path, recording.moment(path, tick))
     kept = recording.told
@@ -38,16 +38,16 @@ def _told(recording: Recording, path: BeliefPath, tick: int | None) -> Told:
     return kept[1]
 
 
-def _read(recording: Recording, path: BeliefPath, tick: int | None) -> Told:
+def _read(recording: Recording, path: BeliefPath, tick: int | None) -> ToldMind:
     setting = recording.setting
     observations = observations_of(recording, path, tick)
     if not path:
         names, labels = object_names(setting), setting.prompt_labels
-        return Told(observations, names, labels, setting.places, setting.unique)
+        return ToldMind(observations, names, labels, setting.places, setting.unique)
     state = recording.state(path, tick)
     labelled = Labelled(recording, recording.moment(path, tick))
     known = labelled.known(state, observations, setting.labels)
-    return Told(
+    return ToldMind(
         observations,
         believed_names(state, observations, known),
         labelled.known(state, observations, setting.prompt_labels),

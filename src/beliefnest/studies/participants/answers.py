@@ -13,7 +13,7 @@ from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.studies.sheets import decode_sheet, spoilt_number, spoilt_text
 
-__all__ = ["Answer", "answer_files", "read_answers", "with_pseudonyms"]
+__all__ = ["PersonAnswer", "answer_files", "read_answers", "with_pseudonyms"]
 
 _TRIAL = "beliefnest-question"
 """Value of `trial_type` of our trials, which jsPsych writes as well."""
@@ -27,7 +27,7 @@ _IDS = ("participant", "cell", "question", "study")
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class PersonAnswer:
     """Answer of one participant to one question.
 
     Attributes:
@@ -82,7 +82,7 @@ def answer_files(paths: Iterable[Path]) -> list[Path]:
     return found
 
 
-def read_answers(file: Path) -> list[Answer]:
+def read_answers(file: Path) -> list[PersonAnswer]:
     """Return the answers in a CSV or JSON file of the page or of jsPsych.
 
     The rows of beginnings of sessions are among them; trials of other plugins are left out.
@@ -111,7 +111,7 @@ def read_answers(file: Path) -> list[Answer]:
     return found
 
 
-def with_pseudonyms(answers: Sequence[Answer]) -> list[Answer]:
+def with_pseudonyms(answers: Sequence[PersonAnswer]) -> list[PersonAnswer]:
     """Return answers with `p1`, `p2` and so on for ids, in the order in which sessions began."""
     began: dict[str, str] = {}
     for answer in answers:
@@ -149,7 +149,7 @@ def _csv_rows(file: Path, content: bytes) -> _Rows:
     return [(f"{file}:{line}", row) for line, row in sheet.rows]
 
 
-def _answer(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) -> Answer:
+def _answer(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) -> PersonAnswer:
     """Return the answer in a row; `spoilt` says what a spreadsheet has made of an id."""
     texts = {name: _text(where, row, name) for name in (*_NEEDED, "reason", "study", "started")}
     for name in _NEEDED[:-1]:
@@ -162,10 +162,10 @@ def _answer(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) ->
                 f"{where}, column {name}: {texts[name]!r} is {told}, which a spreadsheet has made "
                 "of an id; give the file as it was written, without opening it in a spreadsheet"
             )
-    return Answer(where=where, options=_options(where, row), plain=dict(row), **texts)
+    return PersonAnswer(where=where, options=_options(where, row), plain=dict(row), **texts)
 
 
-def _start(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) -> Answer:
+def _start(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) -> PersonAnswer:
     """Return the beginning of a session as an answer to no question."""
     named = {"cell": "-", "question": "-", "response": ""}
     return replace(_answer(where, {**row, **named}, spoilt), cell="", question="")

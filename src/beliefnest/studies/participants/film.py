@@ -12,7 +12,7 @@ from beliefnest.prompts.story_filters import captions
 from beliefnest.world.paths import parse_path
 from beliefnest.world.values import Position
 
-__all__ = ["Film", "Frame", "read_film"]
+__all__ = ["FilmFrame", "SceneFilm", "read_film"]
 
 _MOST = 60
 """Greatest number of pictures without a new caption."""
@@ -26,7 +26,7 @@ _CAPTION_MS = 700
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class FilmFrame:
     """Part of a film during which nothing changes.
 
     Attributes:
@@ -41,7 +41,7 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True)
-class Film:
+class SceneFilm:
     """Film of one simulator.
 
     Attributes:
@@ -50,10 +50,10 @@ class Film:
     """
 
     pictures: tuple[str, ...]
-    frames: tuple[Frame, ...]
+    frames: tuple[FilmFrame, ...]
 
 
-def read_film(nest: Nest, path: str, start: int) -> Film:
+def read_film(nest: Nest, path: str, start: int) -> SceneFilm:
     """Return the film of a simulator until now.
 
     The pictures show the simulator alone: false beliefs are not marked.
@@ -79,10 +79,10 @@ def read_film(nest: Nest, path: str, start: int) -> Film:
     )
     distinct = list(dict.fromkeys(pictures))
     frames = [
-        Frame(distinct.index(picture), ms, caption)
+        FilmFrame(distinct.index(picture), ms, caption)
         for picture, ms, caption in zip(pictures, times, words, strict=True)
     ]
-    return Film(tuple(distinct), tuple(_joined(frames)))
+    return SceneFilm(tuple(distinct), tuple(_joined(frames)))
 
 
 def _thinned(ticks: Sequence[int]) -> Sequence[int]:
@@ -113,9 +113,9 @@ def _pictures(
     return [svg_text(replace(each, height=height)) for each in drawings]
 
 
-def _joined(frames: Sequence[Frame]) -> list[Frame]:
+def _joined(frames: Sequence[FilmFrame]) -> list[FilmFrame]:
     """Return frames without repetitions: equal neighbours become one."""
-    found: list[Frame] = []
+    found: list[FilmFrame] = []
     for frame in frames:
         if found and (found[-1].picture, found[-1].caption) == (frame.picture, frame.caption):
             found[-1] = replace(found[-1], ms=found[-1].ms + frame.ms)

@@ -11,9 +11,9 @@ from beliefnest.errors import InputError
 from beliefnest.files import replace_file
 from beliefnest.locking import holding
 from beliefnest.studies.cells import digest, variation_id
-from beliefnest.studies.participants.film import Film
+from beliefnest.studies.participants.film import SceneFilm
 from beliefnest.studies.participants.items import Item
-from beliefnest.studies.participants.playing import View
+from beliefnest.studies.participants.playing import ParticipantView
 from beliefnest.viewer.page.html import inlined, packed, self_contained
 from beliefnest.world.texts import on_one_line
 
@@ -24,7 +24,7 @@ _STIMULI = "stimuli.js"
 
 
 def experiment(
-    shown_items: Iterable[tuple[Item, Sequence[View]]], shown: str, seed: int
+    shown_items: Iterable[tuple[Item, Sequence[ParticipantView]]], shown: str, seed: int
 ) -> dict[str, Any]:
     """Return what participants see, as plain values without any right answer.
 
@@ -52,7 +52,7 @@ def experiment(
     return {"study": digest(content)[:16], **content}
 
 
-def _item(item: Item, views: Sequence[View]) -> dict[str, Any]:
+def _item(item: Item, views: Sequence[ParticipantView]) -> dict[str, Any]:
     key = item.cell.key
     return {
         "cell": item.name,
@@ -63,7 +63,7 @@ def _item(item: Item, views: Sequence[View]) -> dict[str, Any]:
     }
 
 
-def _view(item: Item, view: View) -> dict[str, Any]:
+def _view(item: Item, view: ParticipantView) -> dict[str, Any]:
     owner = view.owner
     return {
         "owner": None if owner is None else f"{owner[:1].upper()}{owner[1:]}",
@@ -81,7 +81,7 @@ def _view(item: Item, view: View) -> dict[str, Any]:
     }
 
 
-def _film(film: Film) -> dict[str, Any]:
+def _film(film: SceneFilm) -> dict[str, Any]:
     return {
         "pictures": list(film.pictures),
         "frames": [[each.picture, each.ms, each.caption] for each in film.frames],

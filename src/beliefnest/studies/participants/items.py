@@ -8,11 +8,11 @@ from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.studies.cells import Cell, digest
 
-__all__ = ["Item", "Question", "items_of", "left_out"]
+__all__ = ["Item", "ItemQuestion", "items_of", "left_out"]
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class ItemQuestion:
     """Question of a probe, as participants answer it.
 
     Attributes:
@@ -39,9 +39,9 @@ class Item:
 
     name: str
     cell: Cell
-    questions: tuple[Question, ...]
+    questions: tuple[ItemQuestion, ...]
 
-    def probe(self, question: Question) -> Probe:
+    def probe(self, question: ItemQuestion) -> Probe:
         """Return the probe of a question."""
         return self.cell.scenario.probes[question.probe]
 
@@ -50,7 +50,7 @@ class Item:
         """Belief paths of the questions, each once."""
         return tuple(dict.fromkeys(self.probe(each).path for each in self.questions))
 
-    def at(self, path: str) -> tuple[Question, ...]:
+    def at(self, path: str) -> tuple[ItemQuestion, ...]:
         """Return the questions that are asked of a belief path."""
         return tuple(each for each in self.questions if self.probe(each).path == path)
 
@@ -104,11 +104,11 @@ def _why_left_out(probe: Probe) -> str:
     return ""
 
 
-def _questions(probes: Sequence[Probe]) -> Iterator[Question]:
+def _questions(probes: Sequence[Probe]) -> Iterator[ItemQuestion]:
     for number, probe in enumerate(probes):
         if not _why_left_out(probe):
             for place, asked in enumerate(probe.questions, 1):
-                yield Question(f"{number + 1}.{place}", number, asked)
+                yield ItemQuestion(f"{number + 1}.{place}", number, asked)
 
 
 def _name(cell: Cell) -> str:

@@ -13,8 +13,8 @@ from beliefnest.scenarios.judging import outcome_of
 from beliefnest.scenarios.outcome import ProbeOutcome, Reply
 from beliefnest.scenarios.records import probe_json
 from beliefnest.studies.cells import CellKey
-from beliefnest.studies.participants.answers import Answer
-from beliefnest.studies.participants.items import Item, Question
+from beliefnest.studies.participants.answers import PersonAnswer
+from beliefnest.studies.participants.items import Item, ItemQuestion
 from beliefnest.studies.participants.playing import Judged
 from beliefnest.studies.study_folder import PersonCell
 from beliefnest.world.texts import visible
@@ -66,16 +66,16 @@ class Joined:
 
     cells: list[PersonCell] = field(default_factory=list)
     sessions: Sessions = field(default_factory=lambda: Sessions(0, 0, 0, 0, 0))
-    answers: list[tuple[Answer, bool]] = field(default_factory=list)
+    answers: list[tuple[PersonAnswer, bool]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
 
-_Sessions = dict[str, dict[str, dict[str, Answer]]]
+_Sessions = dict[str, dict[str, dict[str, PersonAnswer]]]
 """Answers by participant, item and question."""
 
 
 def counted_answers(
-    answers: Iterable[Answer], items: Mapping[str, Item], notes: list[str]
+    answers: Iterable[PersonAnswer], items: Mapping[str, Item], notes: list[str]
 ) -> _Sessions:
     """Return the answers that count, by participant, item and question.
 
@@ -121,7 +121,7 @@ def counted_answers(
     return sessions
 
 
-def _checked(answer: Answer, items: Mapping[str, Item]) -> Answer:
+def _checked(answer: PersonAnswer, items: Mapping[str, Item]) -> PersonAnswer:
     """Return an answer with the study's own texts of its options."""
     item = items.get(answer.cell)
     if item is None:
@@ -154,7 +154,7 @@ def joined(
     name: str,
     shown: Sequence[Item],
     notes: Sequence[str],
-    read: Sequence[Answer],
+    read: Sequence[PersonAnswer],
 ) -> Joined:
     """Return the cells of participants, judged as the study judges models.
 
@@ -198,7 +198,7 @@ def joined(
 
 
 def _missing(
-    participant: str, cells: Mapping[str, Mapping[str, Answer]], shown: Sequence[Item]
+    participant: str, cells: Mapping[str, Mapping[str, PersonAnswer]], shown: Sequence[Item]
 ) -> list[str]:
     """Return a note if a participant did not answer all questions of a list."""
     numbers = {item.cell.list_number for item in shown if item.name in cells}
@@ -209,24 +209,24 @@ def _missing(
     return [f"participant {participant} answered {count} of {counted(asked, 'question')}"]
 
 
-def _judge(by: Judged, question: Question) -> Answers:
+def _judge(by: Judged, question: ItemQuestion) -> Answers:
     """Return a question with its right answers."""
     place = int(question.id.partition(".")[2]) - 1
     return by.probes[question.probe].questions[place]
 
 
-def _judged(asked: Answers, answer: Answer) -> Judgement:
+def _judged(asked: Answers, answer: PersonAnswer) -> Judgement:
     return asked.judge(_reply(asked, answer))
 
 
-def _reply(asked: Answers, answer: Answer) -> Reply:
+def _reply(asked: Answers, answer: PersonAnswer) -> Reply:
     """Return the answer of a participant in the form of a model's."""
     said = answer.response or None
     outcome = "no_answer" if said is None else "read"
     return Reply(asked.question, answer.options, "", answer.response, said, answer.reason, outcome)
 
 
-def _outcomes(item: Item, by: Judged, given: Mapping[str, Answer]) -> list[ProbeOutcome]:
+def _outcomes(item: Item, by: Judged, given: Mapping[str, PersonAnswer]) -> list[ProbeOutcome]:
     """Return the outcomes of the probes all of whose questions are answered."""
     probes = dict.fromkeys(question.probe for question in item.questions)
     found = []
@@ -238,7 +238,7 @@ def _outcomes(item: Item, by: Judged, given: Mapping[str, Answer]) -> list[Probe
     return found
 
 
-def _outcome(probe: Probe, pairs: Sequence[tuple[Answers, Answer]]) -> ProbeOutcome:
+def _outcome(probe: Probe, pairs: Sequence[tuple[Answers, PersonAnswer]]) -> ProbeOutcome:
     replies = tuple(_reply(asked, answer) for asked, answer in pairs)
     verdicts = tuple(asked.judge(reply) for (asked, _), reply in zip(pairs, replies, strict=True))
     return ProbeOutcome(probe, verdicts, outcome_of(verdicts, None), Usage(), replies=replies)
@@ -250,7 +250,7 @@ def _cell(
     outcomes: Sequence[ProbeOutcome],
     name: str,
     participant: str,
-    given: Mapping[str, Answer],
+    given: Mapping[str, PersonAnswer],
 ) -> PersonCell:
     key = item.cell.key
     own = _PersonKey(

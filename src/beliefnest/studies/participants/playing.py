@@ -13,11 +13,11 @@ from beliefnest.scenarios.outcome import ExpectationOutcome
 from beliefnest.scenarios.probing import resolved
 from beliefnest.scenarios.records import expectation_json
 from beliefnest.scenarios.right_answers_check import warn_of_answers, warn_of_scene
-from beliefnest.studies.participants.film import Film, read_film
+from beliefnest.studies.participants.film import SceneFilm, read_film
 from beliefnest.studies.participants.items import Item
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = ["Judged", "OnItem", "View", "judged_items", "refuse_claims", "shown_items"]
+__all__ = ["Judged", "OnItem", "ParticipantView", "judged_items", "refuse_claims", "shown_items"]
 
 OnItem = Callable[[str, int, int], None]
 """Function of a description, the number of items done, and of all items."""
@@ -27,7 +27,7 @@ _STORY = "{{ branch | beginning }}\n\n{{ branch | story }}"
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class ParticipantView:
     """View of one simulator, as participants get it.
 
     Attributes:
@@ -40,7 +40,7 @@ class View:
     path: str
     owner: str | None
     story: tuple[str, ...]
-    film: Film | None
+    film: SceneFilm | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class Judged:
 
 def shown_items(
     items: Sequence[Item], shown: str, on_item: OnItem
-) -> Iterator[tuple[Item, list[View]]]:
+) -> Iterator[tuple[Item, list[ParticipantView]]]:
     """Play items and yield what participants see of each.
 
     Args:
@@ -113,10 +113,10 @@ def _played(item: Item, worlds: Worlds, renderer: Renderer) -> Iterator[tuple[Ne
         raise type(error)(f"{_title(item)}: {error}") from error
 
 
-def _view(nest: Nest, path: str, start: int, shown: str) -> View:
+def _view(nest: Nest, path: str, start: int, shown: str) -> ParticipantView:
     simulator = nest[path]
     story = simulator.render(_STORY) if shown in ("story", "both") else ""
-    return View(
+    return ParticipantView(
         path=path,
         owner=simulator.owner,
         story=tuple(part.strip() for part in story.split("\n\n") if part.strip()),

@@ -11,7 +11,7 @@ from beliefnest.scenarios.document import Document
 from beliefnest.studies.cells import Cell
 from beliefnest.studies.design import Design
 from beliefnest.studies.participants.answers import (
-    Answer,
+    PersonAnswer,
     answer_files,
     read_answers,
     with_pseudonyms,
@@ -34,9 +34,9 @@ from beliefnest.studies.participants.playing import (
 )
 from beliefnest.studies.plainframe import Typed, write_csv
 
-__all__ = ["Page", "Shown", "join_answers", "make_page", "write_answers"]
+__all__ = ["Page", "ShownForm", "join_answers", "make_page", "write_answers"]
 
-Shown = Literal["film", "story", "both"]
+ShownForm = Literal["film", "story", "both"]
 """Form in which participants get a scene."""
 
 
@@ -88,8 +88,8 @@ def make_page(
     Raises:
         BeliefNestError: An argument is wrong, no probe asks a question, or a script failed.
     """
-    if shown not in get_args(Shown):
-        raise InputError(f"--show is {shown!r}; give one of {', '.join(get_args(Shown))}")
+    if shown not in get_args(ShownForm):
+        raise InputError(f"--show is {shown!r}; give one of {', '.join(get_args(ShownForm))}")
     refuse_claims(design.setting)
     check_folder(folder)
     if post is not None:
@@ -154,7 +154,7 @@ def join_answers(
     return joined(sessions, judged_items(wanted, on_item), name, items, notes, answers)
 
 
-def write_answers(file: Path, answers: Sequence[tuple[Answer, bool]]) -> None:
+def write_answers(file: Path, answers: Sequence[tuple[PersonAnswer, bool]]) -> None:
     """Write a table of all answers: the columns of the files, and `right`."""
     names = list(dict.fromkeys(name for answer, _ in answers for name in answer.plain))
     columns = {

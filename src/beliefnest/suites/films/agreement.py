@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.suites.films.film import About
+from beliefnest.suites.films.film import JudgedPart
 from beliefnest.suites.films.film_inference import Judgment
 
-__all__ = ["PUBLISHED", "Agreement", "agreement", "interval"]
+__all__ = ["PUBLISHED", "JudgesAgreement", "agreement", "interval"]
 
 PUBLISHED = {
     None: {"desires": 0.908, "beliefs": 0.783},
@@ -27,7 +27,7 @@ Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Agreement:
+class JudgesAgreement:
     """Pairs of judgments: of the model, and of people.
 
     Attributes:
@@ -39,7 +39,7 @@ class Agreement:
         films: int64 (pairs,), index of the film that each pair belongs to.
     """
 
-    about: About
+    about: JudgedPart
     names: tuple[str, ...] = field(repr=False)
     model: Floats = field(repr=False)
     people: Floats = field(repr=False)
@@ -52,7 +52,7 @@ class Agreement:
         return float(_pearson(_sums(self.model, self.people).sum(axis=0)))
 
 
-def agreement(judgments: Sequence[Judgment], about: About) -> Agreement:
+def agreement(judgments: Sequence[Judgment], about: JudgedPart) -> JudgesAgreement:
     """Put the model's judgments of scored films beside people's.
 
     Films with a step that no hypothesis explains are left out.
@@ -68,12 +68,12 @@ def agreement(judgments: Sequence[Judgment], about: About) -> Agreement:
                 names.append(name)
                 pairs.append((said[name], value, spread.get(name, np.nan), number))
     columns = np.array(pairs, dtype=np.float64).reshape(-1, 4).T
-    return Agreement(
+    return JudgesAgreement(
         about, tuple(names), columns[0], columns[1], columns[2], columns[3].astype(np.int64)
     )
 
 
-def interval(pairs: Agreement, seed: int = 0) -> tuple[float, float] | None:
+def interval(pairs: JudgesAgreement, seed: int = 0) -> tuple[float, float] | None:
     """Return the 95 % bootstrap interval of Pearson's coefficient, by percentiles.
 
     Films are drawn with replacement, each with all its judgments, since those of one film depend

@@ -7,13 +7,22 @@ from typing import Literal
 
 from beliefnest.scenarios.inferring import MOST_HYPOTHESES
 
-__all__ = ["ABOUT", "NOTHING", "About", "Cell", "Film", "FilmParameters", "event_name", "grid_for"]
+__all__ = [
+    "ABOUT",
+    "NOTHING",
+    "Film",
+    "FilmCell",
+    "FilmParameters",
+    "JudgedPart",
+    "event_name",
+    "grid_for",
+]
 
-Cell = tuple[int, int]
+FilmCell = tuple[int, int]
 """Coordinates x, y from 1, y upwards."""
 
-About = Literal["desires", "beliefs", "locations"]
-ABOUT: tuple[About, ...] = ("desires", "beliefs", "locations")
+JudgedPart = Literal["desires", "beliefs", "locations"]
+ABOUT: tuple[JudgedPart, ...] = ("desires", "beliefs", "locations")
 """Kinds of judgments: wanted goals, initial beliefs, and real contents of places."""
 
 NOTHING = "none"
@@ -72,17 +81,17 @@ class Film:
 
     name: str
     size: tuple[int, int]
-    walls: frozenset[Cell]
-    places: Mapping[str, Cell]
+    walls: frozenset[FilmCell]
+    places: Mapping[str, FilmCell]
     known: Mapping[str, str | None]
     alternatives: Mapping[str, Mapping[str, str | None]]
     actual: tuple[str, ...]
     goals: tuple[str, ...]
-    path: tuple[Cell, ...]
+    path: tuple[FilmCell, ...]
     ended: bool
     scored: bool = True
-    people: Mapping[About, Mapping[str, float]] = field(default_factory=dict)
-    errors: Mapping[About, Mapping[str, float]] = field(default_factory=dict)
+    people: Mapping[JudgedPart, Mapping[str, float]] = field(default_factory=dict)
+    errors: Mapping[JudgedPart, Mapping[str, float]] = field(default_factory=dict)
     group: str = ""
 
     @property

@@ -15,10 +15,10 @@ from beliefnest.files import decode_json, read_regular
 from beliefnest.scenarios.inferring import MOST_HYPOTHESES
 from beliefnest.suites.films.film import (
     NOTHING,
-    About,
-    Cell,
     Film,
+    FilmCell,
     FilmParameters,
+    JudgedPart,
     event_name,
     grid_for,
 )
@@ -31,7 +31,7 @@ _JUDGED = re.compile(
     r"(?P<about>desire|belief|location|world|actual)s?_(?:(?P<place>spot[A-Za-z0-9]+)_)?"
     r"(?P<names>.+)_mean(?:_(?P<scale>\w+))?"
 )
-_KINDS: Mapping[str, About] = {
+_KINDS: Mapping[str, JudgedPart] = {
     "desire": "desires",
     "belief": "beliefs",
     "location": "locations",
@@ -218,7 +218,7 @@ class _Reader:
         people, errors = self.judgments(draft)
         return replace(draft, people=people, errors=errors)
 
-    def alternatives(self, places: Mapping[str, Cell]) -> dict[str, dict[str, str | None]]:
+    def alternatives(self, places: Mapping[str, FilmCell]) -> dict[str, dict[str, str | None]]:
         """Return what may stand at the places in doubt: listed, or every combination."""
         listed = self.said.get("alternatives")
         if listed is not None:
@@ -238,7 +238,7 @@ class _Reader:
         return {_joined(held.values()): held for held in combined}
 
     def listed(
-        self, listed: object, places: Mapping[str, Cell]
+        self, listed: object, places: Mapping[str, FilmCell]
     ) -> dict[str, dict[str, str | None]]:
         """Return alternatives that are listed: goals by place, with or without names."""
         each_held = list(listed.values()) if isinstance(listed, Mapping) else listed
@@ -345,10 +345,10 @@ class _Reader:
 
     def judgments(
         self, film: Film
-    ) -> tuple[dict[About, dict[str, float]], dict[About, dict[str, float]]]:
+    ) -> tuple[dict[JudgedPart, dict[str, float]], dict[JudgedPart, dict[str, float]]]:
         """Return judgments of people and their standard errors."""
-        people: dict[About, dict[str, float]] = {}
-        errors: dict[About, dict[str, float]] = {}
+        people: dict[JudgedPart, dict[str, float]] = {}
+        errors: dict[JudgedPart, dict[str, float]] = {}
         for key, values in self.human.items():
             found = _JUDGED.fullmatch(key)
             if found is None:
@@ -374,7 +374,7 @@ class _Reader:
                 errors[about] = {name: value for name, value in told if value is not None}
         return people, errors
 
-    def judged(self, film: Film, key: str, found: re.Match[str], about: About) -> list[str]:
+    def judged(self, film: Film, key: str, found: re.Match[str], about: JudgedPart) -> list[str]:
         """Return the subject of a key's values: goals, alternatives, or contents of places."""
         words, place = found["names"].split("_"), found["place"]
         if about == "desires":
@@ -487,13 +487,13 @@ class _Reader:
             raise self.fault(f"{key} names the goal {value!r}; give a name or null")
         return str(value)
 
-    def cells(self, key: str, given: object) -> list[Cell]:
+    def cells(self, key: str, given: object) -> list[FilmCell]:
         """Return a list of cells."""
         if not isinstance(given, list):
             raise self.fault(f"{key} is {given!r}; list cells as [x, y]")
         return [self.cell(each, key) for each in given]
 
-    def cell(self, given: object, key: str) -> Cell:
+    def cell(self, given: object, key: str) -> FilmCell:
         """Return two whole numbers."""
         if not isinstance(given, list) or len(given) != 2 or not all(map(_is_whole, given)):
             raise self.fault(f"{key} has {given!r}; give two whole numbers [x, y]")

@@ -11,7 +11,7 @@ from beliefnest.errors import InputError
 from beliefnest.minds.mind_model import MindModel, simplex_grid
 from beliefnest.nest.face.nest import Nest
 from beliefnest.perception.options import Perception
-from beliefnest.suites.films.film import About, Cell, Film, FilmParameters, grid_for
+from beliefnest.suites.films.film import Film, FilmCell, FilmParameters, JudgedPart, grid_for
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -49,7 +49,7 @@ class Judgment:
     """
 
     film: Film
-    model: Mapping[About, Mapping[str, float]]
+    model: Mapping[JudgedPart, Mapping[str, float]]
     impossible: str | None = None
 
 
@@ -158,7 +158,7 @@ def judge(film: Film, parameters: FilmParameters, lesion: Lesion | None = None) 
             for event, meant in film.events.items()
         }
 
-    model: dict[About, Mapping[str, float]] = {
+    model: dict[JudgedPart, Mapping[str, float]] = {
         "desires": {goal: mean(f"utility.{goal}") for goal in film.goals},
         "beliefs": means("credence"),
     }
@@ -176,5 +176,5 @@ def _block(film: Film, goal: str | None) -> str:
     return _GOAL_BLOCKS[number]
 
 
-def _floor(cell: Cell) -> Position:
+def _floor(cell: FilmCell) -> Position:
     return (cell[0] - 1, 0, cell[1] - 1)

@@ -14,21 +14,25 @@ from beliefnest.llm.reading_numbers import NumbersReading, read_numbers
 from beliefnest.minds.mind_model import Alternative, MindModel
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.inferring import Inferred, Inferring
-from beliefnest.suites.films.film import ABOUT, About
+from beliefnest.suites.films.film import ABOUT, JudgedPart
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
 __all__ = ["Comparison", "asked_of", "compared", "rating_prompt", "ratings_in", "read_ratings"]
 
 _LOWEST, _HIGHEST = 1.0, 7.0
-_WORDS: Mapping[About, str] = {"desires": "desire", "beliefs": "belief", "locations": "location"}
-_FACTORS: Mapping[About, str] = {
+_WORDS: Mapping[JudgedPart, str] = {
+    "desires": "desire",
+    "beliefs": "belief",
+    "locations": "location",
+}
+_FACTORS: Mapping[JudgedPart, str] = {
     "desires": "utility",
     "beliefs": "credence",
     "locations": "actual",
 }
 
-Ratings = Mapping[tuple[About, str], float]
+Ratings = Mapping[tuple[JudgedPart, str], float]
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ class Comparison:
         missing: Questions without a rating from 1 to 7.
     """
 
-    pairs: Mapping[About, Sequence[tuple[float, float]]]
+    pairs: Mapping[JudgedPart, Sequence[tuple[float, float]]]
     missing: tuple[str, ...]
 
     @property
@@ -58,9 +62,9 @@ class Comparison:
         return sum(errors) / len(errors)
 
 
-def asked_of(model: MindModel) -> list[tuple[About, str]]:
+def asked_of(model: MindModel) -> list[tuple[JudgedPart, str]]:
     """Return what is asked about a model: desires, beliefs, and locations the observer doubts."""
-    asked: list[tuple[About, str]] = [("desires", goal) for goal in model.goals]
+    asked: list[tuple[JudgedPart, str]] = [("desires", goal) for goal in model.goals]
     if model.doubt is not None:
         asked += [("beliefs", name) for name in model.alternative_names]
         if model.observer_doubts:
@@ -83,7 +87,7 @@ def ratings_in(reading: NumbersReading, model: MindModel) -> Ratings:
     }
 
 
-def _question(about: About, name: str) -> str:
+def _question(about: JudgedPart, name: str) -> str:
     return f"{_WORDS[about]} {name}"
 
 
@@ -95,7 +99,7 @@ def compared(ratings: Ratings, model: MindModel, inferred: Inferred) -> Comparis
     """
     asked = asked_of(model)
     missing = tuple(_question(about, name) for about, name in asked if (about, name) not in ratings)
-    pairs: dict[About, list[tuple[float, float]]] = {}
+    pairs: dict[JudgedPart, list[tuple[float, float]]] = {}
     low, high = float(model.utility_rows.min()), float(model.utility_rows.max())
     for about in () if missing else ABOUT:
         rated = {name: ratings[kind, name] for kind, name in asked if kind == about}

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from beliefnest.suites.stories.floor_plan import FloorPlan, feet
 from beliefnest.suites.stories.grammar import UseDoor, Write
-from beliefnest.suites.stories.story import Act, Come, Go, Look, Move, Place, Put, Take, Tell
+from beliefnest.suites.stories.story import Act, Come, Go, LookInto, Move, Place, Put, Take, Tell
 from beliefnest.world.claims import Claim
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
@@ -35,7 +35,7 @@ def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:  # noqa: PLR0
                 world.use_door(agent, plan.doors[room], open=opens)
             case Write(agent, room, text):
                 world.write_sign(agent, plan.signs[room], text)
-            case Look(agent, place):
+            case LookInto(agent, place):
                 world.open(agent, plan.places[place])
             case Tell(agent, None):
                 world.say(agent, act.text, _claims(act, plan))
@@ -52,14 +52,14 @@ def programs_of(act: Act, plan: FloorPlan) -> dict[str, str]:
             return {agent: _walk(plan.stands[room, agent], act.shuts) for agent in agents}
         case Go(agents):
             return {agent: _walk(plan.apart[agent], act.shuts) for agent in agents}
-        case Move() | Take() | Put() | UseDoor() | Write() | Look() | Tell():
+        case Move() | Take() | Put() | UseDoor() | Write() | LookInto() | Tell():
             return {act.agent: _program(act, plan)}
         case _:
             return {}
 
 
 def _program(  # noqa: PLR0911  # one case an act
-    act: Move | Take | Put | UseDoor | Write | Look | Tell, plan: FloorPlan
+    act: Move | Take | Put | UseDoor | Write | LookInto | Tell, plan: FloorPlan
 ) -> str:
     """Return the program of one agent, which ends at the agent's stand, out of the others' way."""
     match act:
@@ -78,7 +78,7 @@ def _program(  # noqa: PLR0911  # one case an act
         case Write(agent, room, text):
             sign = f"await writeSign(bot, {_vec3(plan.signs[room])}, {json.dumps(text)})\n"
             return sign + _walk(plan.stands[room, agent])
-        case Look(agent, place):
+        case LookInto(agent, place):
             where = _vec3(plan.places[place])
             return (
                 f"await goToPosition(bot, {where}, 2)\n"

@@ -8,7 +8,7 @@ question are in that room together, each also knows that the others know the pla
 from collections.abc import Iterator
 
 from beliefnest.suites.stories.questions import Question
-from beliefnest.suites.stories.story import Come, Go, Hand, Move, Place, Story, Take
+from beliefnest.suites.stories.story import Come, Go, HandOver, Move, Place, Story, Take
 
 __all__ = ["data_fault"]
 
@@ -25,7 +25,7 @@ def data_fault(story: Story, question: Question, expected: str | None) -> str | 
     if story.tells or question.at_beginning or thing not in story.things:
         return None
     start = story.things[thing]
-    if isinstance(start, Hand) or any(isinstance(act, Take) for act in story.acts):
+    if isinstance(start, HandOver) or any(isinstance(act, Take) for act in story.acts):
         return None
     last: tuple[int, Place] | None = None
     shown = False

@@ -14,7 +14,7 @@ from beliefnest.suites.stories.played_story import Knowing, check_question
 from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
 
-__all__ = ["Item", "ReadStories", "StoryItems", "Unread", "line_of", "read_items"]
+__all__ = ["BatteryItem", "ReadStories", "StoryItems", "Unread", "line_of", "read_items"]
 
 
 class _Row(msgspec.Struct):
@@ -36,7 +36,7 @@ _EVERYTHING = Knowing()
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
+class BatteryItem:
     """Question and its expected answer.
 
     Attributes:
@@ -61,7 +61,7 @@ class StoryItems:
     """
 
     story: Story
-    items: tuple[Item, ...]
+    items: tuple[BatteryItem, ...]
     knowing: Knowing = _EVERYTHING
 
 
@@ -133,7 +133,7 @@ def read_items(path: Path, rows: Collection[int] | None = None) -> ReadStories:
         missing = min(set(rows) - set(range(1, len(every) + 1)))
         raise InputError(f"{path} has no row {missing}; it has rows 1 to {len(every)}")
     stories: dict[str, Story] = {}
-    items: dict[str, list[Item]] = {}
+    items: dict[str, list[BatteryItem]] = {}
     unread: list[Unread] = []
     for number, raw in enumerate(every, 1):
         if rows is not None and number not in rows:
@@ -183,7 +183,7 @@ def _told_in(text: str) -> str:
     return "\n".join(line for line in lines[first:] if line.strip(" *"))
 
 
-def _item(number: int, row: _Row, story: Story) -> Item:
+def _item(number: int, row: _Row, story: Story) -> BatteryItem:
     question = parse_question(row.question)
     check_question(story, question)
     if row.question_order not in (None, question.order):
@@ -191,4 +191,4 @@ def _item(number: int, row: _Row, story: Story) -> Item:
             f"{row.question!r} is of order {question.order}, and question_order says "
             f"{row.question_order}"
         )
-    return Item(number, question, row.answer)
+    return BatteryItem(number, question, row.answer)

@@ -3,7 +3,7 @@
 from beliefnest.belief.grounds import Basis
 from beliefnest.suites.stories.played_story import PlayedStory, StoryAnswer
 from beliefnest.suites.stories.questions import Question
-from beliefnest.suites.stories.story import Hand, Place
+from beliefnest.suites.stories.story import HandOver, Place
 from beliefnest.world.signs import sign_words
 
 __all__ = ["explain_answer"]
@@ -60,7 +60,7 @@ def _perceptions(
 ) -> list[str]:
     """Return the nest's explanations of the answered and the expected container."""
     first = played.story.things[question.thing]
-    rooms = played.story.rooms if isinstance(first, Hand) else (first.room,)
+    rooms = played.story.rooms if isinstance(first, HandOver) else (first.room,)
     wanted = [] if expected is None else [Place(room, expected) for room in rooms]
     found = (answer.place, *wanted)
     places = dict.fromkeys(p for p in found if p is not None and p in played.plan.places)

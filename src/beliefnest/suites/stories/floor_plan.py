@@ -30,7 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beliefnest.errors import InputError
-from beliefnest.suites.stories.story import WAITING_ROOM, Hand, Place, Story
+from beliefnest.suites.stories.story import WAITING_ROOM, HandOver, Place, Story
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
@@ -129,7 +129,7 @@ def lay_out(story: Story) -> FloorPlan:
     contents: dict[Position, Items] = {position: {} for position in places.values()}
     held: dict[str, dict[str, int]] = {}
     for thing, place in story.things.items():
-        if isinstance(place, Hand):
+        if isinstance(place, HandOver):
             held.setdefault(place.agent, {})[items[thing]] = 1
         else:
             contents[places[place]] = {**contents[places[place]], items[thing]: 1}

@@ -8,7 +8,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.perception.options import ContainerMode, Testimony
-from beliefnest.suites.stories.data import Item, ReadStories, StoryItems, Unread
+from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.faults import form_fault
 from beliefnest.suites.stories.grammar import (
     Agent,
@@ -130,10 +130,10 @@ def _story(number: int, told: _OwnStory) -> tuple[StoryItems | None, tuple[str, 
         story = story_of(lines)
     except InputError as error:
         return None, (str(error),)
-    items: list[Item] = []
+    items: list[BatteryItem] = []
     for asked in told.questions:
         try:
-            item = Item(number, _question(asked), asked.answer)
+            item = BatteryItem(number, _question(asked), asked.answer)
             check_question(story, item.question)
             _check_answer(story, item)
         except InputError as error:
@@ -171,7 +171,7 @@ def _question(asked: _Asked) -> Question:
     return Question(believers, thing, asked.at_beginning, text, asked.door, asked.sign)
 
 
-def _check_answer(story: Story, item: Item) -> None:
+def _check_answer(story: Story, item: BatteryItem) -> None:
     if item.expected is None:
         return
     names = {place.container for place in story.places}

@@ -39,8 +39,8 @@ __all__ = [
     "Act",
     "Come",
     "Go",
-    "Hand",
-    "Look",
+    "HandOver",
+    "LookInto",
     "Move",
     "Place",
     "Put",
@@ -69,7 +69,7 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Hand:
+class HandOver:
     """Hands of an agent."""
 
     agent: str
@@ -127,7 +127,7 @@ class Put:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class LookInto:
     """An agent opens a container and looks into it."""
 
     agent: str
@@ -161,7 +161,7 @@ class Tell:
         return f"The {self.thing} {link} in the {self.place.container}."
 
 
-Act = Come | Go | Move | Take | Put | Look | UseDoor | Write | Tell | Wait
+Act = Come | Go | Move | Take | Put | LookInto | UseDoor | Write | Tell | Wait
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +186,7 @@ class Story:
     rooms: tuple[str, ...]
     places: tuple[Place, ...]
     agents: tuple[str, ...]
-    things: dict[str, Place | Hand]
+    things: dict[str, Place | HandOver]
     doors: tuple[str, ...] = ()
     signs: tuple[str, ...] = ()
     present: Mapping[str, str] = field(default_factory=dict)
@@ -364,8 +364,8 @@ class _Reader:
     rooms: Sequence[str]
     stated: dict[str, str]
     whereabouts: dict[str, str | None] = field(default_factory=dict)
-    first: dict[str, Place | Hand] = field(default_factory=dict)
-    now: dict[str, Place | Hand] = field(default_factory=dict)
+    first: dict[str, Place | HandOver] = field(default_factory=dict)
+    now: dict[str, Place | HandOver] = field(default_factory=dict)
     places: dict[Place, None] = field(default_factory=dict)
     is_open: dict[str, bool] = field(default_factory=dict)
     present: dict[str, str] = field(default_factory=dict)
@@ -388,11 +388,13 @@ class _Reader:
                 return self._put(number, agent, thing, container)
             case Taken(agent, thing, source):
                 held = self._held(line, agent, thing, source)
-                self.now[thing] = Hand(agent)
+                self.now[thing] = HandOver(agent)
                 return Take(agent, thing, held)
             case Opened(agent, container):
                 room = self._room_of(line, agent, self._room_with(container))
-                return Look(agent, self._place(line, self._here(line, room, container), container))
+                return LookInto(
+                    agent, self._place(line, self._here(line, room, container), container)
+                )
             case UseDoor() | Write() as used:
                 self._check_inside(line, (used.agent,), used.room)
                 return self._door(line, used) if isinstance(used, UseDoor) else _text(line, used)
@@ -463,7 +465,7 @@ class _Reader:
     def _move(
         self, line: Line, agent: str, thing: str, container: str, named: str | None
     ) -> Move | Put:
-        if self.now.get(thing) == Hand(agent) and named is None:
+        if self.now.get(thing) == HandOver(agent) and named is None:
             return self._out_of_hand(line, agent, thing, container)
         source = self._held(line, agent, thing, named)
         target = self._place(line, self._here(line, source.room, container), container)
@@ -475,7 +477,7 @@ class _Reader:
         if thing not in self.now:
             room = self._room_with(container) or self._room_near(number, agent)
             self._room_of(line, agent, room)
-            self.first[thing] = self.now[thing] = Hand(agent)
+            self.first[thing] = self.now[thing] = HandOver(agent)
         return self._move(line, agent, thing, container, None)
 
     def _out_of_hand(self, line: Line, agent: str, thing: str, container: str) -> Put:
@@ -489,7 +491,7 @@ class _Reader:
         source = self.now.get(thing)
         if source is None:
             raise line.fault(f"nothing says where the {thing} was; say 'The {thing} is in the ...'")
-        if isinstance(source, Hand):
+        if isinstance(source, HandOver):
             raise line.fault(f"{source.agent} has the {thing} in the hands")
         room = self._room_of(line, agent, source.room)
         if source.room != room:
@@ -569,7 +571,7 @@ class _Reader:
         self.first.setdefault(thing, found)
         if self.now.setdefault(thing, found) != found:
             before = self.now[thing]
-            if isinstance(before, Hand):
+            if isinstance(before, HandOver):
                 raise line.fault(f"{before.agent} holds the {thing}; say where it is put")
             raise line.fault(f"the {thing} is in the {before.container} of the {before.room}")
 

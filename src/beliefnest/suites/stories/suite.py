@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from beliefnest.suites.stories.answer_check import data_fault
-from beliefnest.suites.stories.data import Item, StoryItems
+from beliefnest.suites.stories.data import BatteryItem, StoryItems
 from beliefnest.suites.stories.explaining import explain_answer
 from beliefnest.suites.stories.played_story import PlayedStory, StoryAnswer
 
@@ -27,7 +27,7 @@ class JudgedAnswer:
             read all of them, or there is no such model.
     """
 
-    item: Item
+    item: BatteryItem
     answer: StoryAnswer
     needs_first: bool
     tells: bool = False

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
-from beliefnest.suites.stories.data import Item, ReadStories, StoryItems, Unread
+from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.grammar import Line, parse_line
 from beliefnest.suites.stories.played_story import check_question
 from beliefnest.suites.stories.questions import parse_question
@@ -93,7 +93,7 @@ def _read(
             faults.append(str(error))
     if story is None:
         return None, [Unread(str(path), tuple(faults), max(1, len(asked)), joint=", ")]
-    items: list[Item] = []
+    items: list[BatteryItem] = []
     unread: list[Unread] = []
     for number, line in asked:
         try:
@@ -105,11 +105,11 @@ def _read(
     return StoryItems(story, tuple(items)), unread
 
 
-def _item(number: int, line: str, story: Story) -> Item:
+def _item(number: int, line: str, story: Story) -> BatteryItem:
     asked, answer = (part.strip() for part in line.split("\t")[:2])
     first, _, rest = asked.partition(" ")
     question = parse_question(rest if first.isdecimal() else asked)
     check_question(story, question)
     if not answer:
         raise InputError(f"{asked!r} has no answer; {_FORM}")
-    return Item(number, question, answer)
+    return BatteryItem(number, question, answer)

@@ -3,9 +3,9 @@
 from bisect import bisect_right
 from dataclasses import dataclass, field
 
-__all__ = ["Pose", "PoseBook", "Stand"]
+__all__ = ["PoseBook", "PoseRow", "Stand"]
 
-Pose = tuple[float, float, float, float, float]
+PoseRow = tuple[float, float, float, float, float]
 """Feet x, y, z (blocks), yaw, pitch (radians)."""
 
 
@@ -14,7 +14,7 @@ class Stand:
     """Poses of one agent: each with its first tick; None while the agent was absent."""
 
     ticks: list[int] = field(default_factory=list)
-    poses: list[Pose | None] = field(default_factory=list)
+    poses: list[PoseRow | None] = field(default_factory=list)
 
 
 class PoseBook:
@@ -30,7 +30,7 @@ class PoseBook:
         self.stands = [Stand() for _ in range(agents)]
         self._start, self._base = start, base
 
-    def add(self, agent: int, tick: int, pose: Pose | None) -> None:
+    def add(self, agent: int, tick: int, pose: PoseRow | None) -> None:
         """Add the pose of an agent from a tick on."""
         stand = self.stands[agent]
         if stand.ticks and stand.ticks[-1] == tick:
@@ -39,7 +39,7 @@ class PoseBook:
             stand.ticks.append(tick)
             stand.poses.append(pose)
 
-    def at(self, agent: int, tick: int) -> Pose | None:
+    def at(self, agent: int, tick: int) -> PoseRow | None:
         """Return the pose of an agent at a tick; None if it was absent or is not known here."""
         if tick < self._start and self._base is not None:
             return self._base.at(agent, tick)

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from beliefnest.viewer.page.pose_history import Pose, Stand
-from beliefnest.viewer.page.tracks import PLACED, Row, Track
+from beliefnest.viewer.page.pose_history import PoseRow, Stand
+from beliefnest.viewer.page.tracks import PLACED, Track, TrackRow
 
 __all__ = ["StandRows", "TrackRows", "fresh_rows"]
 
@@ -58,7 +58,7 @@ class TrackRows:
             "claims": track.claims,
         }
         for part in ("agents", "holds", "owns"):
-            rows_by_agent: list[list[Row]] = getattr(track, part)
+            rows_by_agent: list[list[TrackRow]] = getattr(track, part)
             lists |= {f"{part} {n}": rows for n, rows in enumerate(rows_by_agent)}
         lists |= {f"contents {cell}": rows for cell, rows in track.contents.items()}
         for name, rows in lists.items():
@@ -100,7 +100,7 @@ class StandRows:
         return {"from": first, "t": _steps(ticks[first:]), **columns, "gone": gone}
 
 
-def _rounded(pose: Pose | Sequence[float]) -> list[int]:
+def _rounded(pose: PoseRow | Sequence[float]) -> list[int]:
     return [round(_THOUSAND * value) for value in pose]
 
 

@@ -22,7 +22,7 @@ from beliefnest.timeline.journal import TimelineKey
 from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.claims import claims_at, kind_of
 from beliefnest.viewer.page.grid_changes import Cells, GridChanges
-from beliefnest.viewer.page.pose_history import Pose, PoseBook
+from beliefnest.viewer.page.pose_history import PoseBook, PoseRow
 from beliefnest.viewer.page.runs import grid_text, runs_text
 from beliefnest.viewer.page.wrong import WrongThings
 from beliefnest.world.claims import Claim
@@ -33,7 +33,7 @@ __all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Onlooker", "Track", "TrackR
 UNKNOWN, CURRENT, STALE, PLACED = 0, 1, 2, 3
 """Kinds of an agent's pose: unknown, as in the timeline's world now, as at a past tick, other."""
 
-Row = list[Any]
+TrackRow = list[Any]
 Onlooker = Callable[[Forest], None]
 """Function that is called with a forest at each entry."""
 
@@ -63,15 +63,15 @@ class Track:
 
     path: BeliefPath
     grid: str
-    agents: list[list[Row]]
-    holds: list[list[Row]]
-    owns: list[list[Row]]
-    blocks: list[Row] = field(default_factory=list)
-    contents: dict[int, list[Row]] = field(default_factory=dict)
-    items: list[Row] = field(default_factory=list)
-    wrong: list[Row] = field(default_factory=list)
+    agents: list[list[TrackRow]]
+    holds: list[list[TrackRow]]
+    owns: list[list[TrackRow]]
+    blocks: list[TrackRow] = field(default_factory=list)
+    contents: dict[int, list[TrackRow]] = field(default_factory=dict)
+    items: list[TrackRow] = field(default_factory=list)
+    wrong: list[TrackRow] = field(default_factory=list)
     heard: list[int] = field(default_factory=list)
-    claims: list[Row] = field(default_factory=list)
+    claims: list[TrackRow] = field(default_factory=list)
 
 
 @dataclass
@@ -249,13 +249,13 @@ class TrackRecorder:
                 there &= (table[pose_id] == table[own]).all(axis=2)
         return there
 
-    def _stale(self, at: int, agent: int, tick: int, *, current: bool) -> Row:
+    def _stale(self, at: int, agent: int, tick: int, *, current: bool) -> TrackRow:
         """Return the row of an agent whose pose differs from that in the timeline's world now."""
         table, poses = self._forest.table, self._forest.poses
         number = self._numbers[at]
         pose_id = table.pose(number, agent)
         seen = tick if current else table.seen_at(number, agent)
-        pose: Pose = (*poses.position(pose_id), *poses.angles(pose_id))
+        pose: PoseRow = (*poses.position(pose_id), *poses.angles(pose_id))
         as_seen = poses.details(pose_id) is not None and poses.speaker(pose_id) < 0
         if not current and as_seen and self._book.at(agent, seen) == pose:
             return [tick, STALE, seen]
@@ -330,11 +330,11 @@ class TrackRecorder:
 _NOTHING = object()
 
 
-def _empty(agents: int) -> list[list[Row]]:
+def _empty(agents: int) -> list[list[TrackRow]]:
     return [[] for _ in range(agents)]
 
 
-def _put(rows: list[Row], row: Row) -> None:
+def _put(rows: list[TrackRow], row: TrackRow) -> None:
     """Add a row; among several of one tick the last one counts."""
     if rows and rows[-1][0] == row[0]:
         rows[-1] = row
