@@ -69,5 +69,7 @@ def test_errors_say_what_to_do(tmp_path, capsys):
     assert "--post belongs to writing a page" in capsys.readouterr().err
     assert run(study, "-o", tmp_path / "page", "--pseudonyms") == 2
     assert "--pseudonyms belongs to reading answers" in capsys.readouterr().err
+    assert run(study, "-o", tmp_path / "page", "--exclude", none) == 2
+    assert "--exclude belongs to reading answers" in capsys.readouterr().err
     assert run(study) == 2
     assert "--out" in capsys.readouterr().err

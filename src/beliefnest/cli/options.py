@@ -414,6 +414,13 @@ class ParticipantsOptions:
     pseudonyms: Annotated[
         bool, typer.Option("--pseudonyms", help="With --read: p1, p2 ... in place of ids.")
     ] = False
+    exclude: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="With --read: CSV file of participants who do not count: participant, reason.",
+        ),
+    ] = None
     json: Json = False
 
 

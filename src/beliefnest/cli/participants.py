@@ -23,8 +23,9 @@ def run_participants(options: ParticipantsOptions) -> None:
     Raises:
         BeliefNestError: The study or a file is wrong, or a script failed.
     """
-    if options.pseudonyms and not options.read:
-        raise InputError("--pseudonyms belongs to reading answers; give their files with --read")
+    given = {"pseudonyms": options.pseudonyms, "exclude": options.exclude}
+    for name in (name for name, value in given.items() if value and not options.read):
+        raise InputError(f"--{name} belongs to reading answers; give their files with --read")
     told, lines = _read(options) if options.read else _written(options)
     if options.json:
         sys.stdout.write(json.dumps(told, indent=2) + "\n")
@@ -67,6 +68,7 @@ def _read(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:
             options.read or (),
             options.name,
             pseudonyms=options.pseudonyms,
+            exclude=options.exclude,
             on_item=on_progress,
         )
         on_progress("writing tables", 1, 1)

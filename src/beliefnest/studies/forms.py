@@ -98,11 +98,20 @@ class _PlannedPerson(_PlannedScenario, kw_only=True):
     key: _PersonKey
 
 
+class _Sessions(msgspec.Struct):
+    began: int
+    complete: int
+    partial: int
+    unanswered: int
+    repeated: int
+    excluded: dict[str, int] = {}
+
+
 class PeopleForm(msgspec.Struct):
     """Entries of cells that participants answered."""
 
     cells: list[_PlannedPerson]
-    sessions: dict[str, dict[str, int]] = {}
+    sessions: dict[str, _Sessions] = {}
 
 
 class _EpisodesPlan(msgspec.Struct):

@@ -19,6 +19,7 @@ from beliefnest.scenarios.judging import LOST, unanswered_words
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import DRAWS
 from beliefnest.studies.counting import Row
+from beliefnest.studies.participants.exclusions import excluded_words
 from beliefnest.studies.run_result import RunResult
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.world.words import counted
@@ -67,7 +68,8 @@ class PeopleFacts:
         rows: Number of their rows.
         shown: What they were shown: `film`, `story`, `both`.
         dates: First and last day; None: no date is recorded.
-        sessions: How many began, were complete, partial, unanswered, repeated; empty: not noted.
+        sessions: How many began, were complete, partial, unanswered, repeated, and `excluded` by
+            a list for each reason; empty: not noted.
     """
 
     name: str
@@ -75,7 +77,7 @@ class PeopleFacts:
     rows: int
     shown: Sequence[str]
     dates: tuple[str, str] | None
-    sessions: Mapping[str, int] = field(default_factory=dict)
+    sessions: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -479,15 +481,17 @@ def _sentences(facts: RunFacts) -> Iterator[str]:
 
 def _exclusions(facts: RunFacts) -> Iterator[str]:
     """Yield the sentences about what was excluded."""
-    if facts.excluded:
-        told = [_exclusion(name, count) for name, count in facts.excluded.items()]
+    reasons = [each.sessions.get("excluded") for each in facts.people]
+    told = [excluded_words(each) for each in reasons if each]
+    told += [_exclusion(name, count) for name, count in facts.excluded.items()]
+    if told:
         yield f"Excluded were {_listed(told)}."
-    else:
-        yield "Nothing that was read was excluded." if facts.people else "Nothing was excluded."
+    elif not facts.people:
+        yield "Nothing was excluded."
     if facts.people:
         yield (
-            "Participants or answers that were left out of the files by hand are not recorded: "
-            "report them."
+            f"{'Further p' if any(reasons) else 'P'}articipants or answers that were left out of "
+            "the files by hand are not recorded: report them."
         )
 
 
@@ -534,7 +538,7 @@ def _person(people: PeopleFacts) -> str:
     return f"{told}, {f'on {first}' if first == last else f'from {first} to {last}'} (UTC)"
 
 
-def _told_sessions(sessions: Mapping[str, int]) -> str:
+def _told_sessions(sessions: Mapping[str, Any]) -> str:
     """Return how many participants began, ended and stopped, as a clause."""
     told = (
         f"Of {counted(sessions['began'], 'participant')} who began, {sessions['complete']} "

@@ -47,13 +47,13 @@ class Sheet:
     delimiter: str
 
 
-def read_sheet(file: Path) -> Sheet:
-    """Return the content of a CSV file; raise InputError if it cannot be read or is none."""
+def read_sheet(file: Path, needed: Sequence[str] = ()) -> Sheet:
+    """Return the content of a CSV file; raise InputError as `decode_sheet`, or if it is none."""
     try:
         content = read_regular(file)
     except OSError as error:
         raise InputError(f"{file} cannot be read: {error.strerror}") from None
-    return decode_sheet(content, str(file))
+    return decode_sheet(content, str(file), needed)
 
 
 def decode_sheet(content: bytes, where: str, needed: Sequence[str] = ()) -> Sheet:

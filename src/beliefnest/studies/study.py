@@ -342,6 +342,7 @@ class Study:
         name: str = "people",
         *,
         pseudonyms: bool = False,
+        exclude: str | Path | None = None,
         on_item: OnItem | None = None,
     ) -> tuple[StudyResult, tuple[str, ...]]:
         """Read answers of participants into the study's folder, as rows beside those of models.
@@ -355,6 +356,8 @@ class Study:
             name: Name of the people in the column `model`.
             pseudonyms: Replace ids of participants by `p1`, `p2` and so on, in the order in which
                 their sessions began.
+            exclude: CSV file of participants whose answers do not count, with the columns
+                `participant` and `reason`; None: all count.
             on_item: Function that receives the progress.
 
         Returns:
@@ -378,6 +381,7 @@ class Study:
             name,
             on_item or _say_nothing_of_items,
             pseudonyms=pseudonyms,
+            exclude=None if exclude is None else Path(exclude),
         )
         place = StudyFolder.open(folder)
         place.check_subjects(self._plan_json(self.plan()))

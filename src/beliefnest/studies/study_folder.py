@@ -174,8 +174,10 @@ class StudyFolder:
         checked_form(found, PeopleForm, file, _READ_AGAIN)
         return list(found["cells"])
 
-    def sessions(self) -> dict[str, dict[str, int]]:
+    def sessions(self) -> dict[str, dict[str, Any]]:
         """Return how many participants of each name began, ended and stopped; empty: not noted.
+
+        `excluded` has the number of excluded participants by reason.
 
         Raises:
             InputError: The file is damaged.
@@ -185,7 +187,7 @@ class StudyFolder:
         return dict(read_json(file, _READ_AGAIN).get("sessions", {})) if file.is_file() else {}
 
     def write_people(
-        self, name: str, cells: Iterable[PersonCell], sessions: Mapping[str, int]
+        self, name: str, cells: Iterable[PersonCell], sessions: Mapping[str, Any]
     ) -> None:
         """Replace the cells of the people of a name; those of other names stay.
 
@@ -206,7 +208,7 @@ class StudyFolder:
         self._write_entries([*others, *(dict(cell.planned) for cell in own.values())], noted)
 
     def _write_entries(
-        self, entries: Iterable[Mapping[str, Any]], sessions: Mapping[str, Mapping[str, int]]
+        self, entries: Iterable[Mapping[str, Any]], sessions: Mapping[str, Mapping[str, Any]]
     ) -> None:
         content = {"form": _PEOPLE_FORM, "cells": list(entries), "sessions": sessions}
         _write(self.path / _PEOPLE, _json(content))

@@ -140,6 +140,62 @@ def test_pseudonyms_replace_ids_in_all_files(page, study, tmp_path):
         assert b"secret" not in file.read_bytes()
 
 
+@pytest.mark.parametrize(
+    ("separator", "encoding"), [(",", "utf-8"), (";", "utf-8-sig"), ("\t", "utf-16")]
+)
+def test_a_list_of_exclusions_is_counted_wherever_it_comes_from(
+    study, answers, tmp_path, separator, encoding
+):
+    rows = [
+        ["note", "id", "reason"],
+        ["", "cleo", "said that she guessed"],
+        ["", "ben", "failed the check"],
+    ]
+    excluded = tmp_path / "excluded.csv"
+    excluded.write_bytes("\r\n".join(map(separator.join, rows)).encode(encoding))
+    out = tmp_path / "out"
+    result, notes = study.read_participants(out, [answers], exclude=excluded, pseudonyms=True)
+    assert {row["participant"] for row in result.rows} == {"p1"}
+    told = "2 participants by a list (1 for 'said that she guessed', 1 for 'failed the check')"
+    assert notes == (f"excluded: {told}",)
+    methods = result.methods()
+    assert "Of 1 participant who began" in methods
+    assert f"Excluded were {told}" in methods
+    assert "Further participants or answers that were left out of the files by hand" in methods
+    # A bundle of the folder keeps the numbers, and no id.
+    result.bundle(tmp_path / "study.zip")
+    with zipfile.ZipFile(tmp_path / "study.zip") as bundled:
+        texts = [bundled.read(name) for name in bundled.namelist()]
+    assert any(b"failed the check" in text for text in texts)
+    assert not any(b"cleo" in text for text in texts)
+    # Without the list, they count again.
+    result, notes = study.read_participants(out, [answers])
+    assert len({row["participant"] for row in result.rows}) == 3
+    assert "by a list" not in result.methods()
+    assert "Nothing" not in result.methods()
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("participant;reason\nCleo;guessed\n", r"2, column participant: nobody .* is 'Cleo'; corr"),
+        (
+            "participant,reason\n5E+23,x\n",
+            "2, column participant: nobody .* is '5E[+]23', which is a number in scientific",
+        ),
+        ("participant,reason\ncleo,\n", "2, column reason: is empty; say why 'cleo'"),
+        ("participant,reason\ncleo,a\ncleo,b\n", "3, column reason: 'cleo' is excluded for 'a'"),
+        ("name,reason\ncleo,a\n", "1 has no column 'participant'"),
+    ],
+)
+def test_a_list_that_does_not_fit_the_answers_is_refused(study, answers, tmp_path, text, told):
+    excluded = tmp_path / "excluded.csv"
+    excluded.write_text(text, encoding="utf-8")
+    with pytest.raises(bn.InputError, match=f"excluded.csv:{told}"):
+        study.read_participants(tmp_path / "out", [answers], exclude=excluded)
+    assert not (tmp_path / "out" / "people.json").exists()
+
+
 def test_a_parameter_cannot_be_called_participant(page, tmp_path):
     text = TRANSFER.replace("  item: {", "  participant: {default: 1, values: [1, 2]}\n  item: {")
     varied = STUDY.replace("variations: {", "variations: {participant: [1, 2], ")

@@ -36,7 +36,7 @@ class _PersonKey(CellKey):
 
 @dataclass(frozen=True, slots=True)
 class Sessions:
-    """Numbers of participants.
+    """Numbers of participants; all but `excluded` are of those who are not excluded.
 
     Attributes:
         began: All of whom there is an answer or the beginning of a session.
@@ -44,6 +44,7 @@ class Sessions:
         partial: Those who stopped after some answers.
         unanswered: Those who stopped before the first answer.
         repeated: Those who took part more than once, of whom the first session counts.
+        excluded: Those whom a list excludes, by reason.
     """
 
     began: int
@@ -51,6 +52,7 @@ class Sessions:
     partial: int
     unanswered: int
     repeated: int
+    excluded: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass

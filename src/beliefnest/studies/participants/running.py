@@ -1,8 +1,9 @@
 """Pages for participants of a study, and the way back of their answers."""
 
 import json
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -16,6 +17,7 @@ from beliefnest.studies.participants.answers import (
     read_answers,
     with_pseudonyms,
 )
+from beliefnest.studies.participants.exclusions import excluded_words, read_exclusions
 from beliefnest.studies.participants.folder import (
     check_folder,
     check_post,
@@ -119,6 +121,7 @@ def join_answers(
     on_item: OnItem,
     *,
     pseudonyms: bool,
+    exclude: Path | None,
 ) -> Joined:
     """Read answers of participants and judge them as those of models.
 
@@ -130,6 +133,7 @@ def join_answers(
         name: Name of the people in the column `model`.
         on_item: Function that receives the progress.
         pseudonyms: Replace ids of participants by `p1`, `p2` and so on.
+        exclude: List of participants whose answers do not count; None: nobody.
 
     Raises:
         BeliefNestError: A file does not fit the study, or a script failed.
@@ -138,9 +142,16 @@ def join_answers(
     check_name(name, design.models)
     items = items_of(cells, documents)
     answers = [each for file in answer_files(files) for each in read_answers(file)]
-    if pseudonyms:
-        answers = with_pseudonyms(answers)
-    notes: list[str] = []
+    excluded = {} if exclude is None else read_exclusions(exclude, answers)
+    named = with_pseudonyms(answers) if pseudonyms else answers
+    # The pseudonym of a participant does not depend on whom the list excludes.
+    answers = [
+        shown
+        for shown, answer in zip(named, answers, strict=True)
+        if answer.participant not in excluded
+    ]
+    reasons = dict(Counter(excluded.values()))
+    notes = [f"excluded: {excluded_words(reasons)}"] if reasons else []
     given = [each for each in answers if not each.is_start]
     sessions = counted_answers(given, {item.name: item for item in items}, notes)
     answered = {cell for own in sessions.values() for cell in own}
@@ -151,7 +162,9 @@ def join_answers(
             f"the answers come from {len(pages)} different pages ({', '.join(sorted(pages))}), "
             "whose cells are all part of this study"
         )
-    return joined(sessions, judged_items(wanted, on_item), name, items, notes, answers)
+    found = joined(sessions, judged_items(wanted, on_item), name, items, notes, answers)
+    found.sessions = replace(found.sessions, excluded=reasons)
+    return found
 
 
 def write_answers(file: Path, answers: Sequence[tuple[PersonAnswer, bool]]) -> None:

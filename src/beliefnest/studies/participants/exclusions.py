@@ -1,0 +1,57 @@
+"""Participants whom researchers exclude, with reasons."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from beliefnest.errors import InputError
+from beliefnest.studies.participants.answers import Answer
+from beliefnest.studies.sheets import read_sheet, spoilt_text
+from beliefnest.world.words import counted
+
+__all__ = ["excluded_words", "read_exclusions"]
+
+_IDS = ("participant", "id")
+_REASON = "reason"
+
+
+def read_exclusions(file: Path, answers: Sequence[Answer]) -> dict[str, str]:
+    """Return the reason for each excluded participant, from a CSV file.
+
+    Args:
+        file: The file, with the columns `participant` (or `id`) and `reason`.
+        answers: All answers, also those of the excluded participants.
+
+    Raises:
+        InputError: The file has another form, or names somebody who gave no answer; the message
+            names line and column.
+    """
+    sheet = read_sheet(file, (_REASON,))
+    column = next((name for name in _IDS if name in sheet.columns), None)
+    if column is None:
+        raise InputError(f"{file}:1 has no column {_IDS[0]!r}; give the ids of participants in it")
+    known = {answer.participant for answer in answers}
+    found: dict[str, str] = {}
+    for line, row in sheet.rows:
+        participant, reason = row[column].strip(), " ".join(row[_REASON].split())
+        where = f"{file}:{line}, column"
+        if participant not in known:
+            spoilt = spoilt_text(participant)
+            told = f", which is {spoilt} that a spreadsheet made" if spoilt else ""
+            raise InputError(
+                f"{where} {column}: nobody who answered is {participant!r}{told}; correct "
+                "the id, and give the files of all participants, also of excluded ones"
+            )
+        if not reason:
+            raise InputError(f"{where} {_REASON}: is empty; say why {participant!r} is excluded")
+        if found.setdefault(participant, reason) != reason:
+            raise InputError(
+                f"{where} {_REASON}: {participant!r} is excluded for {found[participant]!r} as "
+                "well; give one reason"
+            )
+    return found
+
+
+def excluded_words(reasons: Mapping[str, int]) -> str:
+    """Return how many participants were excluded for which reasons, in words."""
+    told = [f"{count} for {reason!r}" for reason, count in reasons.items()]
+    return f"{counted(sum(reasons.values()), 'participant')} by a list ({', '.join(told)})"
