@@ -1,19 +1,12 @@
-"""Doors of pictures and films, and of everything that a simulator returns in words."""
+"""Doors of pictures, and of everything that a simulator returns in words."""
 
 from tests.noninterference.doors import door
 from tests.noninterference.pairs import Played
 
 from beliefnest.nest.face.matters import Contained
-from beliefnest.studies.participants.film import read_film
 
 _BELOW = {"/ann": "/ann/bob", "/ann/bob": "/ann/bob/ann"}
 """Paths with which paths are compared."""
-
-
-@door(every=10)
-def films(world: Played, path: str) -> object:
-    """Return the film for a participant."""
-    return read_film(world.nest, path, 0)
 
 
 @door(every=4)

@@ -1,8 +1,10 @@
 """Nothing that is said or shown for an agent differs in worlds that are the same to the agent."""
 
 import pytest
+import tests.noninterference.acting_doors
 import tests.noninterference.asked_doors
 import tests.noninterference.environment_doors
+import tests.noninterference.page_doors
 import tests.noninterference.prose_doors
 import tests.noninterference.shown_doors  # noqa: F401 - these modules register doors
 from tests.noninterference.doors import DOORS, Door

@@ -41,6 +41,7 @@ from beliefnest.timeline.export_tables import prompt_row
 from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
+from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.words import items_words
 
 __all__ = ["print_prompt", "show_run"]
@@ -168,8 +169,7 @@ def _animate(options: ShowOptions, store: Path) -> None:
     assert file is not None
     check_animated(file)
     with _opened(store) as (_, nest, _):
-        end = _simulator(options, nest).tick
-        ticks = chosen_ticks(nest.ticks(options.path), end, _FRAMES)
+        ticks = _animated(_simulator(options, nest), options, nest)
         figures = [
             nest.figure(options.path, tick, options.against, height=options.height)
             for tick in ticks
@@ -177,6 +177,16 @@ def _animate(options: ShowOptions, store: Path) -> None:
         spans = [b - a for a, b in itertools.pairwise(ticks)]
         times = [max(40, min(1500, span * 50)) for span in spans]
         save_animation(figures, [*times, 2500], file)
+
+
+def _animated(simulator: PastSimulator, options: ShowOptions, nest: RecordedNest) -> Sequence[int]:
+    """Return the ticks of an animation. A belief that is compared with itself tells no others."""
+    ticks = nest.ticks(options.path)
+    compared = parse_path(options.against, nest.agents)
+    if not compared or path_text(compared) != simulator.path:
+        return chosen_ticks(ticks, simulator.tick, _FRAMES)
+    percepts = simulator.changes(ticks[0])
+    return chosen_ticks(percepts, percepts[-1], _FRAMES)
 
 
 def chosen_ticks(changes: Sequence[int], end: int, most: int) -> list[int]:

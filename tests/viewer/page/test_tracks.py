@@ -193,3 +193,17 @@ def test_what_is_new_is_told_once_and_adds_up_to_the_whole(story):
     data.deepen(story.reader.timelines()[0].key, ("ann", "bob", "ann"))
     [(number, told)] = data.update()["timelines"].items()
     assert number == "0" and list(told["tracks"]) == ["/ann/bob/ann"]
+
+
+@pytest.mark.parametrize("depth", [0, 1])
+def test_lies_are_told_whatever_the_depth(depth):
+    world = bn.ScriptedWorld(
+        BOX, {}, {"ann": (2.5, 1, 2.5)}, containers={place: {"apple": 1} for place in CHESTS}
+    )
+    with bn.Nest(world) as nest:
+        world.open("ann", CHESTS[0])
+        world.say("ann", "It is empty.", claims=[bn.Claim.absent("apple", CHESTS[0])])
+        world.say("ann", "So is this.", claims=[bn.Claim.absent("apple", CHESTS[1])])
+        page = RunData(nest.reader, About("lies"), depth).update()
+    events = page["timelines"]["0"]["events"][1]
+    assert [claim[1] for event in events for claim in event.get("claims", [])] == ["a lie", "false"]

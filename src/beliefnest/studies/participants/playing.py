@@ -17,7 +17,15 @@ from beliefnest.studies.participants.film import SceneFilm, read_film
 from beliefnest.studies.participants.items import Item
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = ["Judged", "OnItem", "ParticipantView", "judged_items", "refuse_claims", "shown_items"]
+__all__ = [
+    "Judged",
+    "OnItem",
+    "ParticipantView",
+    "judged_items",
+    "refuse_claims",
+    "shown_items",
+    "view_of",
+]
 
 OnItem = Callable[[str, int, int], None]
 """Function of a description, the number of items done, and of all items."""
@@ -72,7 +80,7 @@ def shown_items(
         BeliefNestError: A script failed; the message names the cell.
     """
     for item, nest, start in _each_played(items, on_item):
-        yield item, [_view(nest, path, start, shown) for path in item.paths]
+        yield item, [view_of(nest, path, start, shown) for path in item.paths]
 
 
 def judged_items(items: Sequence[Item], on_item: OnItem) -> Iterator[tuple[Item, Judged]]:
@@ -113,7 +121,8 @@ def _played(item: Item, worlds: Worlds, renderer: Renderer) -> Iterator[tuple[Ne
         raise type(error)(f"{_title(item)}: {error}") from error
 
 
-def _view(nest: Nest, path: str, start: int, shown: str) -> ParticipantView:
+def view_of(nest: Nest, path: str, start: int, shown: str) -> ParticipantView:
+    """Return what participants see of a simulator: `film`, `story` or `both` since a tick."""
     simulator = nest[path]
     story = simulator.render(_STORY) if shown in ("story", "both") else ""
     return ParticipantView(

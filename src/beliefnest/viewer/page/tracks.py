@@ -26,7 +26,7 @@ from beliefnest.viewer.page.pose_history import PoseBook, PoseRow
 from beliefnest.viewer.page.runs import grid_text, runs_text
 from beliefnest.viewer.page.wrong import WrongThings
 from beliefnest.world.claims import Claim
-from beliefnest.world.paths import BeliefPath
+from beliefnest.world.paths import BeliefPath, normalised
 
 __all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Onlooker", "Track", "TrackRecorder"]
 
@@ -118,7 +118,9 @@ class TrackRecorder:
         self.claims: list[tuple[int, Claim, str]] = []
         self._onlooker = onlooker
         self._reader, self._book, self._fills = reader, book, fills
-        self._forest = reader.walk(key, paths)
+        # Whether a claim is a lie is judged by the belief of its speaker.
+        speakers = [normalised((*key.path, agent)) for agent in reader.agents if fills]
+        self._forest = reader.walk(key, [*dict.fromkeys([*paths, *speakers])])
         self._numbers = [self._forest.node(path) for path in paths]
         agents = len(reader.agents)
         self._palette = palette
