@@ -3,6 +3,7 @@
  * Readers of files of places: Sponge schematics (`.schem`, versions 1 to 3, written by WorldEdit and others) and the
  * game's own structure files (`.nbt`). Blocks are returned as the texts of the file: names and properties.
  */
+const { inspect } = require('node:util')
 const zlib = require('node:zlib')
 const { BadRequest } = require('../channel/errors')
 const { Assembly } = require('../regions/assembly')
@@ -159,8 +160,11 @@ function numbered (palette) {
   return { texts, indices }
 }
 
-/** Return the beginning of a text, for messages. */
-const quoted = text => text.length > LONGEST_QUOTE ? `${text.slice(0, LONGEST_QUOTE - 3)}...` : text
+/** Return the beginning of any value of a file, for messages. */
+function quoted (value) {
+  const text = typeof value === 'string' ? value : inspect(value, { compact: true, depth: 1, breakLength: Infinity, maxArrayLength: LONGEST_QUOTE, maxStringLength: LONGEST_QUOTE })
+  return text.length > LONGEST_QUOTE ? `${text.slice(0, LONGEST_QUOTE - 3)}...` : text
+}
 
 /** Assembly of a place whose blocks come in the order of schematics: x fastest, y slowest. It holds one layer of cubes. */
 class Layers {
@@ -225,13 +229,13 @@ function eachVarint (bytes, visit) {
 }
 
 function requireKnown (texts, index, number = index) {
-  if (!Number.isInteger(index) || texts[index] === undefined) throw new BadRequest(`its blocks have number ${quoted(String(number))}, of which its palette says nothing`)
+  if (!Number.isInteger(index) || texts[index] === undefined) throw new BadRequest(`its blocks have number ${quoted(number)}, of which its palette says nothing`)
 }
 
 function requireInside (shape, position) {
   // Positions are lists, or arrays of bytes or numbers.
   const isInside = (Array.isArray(position) || ArrayBuffer.isView(position)) && position.length === 3 && position.every((value, axis) => Number.isInteger(value) && value >= 0 && value < shape[axis])
-  if (!isInside) throw new BadRequest(`it has a block at ${quoted(String(position))}, which is outside its ${shape.join(' x ')} blocks`)
+  if (!isInside) throw new BadRequest(`it has a block at ${quoted(position)}, which is outside its ${shape.join(' x ')} blocks`)
 }
 
 function readEntity ({ containers, signs, special }, position, entity) {

@@ -103,6 +103,7 @@ test('values of other types than those of the format are refused with a sentence
   const plain = { ...sides, Palette: nbt.comp({ 'minecraft:air': nbt.int(0) }), BlockData: nbt.byteArray(Array(12).fill(0)) }
   const of = changes => file(nbt.comp({ ...plain, ...changes }))
   const chest = entity => of({ BlockEntities: nbt.list(nbt.comp([{ Pos: nbt.intArray([0, 0, 0]), ...entity }])) })
+  const one = block => file(nbt.comp({ size: nbt.list(nbt.int([1, 1, 1])), palette: nbt.list(nbt.comp([{ Name: nbt.string('stone') }])), blocks: nbt.list(nbt.comp([block])) }))
   const stack = (id, count) => chest({ Items: nbt.list(nbt.comp([{ id, Count: count }])) })
   const cases = [
     [of({ Palette: nbt.string('stone') }), /its palette is no compound/],
@@ -121,9 +122,31 @@ test('values of other types than those of the format are refused with a sentence
     [stack(nbt.string(''), nbt.byte(1)), /without a name/],
     [file(nbt.comp({ size: nbt.list(nbt.int([1, 1, 1])), palette: nbt.string('stone') })), /are no list/],
     [file(nbt.comp({ size: nbt.list(nbt.int([1, 1, 1])), palette: nbt.list(nbt.int([1])) })), /is no compound/],
-    [file(nbt.comp({ size: nbt.list(nbt.string(['a', 'b', 'c'])) })), /its sides are/]
+    [file(nbt.comp({ size: nbt.list(nbt.string(['a', 'b', 'c'])) })), /its sides are/],
+    [one({ pos: nbt.list(nbt.int([0, 0, 0])), state: nbt.comp({}) }), /its blocks have number \[Object: null prototype\] \{\}/],
+    [one({ pos: nbt.list(nbt.comp([{}, {}, {}])), state: nbt.int(0) }), /it has a block at \[/]
   ]
   for (const [bytes, said] of cases) assert.throws(() => readPlace(bytes, CUT), { message: said, kind: 'bad_request' })
+})
+
+test('changed bytes are refused with one line, or read', () => {
+  let seed = 1
+  const below = many => (seed = (seed * 1103515245 + 12345) & 0x7fffffff) % many
+  const sound = [schem2(), structure()].map(bytes => zlib.gunzipSync(bytes))
+  for (let turn = 0; turn < 4000; turn++) {
+    let bytes = Buffer.from(sound[turn % 2])
+    for (let changes = below(4); changes >= 0; changes--) {
+      const at = below(bytes.length)
+      bytes[at] = [below(256), below(13), 0x7f, 0xff][below(4)]
+      if (below(4) === 0) bytes = Buffer.concat([bytes.subarray(0, at + 1), bytes.subarray(below(bytes.length))])
+    }
+    try {
+      readPlace(bytes, CUT)
+    } catch (error) {
+      assert.equal(error.kind, 'bad_request', `${error.stack} of ${bytes.toString('hex')}`)
+      assert.match(error.message, /^[^\n]{1,300}$/)
+    }
+  }
 })
 
 test('a palette may use any numbers, and names may be any', () => {
