@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from beliefnest.errors import InputError
-from beliefnest.studies.participants.answers import Answer
+from beliefnest.studies.participants.answers import PersonAnswer
 from beliefnest.studies.sheets import read_sheet, spoilt_text
 from beliefnest.world.words import counted
 
@@ -14,7 +14,7 @@ _IDS = ("participant", "id")
 _REASON = "reason"
 
 
-def read_exclusions(file: Path, answers: Sequence[Answer]) -> dict[str, str]:
+def read_exclusions(file: Path, answers: Sequence[PersonAnswer]) -> dict[str, str]:
     """Return the reason for each excluded participant, from a CSV file.
 
     Args:
