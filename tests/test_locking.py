@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+from tests.processes import started
 
 from beliefnest import locking
 from beliefnest.errors import InputError
@@ -35,17 +36,10 @@ def kind(request, monkeypatch):
 
 @pytest.fixture
 def other(tmp_path):
-    process = subprocess.Popen(
-        [sys.executable, "-c", OTHER, str(tmp_path)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stdout.readline() == "held\n"
-    yield process
-    process.stdin.close()
-    process.wait()
-    process.stdout.close()
+    command = [sys.executable, "-c", OTHER, str(tmp_path)]
+    with started(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdout.readline() == "held\n"
+        yield process
 
 
 def test_a_folder_in_use_is_refused_with_its_holder(tmp_path, other):

@@ -10,6 +10,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 
 import pytest
+from tests.processes import started
 
 import beliefnest as bn
 from beliefnest.timeline.store import SqliteJournal
@@ -151,21 +152,24 @@ def test_what_a_child_inherits_keeps_neither_node_nor_the_lock_alive(tmp_path: P
         import beliefnest as bn
 
         nest = bn.Nest.open(bn.Scenario.load("sally-anne", 3), store=sys.argv[1])
+        begun, begin = os.pipe()
         child = os.fork()
         if child == 0:
+            os.write(begin, b".")
             sys.stdin.read()
             os._exit(0)
-        print(nest._engine.world.pid, child, flush=True)
+        # What a child inherits it gives up when it begins.
+        os.read(begun, 1)
+        print(nest._engine.world.pid, flush=True)
         os.kill(os.getpid(), signal.SIGKILL)
     """
-    with subprocess.Popen(
+    with started(
         [sys.executable, "-c", textwrap.dedent(script), str(tmp_path / "run.bn")],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
-        text=True,
     ) as parent:
         assert parent.stdout is not None
-        node, _ = map(int, parent.stdout.readline().split())
+        node = int(parent.stdout.readline())
         parent.wait()
         watch = os.pidfd_open(node) if _is_running(node) else None
         if watch is not None:

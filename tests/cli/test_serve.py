@@ -9,6 +9,7 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+from tests.processes import started
 
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
@@ -37,8 +38,7 @@ def test_ctrl_c_ends_it_without_complaint_while_a_page_listens(tmp_path: Path) -
     with bn.Nest(world, store=store):
         world.step(3)
     command = [sys.executable, "-m", "beliefnest", "serve", str(store), "--port", "0"]
-    server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    with server:
+    with started(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as server:
         assert server.stdout is not None
         address = re.search(r"http://\S+", server.stdout.readline())
         assert address is not None
@@ -64,7 +64,7 @@ def test_what_cannot_be_shown_is_refused_before_anything_is_served(
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     (tmp_path / "run.bn").write_text("no run", encoding="utf-8")
     command = [sys.executable, "-m", "beliefnest", "serve", str(tmp_path), "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as it:
+    with started(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as it:
         assert it.stdout is not None
         assert it.stdout.readline().startswith("The page is at")
         it.send_signal(signal.SIGINT)
@@ -76,19 +76,19 @@ def test_a_file_of_the_user_hides_no_module_from_the_run_that_is_served(tmp_path
     (tmp_path / "random.py").write_text("raise SystemExit('mine')\n", encoding="utf-8")
     beliefnest = Path(sys.executable).with_name("beliefnest")
     command = [str(beliefnest), "serve", "sally-anne", "--condition", "1"]
-    with subprocess.Popen(
+    with started(
         [*command, "--port", "0", "--out", "out"],
         cwd=tmp_path,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        text=True,
     ) as server:
         assert server.stdout is not None
         address = re.search(r"http://\S+", server.stdout.readline())
         assert address is not None
-        # The page waits for the run file, which the child writes.
-        page = urllib.request.urlopen(address[0], timeout=120).read()
-        assert b"sally" in page
-        server.send_signal(signal.SIGINT)
+        # The child writes the run file in its time; the page tells of it when it is there.
+        with urllib.request.urlopen(f"{address[0]}api/live?from=0", timeout=120) as live:
+            assert any(b"sally" in line for line in live)
+            server.send_signal(signal.SIGINT)
+            live.read()
         _, errors = server.communicate()
     assert "mine" not in errors

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from tests.processes import started
 from tests.profiles import at_night
 
 import beliefnest as bn
@@ -67,9 +68,7 @@ def serving(*arguments: str) -> Iterator[tuple[str, list[str]]]:
     """Start a server; give its address, and at the end the lines that it wrote to stderr."""
     command = [sys.executable, "-m", "beliefnest", "serve", *arguments, "--port", "0"]
     lines: list[str] = []
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
+    with started(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdout is not None
         found = re.search(r"http://([^/\s]+)", process.stdout.readline())
         assert found is not None

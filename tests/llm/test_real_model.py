@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.processes import started
 
 import beliefnest as bn
 from beliefnest.scenarios.judging import OUTCOMES
@@ -28,10 +29,9 @@ pytestmark = [
 def address():
     folder = Path(FOLDER)
     command = ["node", str(folder / "serve.mjs"), str(folder / "model.gguf"), "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+    with started(command, stdout=subprocess.PIPE) as server:
         assert server.stdout is not None
         yield server.stdout.readline().strip()
-        server.terminate()
 
 
 @pytest.fixture(autouse=True)

@@ -7,6 +7,7 @@ import threading
 
 import pytest
 from tests.llm.conftest import FakeOpenAI, serving
+from tests.processes import started
 from tests.studies.small import small_in, study_in
 
 import beliefnest as bn
@@ -150,12 +151,12 @@ def test_an_interrupted_study_keeps_whole_cells(server, tmp_path):
     varied = "scenarios: [small.yaml]\nvariations: {count: [1, 2]}\n"
     file = study_in(tmp_path, f"{varied}models: [offline, 'vllm:m']\n")
     command = [sys.executable, "-m", "beliefnest", "study", str(file), "--out"]
-    process = subprocess.Popen(
-        [*command, str(tmp_path / "out"), "--jobs", "1"], stderr=subprocess.PIPE, text=True
-    )
-    assert asked.wait(120)
-    process.send_signal(signal.SIGINT)
-    _, told = process.communicate()
+    with started(
+        [*command, str(tmp_path / "out"), "--jobs", "1"], stderr=subprocess.PIPE
+    ) as process:
+        assert asked.wait(120)
+        process.send_signal(signal.SIGINT)
+        _, told = process.communicate()
     ended.set()
     assert process.returncode == 130
     assert "run the same command to continue" in told

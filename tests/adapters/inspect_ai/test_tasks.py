@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from tests.llm.conftest import serving
+from tests.processes import started
 from tests.studies.test_doors import ROOM, SAID
 
 from beliefnest.scenarios.judging import NOT_ANSWERED
@@ -203,11 +204,8 @@ Run = Callable[[str, Path], list[str]]
 def run() -> Iterator[Run]:
     """Yield a function that runs programs in one process, as cells of a notebook run."""
     # Inspect has an event loop, threads and a log of its own: a process of its own as well.
-    with subprocess.Popen(
-        [sys.executable, "-c", LISTENER],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
+    with started(
+        [sys.executable, "-c", LISTENER], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as listener:
         assert listener.stdin is not None and listener.stdout is not None
 

@@ -1,6 +1,5 @@
 """The page in a real browser: as a file, and live."""
 
-import os
 import re
 import subprocess
 import sys
@@ -8,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests.processes import started
 
 from beliefnest.cli.options import ShowOptions
 from beliefnest.cli.page import write_page
@@ -244,9 +244,7 @@ def server(tmp_path: Path) -> Iterator[str]:
     """`beliefnest serve` of a scenario that begins to run now."""
     command = [sys.executable, "-m", "beliefnest", "serve", "sally-anne", "--condition", "1"]
     command += ["--port", "0", "--out", str(tmp_path / "run")]
-    with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=os.environ
-    ) as process:
+    with started(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
         assert process.stdout is not None
         found = re.search(r"http://\S+", process.stdout.readline())
         assert found is not None

@@ -1,6 +1,5 @@
 """The editor of scenario files: in a real browser, and what its server refuses."""
 
-import os
 import re
 import subprocess
 import sys
@@ -8,6 +7,7 @@ import sys
 import httpx2
 import pytest
 import yaml
+from tests.processes import started
 from tests.viewer.page.test_page import assert_accessible, assert_clean
 
 from beliefnest.scenarios.scenario import Scenario
@@ -36,13 +36,8 @@ def served(tmp_path):
     file = tmp_path / "rooms.yaml"
     file.write_text(SCENE, encoding="utf-8")
     command = [sys.executable, "-m", "beliefnest", "serve", str(file), "--edit", "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ) as process:
-        found = re.search(r"http://\S+", process.stdout.readline())
-        try:
-            yield file, found[0]
-        finally:
-            process.terminate()
-            process.wait()
+    with started(command, stdout=subprocess.PIPE) as process:
+        yield file, re.search(r"http://\S+", process.stdout.readline())[0]
 
 
 def sees(browser, who, what):
