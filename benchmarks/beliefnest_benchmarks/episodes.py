@@ -3,7 +3,7 @@
 import time
 from typing import Any
 
-from beliefnest.belief.facts import StateFacts
+from beliefnest.facts.states import StateFacts
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 from beliefnest.episodes.policies.course_planner import Bounds, Planner

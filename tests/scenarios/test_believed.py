@@ -84,23 +84,23 @@ def expected(nest: bn.Nest, **asked: Any) -> Answers:
 
 
 ASKED: list[tuple[dict[str, Any], list[str], list[str]]] = [
-    ({"believed": "/", "item": "diamond"}, [], ["eastern chest", "(6, 1, 2)"]),
-    ({"believed": "/lia/wim", "item": "diamond"}, [], ["western chest", "(2, 1, 2)"]),
-    ({"believed": "/lia", "item": "apple"}, [], ["unknown"]),
-    ({"believed": "/", "item": "apple"}, [], ["red box"]),
-    ({"believed": "/wim", "agent": "wim"}, [], ["garden"]),
-    ({"believed": "/wim", "container": LEFT}, [], ["diamond", "diamonds"]),
-    ({"believed": "/lia", "container": LEFT}, [], ["nothing", "empty"]),
-    ({"believed": "/wim", "container": RIGHT}, [], ["unknown"]),
-    ({"believed": "/wim", "sign": SIGN}, [], ["keep / shut"]),
-    ({"believed": "/wim", "block": [0, 0, 0]}, [], ["stone"]),
+    ({"path": "/", "item": "diamond"}, [], ["eastern chest", "(6, 1, 2)"]),
+    ({"path": "/lia/wim", "item": "diamond"}, [], ["western chest", "(2, 1, 2)"]),
+    ({"path": "/lia", "item": "apple"}, [], ["unknown"]),
+    ({"path": "/", "item": "apple"}, [], ["red box"]),
+    ({"path": "/wim", "agent": "wim"}, [], ["garden"]),
+    ({"path": "/wim", "container": LEFT}, [], ["diamond", "diamonds"]),
+    ({"path": "/lia", "container": LEFT}, [], ["nothing", "empty"]),
+    ({"path": "/wim", "container": RIGHT}, [], ["unknown"]),
+    ({"path": "/wim", "sign": SIGN}, [], ["keep / shut"]),
+    ({"path": "/wim", "block": [0, 0, 0]}, [], ["stone"]),
     (
-        {"believed": "/lia/wim", "item": "diamond"},
+        {"path": "/lia/wim", "item": "diamond"},
         ["in the eastern chest", "in the western chest"],
         ["in the western chest"],
     ),
     (
-        {"believed": "/lia", "item": "apple", "unknown": "nobody knows"},
+        {"path": "/lia", "item": "apple", "unknown": "nobody knows"},
         ["red box", "Nobody knows."],
         ["Nobody knows."],
     ),
@@ -114,10 +114,10 @@ def test_the_nest_computes_right_answers(nest, right, options, answers):
 
 
 def test_computed_answers_are_judged_like_typed_ones(nest):
-    where = expected(nest, right={"believed": "/lia/wim", "item": "diamond"})
+    where = expected(nest, right={"path": "/lia/wim", "item": "diamond"})
     assert where.judge_text("in the Western chest").ok
     assert not where.judge_text("eastern chest").ok
-    unknown = expected(nest, right={"believed": "/lia", "item": "apple"})
+    unknown = expected(nest, right={"path": "/lia", "item": "apple"})
     assert unknown.judge_text("I do not know").ok
     assert not unknown.judge_text("red box").ok
 
@@ -126,23 +126,23 @@ def test_computed_answers_are_judged_like_typed_ones(nest):
 def test_programs_are_judged_by_a_believed_place(nest, path, ok, opens):
     said = "```javascript\nawait getItemFromChest(bot, new Vec3(2, 1, 2), {diamond: 1});\n```"
     acting = {"acts_in": "/lia/wim", "agent": "wim", "task": "Get a diamond."}
-    given = scenario({"opens": {"believed": path, "item": "diamond"}}, **acting)
+    given = scenario({"opens": {"path": path, "item": "diamond"}}, **acting)
     found = probe_json(run_probe(nest, 1, given.probes[0], _Says(said), 0, Asking()), "run")
     assert (found["ok"], found["expected"]) == (
         ok,
-        {"opens": opens, "opens_from": {"believed": path, "item": "diamond"}},
+        {"opens": opens, "opens_from": {"path": path, "item": "diamond"}},
     )
 
 
 @pytest.mark.parametrize(
     ("right", "message"),
     [
-        ({"believed": "/wmi", "item": "diamond"}, "right.believed: '/wmi' names an unknown agent"),
-        ({"believed": "/wim", "item": "diamnod"}, "right.item: no item 'diamnod'"),
-        ({"believed": "/wim", "item": "key"}, "no item 'key' .*; give one of the game, such as"),
-        ({"believed": "/wim"}, "right: name exactly one of item, agent"),
-        ({"believed": "/wim", "item": "stick", "agent": "lia"}, "right: name exactly one"),
-        ({"believed": "/wim", "container": [0, 0, 0]}, "right.container: no container stands"),
+        ({"path": "/wmi", "item": "diamond"}, "right.path: '/wmi' names an unknown agent"),
+        ({"path": "/wim", "item": "diamnod"}, "right.item: no item 'diamnod'"),
+        ({"path": "/wim", "item": "key"}, "no item 'key' .*; give one of the game, such as"),
+        ({"path": "/wim"}, "right: name exactly one of item, agent"),
+        ({"path": "/wim", "item": "stick", "agent": "lia"}, "right: name exactly one"),
+        ({"path": "/wim", "container": [0, 0, 0]}, "right.container: no container stands"),
     ],
 )
 def test_an_entry_that_is_wrong_names_its_key(right, message):
@@ -154,15 +154,15 @@ def test_an_entry_that_is_wrong_names_its_key(right, message):
     ("expect", "message"),
     [
         (
-            {"right": {"believed": "/wim", "item": "diamond"}, "options": ["a pot", "red box"]},
+            {"right": {"path": "/wim", "item": "diamond"}, "options": ["a pot", "red box"]},
             "none of the options",
         ),
         (
-            {"right": {"believed": "/wim", "item": "apple"}, "options": ["pot", "red box"]},
+            {"right": {"path": "/wim", "item": "apple"}, "options": ["pot", "red box"]},
             "'unknown', which is none",
         ),
         (
-            {"right": {"believed": "/", "item": "diamond"}, "wrong": ["eastern chest"]},
+            {"right": {"path": "/", "item": "diamond"}, "wrong": ["eastern chest"]},
             "which 'wrong' names",
         ),
     ],
@@ -173,7 +173,7 @@ def test_a_belief_that_gives_no_right_answer_names_its_key(nest, expect, message
 
 
 def test_no_model_is_asked_if_a_belief_gives_no_right_answer():
-    right = {"believed": "/wim", "item": "apple"}
+    right = {"path": "/wim", "item": "apple"}
     given = scenario({"answers": {"question": "Where?", "options": ["pot", "box"], "right": right}})
     both = replace(given, probes=(replace(given.probes[0], expect=()), *given.probes))
     model = _Says("Answer: pot")
@@ -187,6 +187,6 @@ def test_an_item_in_two_places_has_two_right_answers():
     agents = {"lia": {"position": [3.5, 1, 4.5]}, "wim": wim}
     given = bn.Scenario.from_mapping({**SCENE, "agents": agents, "script": []})
     with bn.Nest.open(given, "scripted") as opened:
-        found = expected(opened, right={"believed": "/", "item": "apple"})
+        found = expected(opened, right={"path": "/", "item": "apple"})
     assert found.right == ("red box", "wim")
     assert found.judge_text("Wim has one").ok

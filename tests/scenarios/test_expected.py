@@ -70,6 +70,7 @@ def programmed(program: str) -> Parrot:
 def run(
     model: Model, expect: dict[str, Any] | None, world: str = "scripted", retry_unread: int = 0
 ) -> ProbeOutcome:
+    expect = expect and {"within": 2, **expect}
     probe = {"path": "/ann", "acts_in": "/ann", "agent": "ann", "task": "Go.", "expect": expect}
     scenario = bn.Scenario.from_mapping({**ROOM, "probes": [probe]})
     asking = Asking(attempts=1, settings=ModelSettings(retry_unread=retry_unread))
@@ -244,6 +245,7 @@ def test_an_unreadable_answer_is_asked_for_again_with_the_form() -> None:
     ],
 )
 def test_what_cannot_fail_or_cannot_be_right_is_refused(expect: dict[str, Any], told: str) -> None:
+    expect = expect and {"within": 2, **expect}
     probe = {"path": "/ann", "acts_in": "/ann", "agent": "ann", "task": "Go.", "expect": expect}
     with pytest.raises(bn.ScenarioError, match=told):
         bn.Scenario.from_mapping({**ROOM, "probes": [probe]})

@@ -136,16 +136,20 @@ def test_planners_empty_a_container(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("path: /eve,", "path: /bob,", "fetch.yaml:18: episode.goal.reach.1.: .*bob"),
+        ("path: /eve,", "path: /bob,", "fetch.yaml:18: episode.goal.reach.1..path: .*bob"),
         ("talk: [ann]", "talk: [bob]", "fetch.yaml:14: episode: 'bob' is none of the agents"),
         ("rounds: 8", "rounds: none", "fetch.yaml:24: episode.rounds: expected 'int'"),
         ("rounds: 8", "round: 8", "fetch.yaml:24: .*did you mean 'rounds'"),
         ("agent: eve, items: {apple: 1}", "block: [1, 1, 1], state: chst", "fetch.yaml:20: .*chst"),
-        ("eve, items: {apple: 1}", "eve, items: {appel: 1}", "fetch.yaml:20: .*never.0.: no item"),
+        (
+            "eve, items: {apple: 1}",
+            "eve, items: {appel: 1}",
+            "fetch.yaml:20: .*never.0..items.appel: no item",
+        ),
         (
             "eve, items: {apple: 1}",
             "eve, items: {apple: 0}",
-            "fetch.yaml:20: .*expected 'int' >= 1",
+            "fetch.yaml:20: .*the count is 0; it must be at least 1",
         ),
         ("agent: eve, items", "container: [2, 1, 2], items", "fetch.yaml:20: .*no container"),
         ("agent: eve, items: {apple: 1}", "agent: eve, at: [2, 9, 2]", "fetch.yaml:20: .*outside"),

@@ -69,9 +69,9 @@ WRONG = {
     ),
     "a believed place": (BASE + PRIOR + ", agents: {ann: [100, 1, 1]}}]", 6, "outside the box"),
     "an infinite place": (
-        BASE + "expectations: [{path: /, agent: ann, position: [.inf, 1, 1]}]",
+        BASE + "expectations: [{path: /, agent: ann, at: [.inf, 1, 1]}]",
         6,
-        "position[0]",
+        "at[0]",
     ),
     "a gaze at nothing": (BASE.replace("2.5]}", "2.5], facing: [.nan, 0, 0]}"), 4, "facing"),
     "a dizzy gaze": (BASE.replace("2.5]}", "2.5], yaw: 1e300}"), 4, "yaw"),

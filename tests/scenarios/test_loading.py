@@ -8,8 +8,8 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.errors import ScenarioError, UnknownNameError
+from beliefnest.facts.kinds import AgentAt, ItemsIn
 from beliefnest.scenarios.expected_acts import Arrives, Opens
-from beliefnest.scenarios.expected_state import Holds, Stands
 from beliefnest.scenarios.json_schema import schema
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names
@@ -52,7 +52,7 @@ conditions:
     script: {ann looks: {program: "await doNothing(bot)"}}
     probes: {p: {expect: {opens: null, arrives: [1, 1, 1], within: 3}}}
     expectations:
-      - {path: /, agent: ann, position: [2.5, 1, 2.5], within: 0.5}
+      - {path: /, agent: ann, at: [2.5, 1, 2.5], within: 0.5}
 """
 
 
@@ -114,8 +114,8 @@ def test_a_condition_changes_only_what_it_names(tmp_path: Path) -> None:
     assert one.probes[0].expect == (Opens((4, 1, 4)),)
     assert two.probes[0].expect == (Arrives((1.0, 1.0, 1.0), 3.0),)
     assert two.probes[0].task == "Go"
-    assert one.expectations[0].content == Holds((4, 1, 4), {"diamond": 2})
-    assert [e.content for e in two.expectations] == [Stands("ann", (2.5, 1.0, 2.5), 0.5)]
+    assert one.expectations[0].fact == ItemsIn((4, 1, 4), (("diamond", 2),))
+    assert [e.fact for e in two.expectations] == [AgentAt("ann", (2.5, 1.0, 2.5), 0.5)]
 
 
 def test_initial_beliefs_reach_the_setting() -> None:

@@ -143,7 +143,7 @@ probes:
       answers:
         question: Where does Bob think the apple is?
         options: [red box, Ann, nobody can know]
-        right: {believed: /bob, item: apple, unknown: nobody can know}
+        right: {path: /bob, item: apple, unknown: nobody can know}
 """
 
 

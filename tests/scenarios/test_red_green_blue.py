@@ -7,8 +7,9 @@ import pytest
 
 import beliefnest as bn
 from beliefnest.errors import ScenarioError
+from beliefnest.facts.kinds import BlockIs
 from beliefnest.llm.offline import OfflineModel
-from beliefnest.scenarios.expected_state import Expectation, Is
+from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.running import run_scenario
 
 BLOCKS = {"red": (4, 1, 2), "green": (6, 1, 7), "blue": (8, 1, 2)}
@@ -48,9 +49,10 @@ def test_each_holds_what_the_figure_shows(condition, known):
 
 def test_a_block_that_is_another_or_unknown_is_not_as_expected():
     scenario = bn.Scenario.load("red-green-blue", 1)
-    wrong = [Is(BLOCKS["red"], "blue_wool"), Is(BLOCKS["red"], None), Is(BLOCKS["blue"], "air")]
+    states = [("red", "blue_wool"), ("red", None), ("blue", "air")]
+    wrong = [BlockIs(BLOCKS[name], state) for name, state in states]
     scenario = replace(
-        scenario, expectations=tuple(Expectation("/agent_1", content) for content in wrong)
+        scenario, expectations=tuple(Expectation("/agent_1", fact) for fact in wrong)
     )
     with bn.Nest.open(scenario, "scripted") as nest:
         assert judged(nest, scenario) == [False] * 3
@@ -65,7 +67,7 @@ def test_an_expectation_of_a_block_names_one_that_there_is():
     for entry, told in (
         ({"block": [0, 0, 0], "state": "fog"}, "fog"),
         ({"block": [9, 0, 0], "state": "stone"}, "outside the box"),
-        ({"block": [0, 0, 0], "sign": [0, 0, 0]}, "'block' and 'state'"),
+        ({"block": [0, 0, 0], "sign": [0, 0, 0]}, "block and state"),
     ):
         with pytest.raises(ScenarioError, match=told):
             bn.Scenario.from_mapping({**small, "expectations": [{"path": "/ann", **entry}]})

@@ -38,7 +38,7 @@ probes:
       answers:
         question: Where does Bob think the apple is?
         options: [red box, blue box, nobody can know]
-        right: {believed: /bob, item: apple, unknown: nobody can know}
+        right: {path: /bob, item: apple, unknown: nobody can know}
 perception: {containers: transparent}
 """
 LOW = """\

@@ -207,7 +207,7 @@ def test_the_chance_level_is_that_of_options():
     # In words; together with a deed; not computed yet; nothing expected.
     assert chance_of({"answers": [{**asked, "options": []}]}) is None
     assert chance_of({"answers": [asked], "opens": [1, 2, 3]}) is None
-    assert chance_of({"answers": [{**asked, "right": {"believed": "/a"}}]}) is None
+    assert chance_of({"answers": [{**asked, "right": {"path": "/a"}}]}) is None
     assert chance_of(None) is None
     rows = [{**row("a", n, True), "chance": level} for n, level in enumerate((0.5, 0.25))]
     (found,) = count_rows(rows, ["model"])

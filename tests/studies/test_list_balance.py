@@ -37,7 +37,7 @@ probes:
       answers:
         question: Where is it?
         options: [red box, blue box]
-        right: {believed: /, item: "${set[0]}"}
+        right: {path: /, item: "${set[0]}"}
 conditions:
   1: {description: It stays.}
   2:

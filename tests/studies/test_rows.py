@@ -184,7 +184,7 @@ NARRATED = """
       answers:
         question: Where does Ann think the ${item} is?
         options: [box, floor]
-        right: {believed: /ann, item: "${item}"}
+        right: {path: /ann, item: "${item}"}
 """
 
 

@@ -9,8 +9,8 @@ from ruamel.yaml import YAML
 from tests.studies.small import SMALL, small_in
 
 import beliefnest as bn
-from beliefnest.belief.conditions import ConditionEntry
 from beliefnest.errors import InputError, ScenarioError
+from beliefnest.facts.kinds import FactEntry
 from beliefnest.scenarios.document import plain
 from beliefnest.scenarios.expected import ExpectEntry
 from beliefnest.scenarios.expected_state import ExpectationEntry
@@ -170,7 +170,7 @@ def test_names_change_in_programs_texts_and_paths():
     assert "{apple: 1}" in scenario.setting.script[2].programs["ed"]
     assert [probe.path for probe in scenario.probes] == ["/ed/anne", "/ed", "/ed"]
     assert scenario.probes[1].task == "Help Anne."
-    assert scenario.expectations[3].content.text == "an apple"
+    assert scenario.expectations[3].fact.text == "an apple"
 
 
 HALL = """\
@@ -355,8 +355,8 @@ def test_blocks_that_are_expected_and_known_move_with_the_scene(tmp_path):
     file = small_in(tmp_path, SMALL.replace("\nparameters:", stairs) + TOLD)
     scenario = varied(file, symmetry="mirrored")
     assert scenario.setting.static_blocks == {"stone", (2, 0, 2)}
-    expected = scenario.expectations[0].content
-    assert expected.block == (1, 1, 1)
+    expected = scenario.expectations[0].fact
+    assert expected.place == (1, 1, 1)
     assert expected.state.startswith("oak_stairs[facing=east")
     labelled = small_in(tmp_path, SMALL.replace("label: box", "label: left box") + TOLD)
     with pytest.raises(ScenarioError, match=r"containers\[0\].label: says 'left'"):
@@ -377,7 +377,7 @@ def test_every_key_of_a_scenario_is_known_in_another_scene():
         InferEntry: _SHAPE["probes"].shape["infer"],
         DoubtEntry: _SHAPE["probes"].shape["infer"]["doubt"].shape,
         ExpectationEntry: _SHAPE["expectations"].shape,
-        ConditionEntry: _SHAPE["episode"]["goal"]["reach"].shape,
+        FactEntry: _SHAPE["episode"]["goal"]["reach"].shape,
         EpisodeEntry: _SHAPE["episode"],
         GoalEntry: _SHAPE["episode"]["goal"],
         InitialBeliefEntry: shape,

@@ -46,13 +46,13 @@ probes:
       answers:
         question: Where will Sally look for the ${item}?
         options: [left box, chest]
-        right: {believed: /sally, item: "${item}"}
+        right: {path: /sally, item: "${item}"}
         reason: true
   - label: own
     path: /sally
     expect:
       answers:
-        - {question: "Where is the ${item}?", right: {believed: /sally, item: "${item}"}}
+        - {question: "Where is the ${item}?", right: {path: /sally, item: "${item}"}}
         - {question: "Who is there?", options: [anne, nobody], right: anne}
   - label: act
     path: /sally

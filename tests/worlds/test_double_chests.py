@@ -163,7 +163,7 @@ def test_scenarios_may_name_either_half(world: str) -> None:
                 "acts_in": "/ann",
                 "agent": "ann",
                 "task": "Get a bone.",
-                "expect": {"opens": LEFT, "intends": LEFT, "takes": {"bone": 1}},
+                "expect": {"opens": LEFT, "intends": LEFT, "within": 2, "takes": {"bone": 1}},
             }
         ],
     )

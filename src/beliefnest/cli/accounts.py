@@ -60,14 +60,14 @@ def _why(nest: Nest, outcome: ProbeOutcome, run: Outcome) -> list[str]:
     belief = nest.at(run.reality.tick)[outcome.probe.path]
     lines: list[str] = []
     about = [
-        each.expectation.content
+        each.expectation.fact
         for each in run.expectations
         if nest[each.expectation.path].path == belief.path
     ]
-    places = [place for each in about for place in each.containers]
+    places = [each.store for each in about if each.store is not None]
     places += [each.explained for each in outcome.probe.expect if each.explained is not None]
     for container in dict.fromkeys(places):
         lines += str(belief.explain(container=container)).splitlines()
-    for agent in dict.fromkeys(agent for each in about for agent in each.agents):
+    for agent in dict.fromkeys(each.placed for each in about if each.placed is not None):
         lines += str(belief.explain(agent=agent)).splitlines()
     return lines

@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 from beliefnest.belief.view import State
+from beliefnest.facts.states import StateFacts
 from beliefnest.nest.explain.comparison import false_things
 from beliefnest.nest.face.drawing import wrong_things
 from beliefnest.nest.face.nest import Nest
@@ -123,14 +125,15 @@ def _state_card(state: State, outcome: Outcome) -> Card:
 
 def _agents_told(outcome: Outcome) -> tuple[str, ...]:
     """Return the agents about whose positions the scenario states expectations."""
-    contents = [each.expectation.content for each in outcome.expectations]
-    return tuple(dict.fromkeys(agent for each in contents for agent in each.agents))
+    placed = [each.expectation.fact.placed for each in outcome.expectations]
+    return tuple(dict.fromkeys(agent for agent in placed if agent is not None))
 
 
 def _heard(state: State, outcome: Outcome) -> list[Note]:
     """Return a note for each utterance that the scenario states expectations about."""
-    contents = [each.expectation.content for each in outcome.expectations]
-    found = [each.found(state, outcome.scenario.setting) for each in contents if each.noted]
+    facts, named = StateFacts(state), partial(container_name, setting=outcome.scenario.setting)
+    expected = [each.expectation.fact for each in outcome.expectations]
+    found = [each.found(facts, named) for each in expected if each.noted]
     return [Note(f"{what}: {there}") for what, there in dict.fromkeys(found)]
 
 

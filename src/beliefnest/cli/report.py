@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +15,18 @@ from rich.table import Table
 
 from beliefnest.belief.plain import state_json
 from beliefnest.cli.terminal_text import printable
+from beliefnest.facts.states import StateFacts
 from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.expected_acts import Opens
 from beliefnest.scenarios.expected_kinds import Infers
 from beliefnest.scenarios.inferring import means_text
 from beliefnest.scenarios.judging import OUTCOMES
-from beliefnest.scenarios.naming import container_name, point_text
+from beliefnest.scenarios.naming import container_name
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import Placements, Point, Position
+from beliefnest.world.words import point_text
 
 __all__ = [
     "OutcomeRow",
@@ -253,7 +256,9 @@ def _cells(outcome: Outcome) -> dict[str, str]:
     cells: dict[str, list[str]] = {}
     for each in outcome.expectations:
         expectation, setting = each.expectation, outcome.scenario.setting
-        what, found = expectation.content.found(outcome.state(expectation.path), setting)
+        what, found = expectation.fact.found(
+            StateFacts(outcome.state(expectation.path)), partial(container_name, setting=setting)
+        )
         heading = f"{escape(what)} in {expectation.where}"
         cells.setdefault(heading, []).append(_marked(escape(found), each.ok))
     for probe in outcome.probes:

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from beliefnest.belief.facts import looking_at
 from beliefnest.belief.view import State
 from beliefnest.episodes.task import Task
+from beliefnest.facts.states import looking_at
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.goals import Progress
 from beliefnest.world.paths import BeliefPath, path_text

@@ -49,7 +49,7 @@ _SMALL = frozenset(
 class BelievedEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Belief of a simulator after the script: a path and exactly one thing."""
 
-    believed: Annotated[str, note("Belief path; / is the real world.", "path")]
+    path: Annotated[str, note("Belief path; / is the real world.", "path")]
     item: Annotated[str | None, note("An item: where it is.", "item")] = None
     agent: Annotated[str | None, note("An agent: at which named place it is.", "agent")] = None
     container: Annotated[
@@ -107,7 +107,7 @@ class Believed:
         Raises:
             ScenarioError: The entry names no thing or several, or something that does not exist.
         """
-        checks.belief_path((*path, "believed"), entry.believed)
+        checks.belief_path((*path, "path"), entry.path)
         given = [kind for kind in cls.kinds if getattr(entry, kind) is not None]
         if len(given) != 1:
             raise checks.fault(path, f"name exactly one of {', '.join(cls.kinds)}")
@@ -124,12 +124,12 @@ class Believed:
                 checks.inside((*path, kind), thing)
         if not entry.unknown.strip():
             raise checks.fault((*path, "unknown"), "is empty; give the answer")
-        return cls(entry.believed, kind, thing, entry.unknown, checks.document.key_at(path))
+        return cls(entry.path, kind, thing, entry.unknown, checks.document.key_at(path))
 
     def written(self) -> dict[str, Any]:
         """Return plain values with the keys of scenario files."""
         thing = self.thing if isinstance(self.thing, str) else list(self.thing)
-        told: dict[str, Any] = {"believed": self.path, self.kind: thing}
+        told: dict[str, Any] = {"path": self.path, self.kind: thing}
         return told if self.unknown == _UNKNOWN else {**told, "unknown": self.unknown}
 
     @property

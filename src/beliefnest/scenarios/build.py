@@ -7,10 +7,8 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-import msgspec
-
-from beliefnest.belief.conditions import check_condition
 from beliefnest.belief.grounds import InitialBelief
+from beliefnest.facts.reading import check_entry
 from beliefnest.nest.past.setting import Setting, Step
 from beliefnest.nest.past.unique import unique_fault, unique_items
 from beliefnest.perception.options import Perception
@@ -164,7 +162,9 @@ class _Builder:
 
     def warnings(self, probes: tuple[Probe, ...]) -> tuple[ScenarioWarning, ...]:
         """Return warnings about the file."""
-        return scene_warnings(self._document, self._file, self._snapshot, probes)
+        found = scene_warnings(self._document, self._file, self._snapshot, probes)
+        older = self._document.older
+        return (*found, ScenarioWarning(older)) if older else found
 
     def _unique(self, initial: Sequence[InitialBelief]) -> frozenset[str]:
         """Return the unique items; refuse those that world or initial beliefs contradict."""
@@ -248,12 +248,9 @@ class _Builder:
         for path, goal in goals.items():
             for key, entries in (("reach", goal.reach), ("never", goal.never)):
                 for number, entry in enumerate(entries):
-                    where = ("episode", *path, key, number)
-                    with self._document.naming(where):
-                        check_condition(entry, agents, self._snapshot.box)
-                    if entry.container is not None:
-                        whole = self.checks.container((*where, "container"), entry.container)
-                        entries[number] = msgspec.structs.replace(entry, container=whole)
+                    entries[number] = check_entry(
+                        entry, ("episode", *path, key, number), self.checks
+                    )
         for path, message in rule_faults(rules, agents):
             raise self._document.fault(("episode", *path), message)
         with self._document.naming(("episode",)):

@@ -6,7 +6,7 @@ from beliefnest.errors import ScenarioError
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.world.double_chests import container_at, other_half, states_in
 from beliefnest.world.frames import Snapshot
-from beliefnest.world.limits import items_fault, slots_at
+from beliefnest.world.limits import AGENT_SLOTS, WORN_SLOTS, items_fault, slots_at
 from beliefnest.world.paths import parse_path
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Items, Position
@@ -99,6 +99,10 @@ class Checks:
     def items(self, path: KeyPath, items: Items, slots: int, holder: str) -> None:
         """Refuse unknown items, counts below 1, and more than the slots of a holder can hold."""
         check_items(self.document, path, items, self.registry, slots, holder)
+
+    def possessions(self, path: KeyPath, items: Items) -> None:
+        """Refuse items that an agent could not have."""
+        self.items(path, items, AGENT_SLOTS + WORN_SLOTS, "an agent")
 
     def inside(self, path: KeyPath, position: Position) -> None:
         """Refuse a position outside the box."""

@@ -70,6 +70,7 @@ class Document:
         text: Text of the file; empty if there is none.
         templates: Texts of templates that are kept with the document, by name; others are in
             files.
+        older: Line that says what to write for older spellings of facts; empty: there are none.
     """
 
     source: str
@@ -77,6 +78,7 @@ class Document:
     folder: Path
     text: str = ""
     templates: Mapping[str, str] = field(default_factory=dict)
+    older: str = ""
 
     def fault(self, path: KeyPath, message: str) -> ScenarioError:
         """Return an error that names file, line and key."""

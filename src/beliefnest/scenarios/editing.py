@@ -19,6 +19,7 @@ from ruamel.yaml.scalarstring import LiteralScalarString
 from beliefnest.errors import InputError
 from beliefnest.scenarios.document_form import check_written
 from beliefnest.scenarios.format import LegendEntry
+from beliefnest.scenarios.older_spellings import respelled
 from beliefnest.scenarios.parameters import with_parameters
 from beliefnest.scenarios.writing import in_flow
 from beliefnest.scenarios.yaml_reading import parse_yaml
@@ -60,7 +61,7 @@ def edited(text: str, edit: Mapping[str, Any]) -> str:
         InputError: The edit has a wrong form, or the file cannot take it.
     """
     # Edits rely on the form; the content may be wrong, as edits can mend it.
-    check_written(with_parameters(parse_yaml(text, "the file"), {}))
+    check_written(with_parameters(respelled(parse_yaml(text, "the file")), {}))
     yaml = YAML()
     yaml.preserve_quotes = True
     yaml.width = _WIDTH

@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
 import msgspec
 
+from beliefnest.facts.kinds import WITHIN
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.believed import Believed, BelievedEntry, Look
 from beliefnest.scenarios.checks import Checks
@@ -73,8 +74,8 @@ class AnswersEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     right: Annotated[
         str | list[str] | BelievedEntry,
         note(
-            "Right answers; a right answer in words contains one of them. `believed`: the answer "
-            "that a simulator holds.",
+            "Right answers; a right answer in words contains one of them. A path and a "
+            "thing: the answer that a simulator holds.",
             "[text]",
         ),
     ]
@@ -103,7 +104,7 @@ class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     opens: Annotated[
         forms.Position | BelievedEntry | None,
         note(
-            "The container that the agent opens first; `believed`: that in which a simulator "
+            "The container that the agent opens first; with a path: that in which a simulator "
             "believes an item.",
             "block",
         ),
@@ -117,7 +118,9 @@ class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             "Container or place that the program heads for, even if it never gets there.", "place"
         ),
     ] = None
-    within: Annotated[forms.Within, note("Greatest distance from there, in blocks.", "keep")] = 2.0
+    within: Annotated[forms.Within, note("Greatest distance from there, in blocks.", "keep")] = (
+        WITHIN
+    )
     takes: Annotated[
         dict[str, int] | None,
         note("Counts of items that the agent takes out of containers.", "items"),

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from beliefnest.errors import ScenarioError
+from beliefnest.facts.kinds import WITHIN, middle_of
+from beliefnest.facts.states import StateFacts
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.believed import Believed, BelievedEntry, Look
 from beliefnest.scenarios.checks import Checks
@@ -22,11 +24,11 @@ from beliefnest.scenarios.expected import (
 )
 from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.functions import NamedFunction, function_of
-from beliefnest.scenarios.naming import Naming, container_name, named_place, point_text
+from beliefnest.scenarios.naming import Naming, container_name, named_place
 from beliefnest.scenarios.trial import Trial
 from beliefnest.world.limits import AGENT_SLOTS
 from beliefnest.world.values import EventKind, Items, Point, Position, block_at
-from beliefnest.world.words import items_words, point_words, with_the
+from beliefnest.world.words import items_words, point_text, point_words, with_the
 
 __all__ = [
     "Arrives",
@@ -161,7 +163,7 @@ class Arrives(Deed):
     verb = "arrives at"
     ground = "where the agent stands in the end"
     place: Point
-    within: float = 2.0
+    within: float = WITHIN
     believed: Believed | None = None
 
     @classmethod
@@ -175,7 +177,7 @@ class Arrives(Deed):
 
     def judge(self, trial: Trial) -> Judgement:
         arrived = trial.arrived
-        ok = arrived is not None and math.dist(self.place, arrived) <= self.within
+        ok = arrived is not None and math.dist(middle_of(self.place), arrived) <= self.within
         found = "is nowhere" if arrived is None else f"ended at {point_words(arrived)}"
         return self.verdict(ok, found)
 
@@ -187,7 +189,7 @@ class Arrives(Deed):
         where, far = "nowhere", ""
         if outcome.arrived is not None:
             where = named_place(outcome.arrived, setting)
-            far = f", {math.dist(outcome.arrived, self.place):.1f} blocks from there"
+            far = f", {math.dist(outcome.arrived, middle_of(self.place)):.1f} blocks from there"
         return (
             f"Judged by where {agent} stands in the end: {where}; expected was "
             f"{named_place(self.place, setting)}, within {self.within:g} blocks{far}; "
@@ -213,7 +215,7 @@ class Intends(Deed):
 
     ground = "what the program makes for"
     place: Point
-    within: float = 2.0
+    within: float = WITHIN
     blocks: frozenset[Position] = frozenset()
     believed: Believed | None = None
 
@@ -347,7 +349,7 @@ class Believes(Deed):
 
     def judge(self, trial: Trial) -> Judgement:
         expectation = self.expectation
-        instead = expectation.content.instead(trial.belief(expectation.path))
+        instead = expectation.fact.instead(StateFacts(trial.belief(expectation.path)))
         return self.verdict(instead is None, f"{expectation.where}: {instead}")
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from beliefnest.belief.conditions import GoalCondition
-from beliefnest.belief.facts import Look
+from beliefnest.facts.kinds import GoalCondition
+from beliefnest.facts.states import Look
 from beliefnest.world.paths import BeliefPath
 
 __all__ = ["Goal", "Progress"]

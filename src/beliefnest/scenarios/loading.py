@@ -9,6 +9,7 @@ from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, merged, wrapped
 from beliefnest.scenarios.document_form import check_form, check_written
 from beliefnest.scenarios.drawn_map import with_map
+from beliefnest.scenarios.older_spellings import respelled
 from beliefnest.scenarios.parameters import text_of, with_parameters
 
 __all__ = [
@@ -41,7 +42,9 @@ def condition_numbers(document: Document) -> tuple[int | None, ...]:
     Raises:
         ScenarioError: The document does not have the right form.
     """
-    return tuple(sorted(check_written(with_parameters(document, {})).conditions)) or (None,)
+    return tuple(sorted(check_written(with_parameters(respelled(document), {})).conditions)) or (
+        None,
+    )
 
 
 def scenario_in(
@@ -62,7 +65,7 @@ def scenario_in(
     Raises:
         ScenarioError: The document is wrong, or a condition or parameter does not exist.
     """
-    filled = with_parameters(document, parameters or {}, condition)
+    filled = with_parameters(respelled(document), parameters or {}, condition)
     written = check_written(filled)
     chosen = with_map(filled if condition is None else merged(filled, condition))
     if change is None:

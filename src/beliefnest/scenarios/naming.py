@@ -9,8 +9,9 @@ from beliefnest.prompts.mind_view import MindView
 from beliefnest.world.near import names_near
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
+from beliefnest.world.words import point_text
 
-__all__ = ["Naming", "container_name", "named_place", "point_text", "titled"]
+__all__ = ["Naming", "container_name", "named_place", "titled"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,11 +53,6 @@ def named_place(point: Point, setting: Setting) -> str:
     """Return a point as text: `at` with a named place near it, or with its coordinates."""
     names = names_near(point, {at: name for name, at in setting.places.items()})
     return f"at {names[0] if names else point_text(point)}"
-
-
-def point_text(point: Point) -> str:
-    """Return a point as text with exactly one decimal, as in tables."""
-    return f"({', '.join(f'{value:.1f}' for value in point)})"
 
 
 def titled(name: str) -> str:

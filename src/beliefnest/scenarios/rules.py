@@ -5,8 +5,9 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from beliefnest.belief.conditions import ConditionEntry, check_condition, conditions_of
 from beliefnest.errors import InputError
+from beliefnest.facts.kinds import FactEntry
+from beliefnest.facts.reading import PlainScene, check_entry, conditions_of
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.forms import note
 from beliefnest.world.values import Box
@@ -28,8 +29,8 @@ class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defau
 class GoalEntry(_Entry, frozen=True):
     """A goal of an agent or of a task."""
 
-    reach: Annotated[list[ConditionEntry], note("Must hold, all at the same tick.")] = []
-    never: Annotated[list[ConditionEntry], note("Must not hold at any tick until then.")] = []
+    reach: Annotated[list[FactEntry], note("Must hold, all at the same tick.")] = []
+    never: Annotated[list[FactEntry], note("Must not hold at any tick until then.")] = []
     messages: Annotated[
         Annotated[int, msgspec.Meta(ge=0)] | None, note("Most utterances of all players.")
     ] = None
@@ -163,7 +164,7 @@ def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
     for goal in (entry.goal, *entry.goals.values(), *possible):
         goal_of(goal, agents)
         for condition in (*goal.reach, *goal.never):
-            check_condition(condition, agents, box)
+            check_entry(condition, (), PlainScene(agents, box))
     for name in sorted(agents):
         if entry.players and (name in entry.players) == (name in entry.policies):
             raise InputError(f"{name} must be one of `players` or have a policy in `policies`")

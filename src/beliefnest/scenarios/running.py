@@ -2,6 +2,7 @@
 
 import time
 
+from beliefnest.facts.states import StateFacts
 from beliefnest.llm.messages import Model, Usage
 from beliefnest.nest.face.nest import Nest, Progress
 from beliefnest.scenarios.expected import Deed
@@ -55,7 +56,7 @@ def run_scenario(
     paths = _paths(scenario)
     states = nest.states(["/", *paths])
     expectations = tuple(
-        ExpectationOutcome(each, each.content.instead(nest[each.path].state))
+        ExpectationOutcome(each, each.fact.instead(StateFacts(nest[each.path].state)))
         for each in scenario.expectations
     )
     probes = []

@@ -85,8 +85,9 @@ class MovedBySymmetry:
 
     def _place(self, place: tuple[Any, Any, Any]) -> tuple[float, float, float]:
         """Move a place: a block if all coordinates are whole, else a point, as in files."""
-        if all(isinstance(part, int) for part in place):
-            return self.placing.block(place)
+        if all(float(part).is_integer() for part in place):
+            x, y, z = map(int, place)
+            return self.placing.block((x, y, z))
         return self.placing.point(place)
 
     def _told(self, text: str) -> str:

@@ -10,8 +10,8 @@ from typing import Any, Protocol
 
 import msgspec
 
-from beliefnest.belief.conditions import ConditionEntry
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.facts.kinds import FactEntry
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.believed import BelievedEntry
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
@@ -128,7 +128,7 @@ _INFER = {
         "keep",
     ),
 }
-_CONDITION = _shapes(ConditionEntry)
+_CONDITION = _shapes(FactEntry)
 _GOAL = {
     "reach": _Each(_CONDITION),
     "never": _Each(_CONDITION),

@@ -13,6 +13,7 @@ __all__ = [
     "items_words",
     "listed",
     "nearest_or_all",
+    "point_text",
     "point_words",
     "things_words",
     "told_apart",
@@ -31,6 +32,11 @@ def point_words(point: Iterable[float], digits: int = 1) -> str:
         digits: Greatest number of decimals.
     """
     return f"({', '.join(f'{round(value, digits):.10g}' for value in point)})"
+
+
+def point_text(point: Iterable[float]) -> str:
+    """Return a point as text with exactly one decimal, as in tables."""
+    return f"({', '.join(f'{value:.1f}' for value in point)})"
 
 
 def items_words(items: Items, joint: str = ", ", *, ids: bool = False, ones: bool = True) -> str:

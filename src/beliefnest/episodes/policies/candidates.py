@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 
-from beliefnest.belief.conditions import Fact, agrees
 from beliefnest.episodes.policies.distance import MindFacts
+from beliefnest.facts.kinds import Fact, agrees
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
-from beliefnest.belief.conditions import GoalCondition
-from beliefnest.belief.facts import ViewFacts
+from beliefnest.facts.kinds import GoalCondition
+from beliefnest.facts.states import ViewFacts
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.paths import BeliefPath, normalised
@@ -68,6 +68,10 @@ class BeliefFacts(ViewFacts):
         """Return the text of a block state; None: unknown."""
         state = self._blocks[self._box.index(place)]
         return None if state < 0 else Registry.load().text(state)
+
+    def has_heard(self, text: str) -> bool:
+        """Return False: an imagination does not keep what was said in it."""
+        return False
 
 
 def is_visible(condition: GoalCondition, mind: Imagination) -> bool:

@@ -9,7 +9,6 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from beliefnest.belief.conditions import Pursuit
 from beliefnest.belief.grounds import Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
@@ -19,6 +18,7 @@ from beliefnest.episodes.policies.expecting import Expecting, GoalShares, combin
 from beliefnest.episodes.policies.search import Search
 from beliefnest.episodes.policies.traces import likelihoods_of_traces
 from beliefnest.errors import InputError, TooLargeError
+from beliefnest.facts.kinds import Pursuit
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.belief.conditions import GoalCondition
-from beliefnest.belief.facts import GoalFacts, StateFacts
 from beliefnest.belief.view import State
 from beliefnest.errors import BranchError, InputError, PathError, StoreError
+from beliefnest.facts.kinds import GoalCondition, Heard
+from beliefnest.facts.states import Facts, StateFacts
 from beliefnest.nest.acting.courses import Course
 from beliefnest.nest.acting.particles import Drawing, Lost, Particle
 from beliefnest.nest.face.given import check_branch_name, tick_of, whole
@@ -353,9 +353,11 @@ class Imagined(Barred):
         journal.append(key, self._starts.entries(course), course.tick)
 
     def _holds(self, course: Course, wanted: Sequence[GoalCondition]) -> bool:
-        def look(path: BeliefPath) -> GoalFacts:
+        is_about_speech = any(isinstance(each.fact, Heard) for each in wanted)
+
+        def look(path: BeliefPath) -> Facts:
             inside = normalised((*self._path, *path))
-            if inside == self._path:
+            if inside == self._path and not is_about_speech:
                 return WorldFacts(course.world)
             return StateFacts(self._recorded(course).state(inside))
 

@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from beliefnest.belief.conditions import GoalCondition, condition_entry, conditions_of
 from beliefnest.errors import InputError, PathError, TickError
+from beliefnest.facts.kinds import GoalCondition
+from beliefnest.facts.reading import PlainScene, conditions_of, fact_entry
 from beliefnest.nest.acting.course_agreement import Tolerance
 from beliefnest.nest.face.given import tick_of, whole
 from beliefnest.nest.past.recording import Recording
@@ -145,12 +146,11 @@ def goal_conditions(
     is_list = isinstance(given, Sequence) and not isinstance(given, str)
     if not listed or not (is_list or isinstance(given, Mapping)):
         raise InputError(f"the condition is {given!r}; give a mapping, or a list of mappings")
+    scene = PlainScene(recording.agents, recording.box)
     return [
         condition
         for each in listed
-        for condition in conditions_of(
-            condition_entry(each, recording.agents, recording.box), recording.agents
-        )
+        for condition in conditions_of(fact_entry(each, scene), recording.agents)
     ]
 
 

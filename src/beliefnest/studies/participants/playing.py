@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from beliefnest.errors import InputError, ProgramError, ScenarioError
+from beliefnest.facts.states import StateFacts
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
 from beliefnest.scenarios.content import Probe
@@ -136,7 +137,7 @@ def view_of(nest: Nest, path: str, start: int, shown: str) -> ParticipantView:
 def _judged(nest: Nest, item: Item) -> Judged:
     scenario = item.cell.scenario
     expectations = [
-        ExpectationOutcome(each, each.content.instead(nest[each.path].state))
+        ExpectationOutcome(each, each.fact.instead(StateFacts(nest[each.path].state)))
         for each in scenario.expectations
     ]
     return Judged(

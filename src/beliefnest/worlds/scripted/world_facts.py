@@ -1,6 +1,7 @@
 """Facts of a scripted world, as conditions read them."""
 
-from beliefnest.world.registry import Registry
+from beliefnest.world.registry import Registry, block_name
+from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Items, Point, Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
@@ -39,3 +40,12 @@ class WorldFacts:
     def block(self, place: Position) -> str | None:
         """Return the text of a block state."""
         return Registry.load().text(self._world.state_at(place))
+
+    def sign(self, place: Position) -> str | None:
+        """Return the text of a sign, empty if it is blank; None: there is none."""
+        text = self._world.signs.get(place)
+        return "" if text is None and is_sign(block_name(self.block(place) or "")) else text
+
+    def has_heard(self, text: str) -> bool:
+        """Return False: a world does not keep what was said in it, only its record does."""
+        return False

@@ -1,4 +1,4 @@
-"""States as conditions read them: real, believed or imagined."""
+"""States as facts read them: real, believed or imagined."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Protocol
@@ -8,11 +8,11 @@ from beliefnest.belief.view import State
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = ["GoalFacts", "Look", "PlanFacts", "StateFacts", "ViewFacts", "looking_at"]
+__all__ = ["Facts", "Look", "PlanFacts", "StateFacts", "ViewFacts", "looking_at"]
 
 
-class GoalFacts(Protocol):
-    """Protocol of a state that conditions read."""
+class Facts(Protocol):
+    """Protocol of a state that facts are about."""
 
     def items_in(self, place: Position) -> Items:
         """Return the items known to be in a container; empty if nothing is known."""
@@ -29,8 +29,14 @@ class GoalFacts(Protocol):
     def block(self, place: Position) -> str | None:
         """Return the text of a block state; None: unknown."""
 
+    def sign(self, place: Position) -> str | None:
+        """Return the text of a sign, empty if it is blank; None: unknown."""
 
-class PlanFacts(GoalFacts, Protocol):
+    def has_heard(self, text: str) -> bool:
+        """Return True if an utterance is known that contains a text."""
+
+
+class PlanFacts(Facts, Protocol):
     """Protocol of a state from which a planner acts."""
 
     def may_reach(self, agent: str, place: Position) -> bool:
@@ -45,7 +51,7 @@ class PlanFacts(GoalFacts, Protocol):
         """Return the agents whose places are known."""
 
 
-Look = Callable[[BeliefPath], GoalFacts]
+Look = Callable[[BeliefPath], Facts]
 """Function from a belief path to the state there; `()` is the caller's reality."""
 
 
@@ -56,9 +62,12 @@ class _View(Protocol):
     @property
     def agents(self) -> Mapping[str, AgentBelief]: ...
 
+    @property
+    def signs(self) -> Mapping[Position, str]: ...
+
 
 class ViewFacts:
-    """Facts of what is believed, without blocks.
+    """Facts of what is believed, without blocks and utterances.
 
     Args:
         view: Believed contents and agents.
@@ -85,6 +94,10 @@ class ViewFacts:
         """Return the position of an agent's feet; None: unknown."""
         return self._view.agents[agent].position
 
+    def sign(self, place: Position) -> str | None:
+        """Return the text of a sign; None: unknown."""
+        return self._view.signs.get(place)
+
 
 class StateFacts(ViewFacts):
     """Facts of a simulator's state.
@@ -95,11 +108,24 @@ class StateFacts(ViewFacts):
 
     def __init__(self, state: State) -> None:
         super().__init__(state)
-        self._blocks = state.blocks
+        self._blocks, self._state = state.blocks, state
 
     def block(self, place: Position) -> str | None:
         """Return the text of a block state; None: unknown."""
         return self._blocks[place]
+
+    def has_heard(self, text: str) -> bool:
+        """Return True if an utterance is known that contains a text."""
+        return any(text in line for _, _, line in self._state.chat)
+
+    def containers_with(self, items: Items) -> list[Position]:
+        """Return the containers that are known to hold at least some items, sorted."""
+        known = sorted(self._state.containers.items())
+        return [
+            place
+            for place, held in known
+            if all(held.items.get(name, 0) >= count for name, count in items.items())
+        ]
 
 
 def looking_at(states: Mapping[BeliefPath, State]) -> Look:

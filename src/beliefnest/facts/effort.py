@@ -6,7 +6,7 @@ the ways to walk.
 
 import math
 
-from beliefnest.belief.facts import PlanFacts
+from beliefnest.facts.states import PlanFacts
 from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.values import Point, Position, feet_in
 

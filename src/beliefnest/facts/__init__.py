@@ -1,0 +1,1 @@
+"""Facts: the one language in which files and code say how something is."""

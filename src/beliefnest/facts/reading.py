@@ -1,0 +1,197 @@
+"""Reading of facts: their entries, checked against the world that they are about."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import msgspec
+
+from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.facts.kinds import KINDS, Fact, FactEntry, GoalCondition
+from beliefnest.world.forms import scene_kinds
+from beliefnest.world.paths import BeliefPath, parse_path
+from beliefnest.world.registry import Registry
+from beliefnest.world.values import Box, Items, Position, block_at
+
+__all__ = ["PlainScene", "Scene", "check_entry", "conditions_of", "fact_entry", "fact_in"]
+
+_SCENE_KINDS = scene_kinds(FactEntry)
+
+Where = tuple[str | int, ...]
+"""Keys and list indices from the top of a document to an entry or a value of it."""
+
+
+class Scene(Protocol):
+    """Protocol of checks of names and places; each raises an error that names the key."""
+
+    def fault(self, path: Where, message: str) -> BeliefNestError:
+        """Return the error about a key."""
+
+    def belief_path(self, path: Where, text: str) -> BeliefPath:
+        """Return the agents of a belief path."""
+
+    def agent(self, path: Where, name: str) -> None:
+        """Refuse an unknown agent."""
+
+    def inside(self, path: Where, position: Position) -> None:
+        """Refuse a position outside the box."""
+
+    def container(self, path: Where, position: Position) -> Position:
+        """Return the position of the container to which a block belongs."""
+
+    def contents(self, path: Where, place: Position, items: Items) -> None:
+        """Refuse items that the container at a place could not hold."""
+
+    def possessions(self, path: Where, items: Items) -> None:
+        """Refuse items that an agent could not have."""
+
+    def state(self, path: Where, text: str) -> object:
+        """Refuse the text of an unknown block state."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlainScene:
+    """Checks of facts that are given in code, of which only the agents and the box are known.
+
+    Attributes:
+        agents: Names of all agents.
+        box: Box of the world.
+    """
+
+    agents: Collection[str]
+    box: Box
+
+    def fault(self, path: Where, message: str) -> InputError:
+        """Return the error about a key."""
+        return InputError(message)
+
+    def belief_path(self, path: Where, text: str) -> BeliefPath:
+        """Return the agents of a belief path."""
+        return parse_path(text, self.agents)
+
+    def agent(self, path: Where, name: str) -> None:
+        """Refuse an unknown agent."""
+        if name not in self.agents:
+            raise InputError(f"a fact is about {name!r}, who is no agent")
+
+    def inside(self, path: Where, position: Position) -> None:
+        """Refuse a position outside the box."""
+        if position not in self.box:
+            raise InputError(
+                f"a fact is about {position}, outside the box {self.box.low} to {self.box.high}"
+            )
+
+    def container(self, path: Where, position: Position) -> Position:
+        """Return the position; which blocks are containers is not known here."""
+        self.inside(path, position)
+        return position
+
+    def contents(self, path: Where, place: Position, items: Items) -> None:
+        """Refuse unknown items and counts below 1."""
+        self.possessions(path, items)
+
+    def possessions(self, path: Where, items: Items) -> None:
+        """Refuse unknown items and counts below 1."""
+        for name, count in items.items():
+            Registry.load().item_stack(name)
+            if count < 1:
+                raise InputError(f"a fact counts {count} {name}; the count is at least 1")
+
+    def state(self, path: Where, text: str) -> object:
+        """Refuse the text of an unknown block state."""
+        return Registry.load().state_id(text)
+
+
+def fact_entry(given: object, scene: PlainScene) -> FactEntry:
+    """Return a fact that was given as a mapping, checked.
+
+    Raises:
+        InputError: The fact is malformed, or is about a place outside the box.
+        PathError: The belief does not exist.
+        UnknownNameError: The item or block does not exist.
+    """
+    try:
+        entry = msgspec.convert(given, FactEntry)
+    except msgspec.ValidationError as fault:
+        fields = FactEntry.__struct_fields__
+        if isinstance(given, Mapping) and (others := [key for key in given if key not in fields]):
+            raise InputError(
+                f"the fact {given!r} has {', '.join(map(repr, others))}; its fields are "
+                f"{', '.join(fields)}, and it is about one tick"
+            ) from None
+        raise InputError(f"the fact {given!r} is malformed: {fault}") from None
+    return check_entry(entry, (), scene)
+
+
+def check_entry(entry: FactEntry, path: Where, scene: Scene) -> FactEntry:
+    """Return an entry with the whole container if it names half of one; check all that it names.
+
+    Args:
+        entry: The entry.
+        path: Its place in a document.
+        scene: Checks of names and places.
+
+    Raises:
+        BeliefNestError: The entry is no fact, or names something that does not exist.
+    """
+    try:
+        fact_in(entry)
+    except InputError as error:
+        raise scene.fault(path, str(error)) from None
+    scene.belief_path((*path, "path"), entry.path)
+    for key, kind in _SCENE_KINDS.items():
+        value, where = getattr(entry, key), (*path, key)
+        match kind, value:
+            case _, None | () | msgspec.UNSET:
+                pass
+            case "agent" | "[agent]", str() | tuple():
+                for name in [value] if isinstance(value, str) else value:
+                    scene.agent(where, name)
+            case "block", _ if key == "container":
+                whole = scene.container(where, value)
+                scene.contents((*path, "items"), whole, entry.items or {})
+                entry = msgspec.structs.replace(entry, container=whole)
+            case "block" | "place", _:
+                scene.inside(where, block_at(value))
+            case "[[block]]", _:
+                for place in (place for site in value for place in site):
+                    scene.inside(where, place)
+            case "items", _ if entry.container is None:
+                scene.possessions(where, value)
+            case "wanted", _:
+                scene.state(where, value)
+    return entry
+
+
+def fact_in(entry: FactEntry) -> Fact:
+    """Return the fact of an entry.
+
+    Raises:
+        InputError: The entry names no fact, or several.
+    """
+    if any(len(site) != len(entry.agents) for site in entry.sites):
+        raise InputError("each site of a fact must have as many levers as there are `agents`")
+    # msgspec omits a default by its identity, which a number loses on its way to another process.
+    usual = msgspec.structs.asdict(FactEntry())
+    given: dict[str, Any] = {
+        key: value
+        for key in FactEntry.__struct_fields__
+        if key != "path" and (value := getattr(entry, key)) != usual[key]
+    }
+    kinds = [kind for kind in KINDS if {*kind.keys} <= given.keys() <= {*kind.keys, *kind.more}]
+    facts = [fact for kind in kinds if (fact := kind.read(entry)) is not None]
+    if len(facts) != 1:
+        *forms, last = dict.fromkeys(" and ".join(kind.keys) for kind in KINDS)
+        raise InputError(f"the fact {given} makes no sense; give {', '.join(forms)}, or {last}")
+    return facts[0]
+
+
+def conditions_of(entry: FactEntry, agents: Collection[str]) -> list[GoalCondition]:
+    """Return the conditions of an entry, one for each smallest part of its fact.
+
+    Raises:
+        InputError: The entry is not valid.
+        PathError: The belief does not exist.
+    """
+    path = parse_path(entry.path, agents)
+    return [GoalCondition(fact, path) for fact in fact_in(entry).parts]
