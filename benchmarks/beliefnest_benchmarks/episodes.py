@@ -3,11 +3,11 @@
 import time
 from typing import Any
 
-from beliefnest.facts.states import StateFacts
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 from beliefnest.episodes.policies.course_planner import Bounds, Planner
 from beliefnest.episodes.task import Task
+from beliefnest.facts.states import StateFacts
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import TICKS_PER_SECOND
