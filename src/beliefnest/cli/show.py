@@ -42,6 +42,7 @@ from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import parse_path, path_text
+from beliefnest.world.texts import on_one_line
 from beliefnest.world.words import items_words
 
 __all__ = ["print_prompt", "show_run"]
@@ -291,7 +292,8 @@ def _how_known(state: State, basis: Basis | None, *, current: bool) -> list[str]
 def _print_programs(programs: Sequence[ProgramRecord]) -> None:
     console = stdout()
     for program in programs:
-        ended = "ended well" if program.error is None else f"failed: {program.error}"
+        failed = on_one_line(f"failed: {program.error}")
+        ended = "ended well" if program.error is None else failed
         span = f"ticks {program.tick} to {program.tick + program.ticks}"
         ran = f"{span}: program of {program.agent}: {ended}"
         console.print(_foreign(ran), highlight=False)

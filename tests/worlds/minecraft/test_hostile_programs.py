@@ -29,6 +29,7 @@ WORK = {
     "names": "let a" + "".join(f",a{n}" for n in range(5000)),
     "a stack": "const e = new Error('x'); "
     "e.stack = ('at x (program.js:1:9)\\n').repeat(1e5); throw e",
+    "an error of a long text": "throw new Error('x'.repeat(1e7))",
     "goals": "bot.pathfinder.setGoal(new goals.GoalCompositeAny(Array.from({length: 95}, () => "
     "new goals.GoalCompositeAny(Array(100).fill(new goals.GoalLookAtBlock(new Vec3(5, 1, 5), "
     "bot.world, {reach: 256}))))))",

@@ -39,6 +39,8 @@ OTHERS = {
     "recursion": ("(function f () { f() })()", "stack"),
     "calls": ("for (;;) doNothing(bot)", "refused"),
     "a shared buffer": ("new SharedArrayBuffer(2 ** 40)", "error"),
+    "an error of a long text": ("throw new Error('x'.repeat(1e7))", "error"),
+    "a thrown long text": ("throw 'x'.repeat(1e7)", "error"),
     "nesting": ("(" * 19_000, "syntax"),
     "a value without end": (
         "let a = []; for (let n = 0; n < 1e4; n++) a = [a]; await say(bot, a)",

@@ -6,7 +6,7 @@
  * The function runs inside QuickJS: it is handed over as text and must not refer to anything outside it.
  */
 module.exports = function defineBorder (env) {
-  const { apply, each, is, isArray, isFinite, keys, own, parse, quote, toNumber } = env
+  const { apply, each, is, isArray, isFinite, keys, own, parse, quote, quoteSome, toNumber } = env
   const handles = own(new Map())
   const handleOf = own(new WeakMap())
   const functions = own(new Map())
@@ -147,10 +147,10 @@ module.exports = function defineBorder (env) {
 
   /** Return JSON of an error's description for the host. @returns {string} */
   function describe (error) {
-    if (!(error instanceof Error)) return '{"thrown":true,"message":' + quote(env.show(error)) + ',"name":"' + typeof error + '"}'
+    if (!(error instanceof Error)) return '{"thrown":true,"message":' + quoteSome(env.show(error)) + ',"name":"' + typeof error + '"}'
     const note = errorNotes.get(error)
     const stack = note?.stack ?? error.stack ?? ''
-    return '{"message":' + quote(error.message) + ',"name":' + quote(error.name) + ',"stack":' + quote(stack) +
+    return '{"message":' + quoteSome(error.message) + ',"name":' + quoteSome(error.name) + ',"stack":' + quoteSome(stack) +
       (note ? ',"skill":' + encode(note.skill) + ',"kind":' + encode(note.kind) + ',"reason":' + encode(note.reason) : '') + '}'
   }
 

@@ -12,6 +12,7 @@ module.exports = function definePrimordials (env) {
   const { is, keys, defineProperty } = Object
   const { isArray } = Array
   const { map } = Array.prototype
+  const { slice } = String.prototype
   const toText = String
   const toNumber = Number
 
@@ -26,10 +27,15 @@ module.exports = function definePrimordials (env) {
     return stringify(toText(value))
   }
 
+  /** Return the beginning of a text as JSON, as `quote` does. */
+  function quoteSome (value) {
+    return stringify(apply(slice, toText(value), [0, 20_000]))
+  }
+
   /** Return the results of a function for each element. @returns {Array} */
   function each (list, change) {
     return apply(map, list, [(item) => change(item)])
   }
 
-  Object.assign(env, { apply, each, is, isArray, isFinite, keys, own, parse, quote, toNumber, toText })
+  Object.assign(env, { apply, each, is, isArray, isFinite, keys, own, parse, quote, quoteSome, toNumber, toText })
 }
