@@ -96,33 +96,22 @@ def run_baselines(options: PlayOptions) -> int:
 
 
 def _played(names: Sequence[str], options: PlayOptions) -> list[dict[str, Any]]:
-    """Return the summary of studies of all baselines, in the order of the names."""
-    hidden = [name for name in names if _hides_goals(name)]
-    known = [name for name in names if name not in hidden]
+    """Return the summary of the baselines of all tasks, in the order of the names."""
     found: list[dict[str, Any]] = []
-    if known:
-        study = Study(tasks=known, policies=_POLICIES, orders=_ORDERS, seeds=options.seeds)
-        found += _summary(study, options, "known")
-    if hidden:
-        study = Study(
-            tasks=hidden, policies=_HIDDEN_POLICIES, orders=_HIDDEN_ORDERS, seeds=options.seeds
-        )
-        found += _summary(study, options, "hidden")
     for name in names:
-        task = Task.load(name)
         trained = trained_rule(
             partial(Task.load, name),
             range(_TRAINED, _TRAINED + min(_TRAINING, options.seeds)),
         )
-        policies = tuple(dict.fromkeys((*rules_of(task), trained)))
-        found += _summary(
-            Study(tasks=[name], policies=policies, seeds=options.seeds),
-            options,
-            f"rules of {task.name}",
+        policies, orders = (
+            (_HIDDEN_POLICIES, _HIDDEN_ORDERS) if _hides_goals(name) else (_POLICIES, _ORDERS)
         )
-    # Rows have the names of tasks, which differ from those of their files.
-    places = {Task.load(name).name: place for place, name in enumerate(names)}
-    return sorted(found, key=lambda each: places[each["task"]])
+        rules = dict.fromkeys((*rules_of(Task.load(name)), trained))
+        study = Study(
+            tasks=[name], policies=(*policies, *rules), orders=orders, seeds=options.seeds
+        )
+        found += _summary(study, options, Task.load(name).name)
+    return found
 
 
 def _hides_goals(name: str) -> bool:

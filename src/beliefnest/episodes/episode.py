@@ -51,8 +51,8 @@ from beliefnest.worlds.by_name import Worlds
 
 __all__ = ["Budget", "Episode", "RoundStart"]
 
-_ON_FOOT = 5
-"""Ticks per block for Minecraft's players, who walk 4.3 blocks a second; rounded up."""
+_ON_FOOT = 4
+"""Ticks per block for Minecraft's players, who run 5.6 blocks a second; rounded up."""
 
 
 class Episode:

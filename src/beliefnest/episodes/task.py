@@ -247,7 +247,7 @@ class Task:
         """Return the task with rounds, speech and deadlines scaled to the pace of walking.
 
         Args:
-            pace: Ticks per block on foot: 1 in the scripted world, about 5 in Minecraft.
+            pace: Ticks per block on foot: 1 in the scripted world, about 4 in Minecraft.
         """
         ticks = self.form.round_ticks * pace // self.form.pace
         scenario = dict(self.form.scenario)

@@ -58,7 +58,7 @@ class Imagining:
 
 def episode(policy, **options):
     task = bn.Task.load("recipe", seed=3)
-    return bn.Episode(task, {"anne": policy, "bob": "random"}, **options)
+    return bn.Episode(task, {"anne": policy, "bob": "search:0"}, **options)
 
 
 @pytest.mark.parametrize("patience", [None, 60])

@@ -151,10 +151,8 @@ def test_a_task_is_played_in_minecraft_as_in_the_scripted_world() -> None:
         measures = helped.play().measures
     assert (measures.success, measures.messages, measures.taken_up) == (True, 1, 1)
     with bn.Episode(task, {"anne": "search:0"}, world="embedded") as idle:
-        # Agents walk faster there than at its pace: without help Sally may be in time, but later.
-        late = idle.play().measures
-    assert measures.ticks is not None
-    assert not late.success or (late.ticks or 0) > measures.ticks + 5 * 10
+        # Without help Sally is too late there, too.
+        assert not idle.play().success
 
 
 class Teller:

@@ -1,80 +1,107 @@
-"""A recipe of which each cook knows a half (Stasser and Titus 1985, hidden profiles).
+"""A recipe of which each cook knows a part (Stasser and Titus 1985, hidden profiles).
 
-Two cooks in separate rooms share one pot. The ingredient that each cook must bring is in the cook's
-own room, in a chest that only the other cook knows. A cook that considers what the other cook
-does not know tells it. Further agents cook beside Bob: they know what he knows, and say nothing.
+Two cooks fetch two ingredients each, every one out of a passage of its own, in separate rooms. Both
+know where one of the two is, and only the other cook knows where the other one is. Talk takes time:
+a cook that says what the other knows as well, or everything, is too late, and so is one that has to
+look into one more chest. Further agents stand behind glass and know what both cooks know.
 """
 
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import abreast, also, belief, chest, hall, wall
+from beliefnest.episodes.tasks.building import Position, belief, booths, chest, hall, passages, wall
 
-PARAMETERS = {"chests": (4, 2, 6), "reach": (18, 16, 24), "agents": (2, 2, 4)}
+PARAMETERS = {"chests": (6, 4, 6), "reach": (20, 16, 24), "agents": (2, 2, 4)}
 
 _ITEMS = ("wheat", "sugar", "egg", "apple", "carrot")
-_COOKS = ("bob", "carl", "dora")
+_COOKS = ("anne", "bob")
+_ONLOOKERS = ("carl", "dora")
+_SPEECH, _MIDDLE = 15, 11
+"""Ticks of an utterance; z of the wall between the rooms, which mirror each other."""
 
 
 def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dict[str, Any]:
     """Return an instance.
 
     Args:
-        chance: Random source of places and ingredients.
+        chance: Random source of places and ingredients. Of three true things that a cook can say,
+            one is news.
         chests: Number of chests in each room.
-        reach: Blocks from the pot to the end of each room.
-        agents: Number of agents: Anne, Bob, and cooks beside Bob who know what he knows and say
-            nothing.
+        reach: Blocks from the middle of the hall to its ends.
+        agents: Number of agents: the cooks, and agents behind glass.
     """
-    width, depth = 2 * reach, 8
-    wanted = dict(zip(("anne", "bob"), chance.sample(_ITEMS, 2), strict=True))
-    pot = (reach, 1, 4)
-    rooms = {
-        "anne": _room(chance, chests, list(range(2, reach - 4)), farthest=1),
-        "bob": _room(chance, chests, list(range(reach + 5, width - 1)), farthest=width - 1),
-    }
-    contents = {place: {wanted[cook]: 1} for cook, (place, *_) in rooms.items()}
-    others: dict[tuple[int, int, int], dict[str, int]] = {
-        place: {} for places in rooms.values() for place in places[1:]
-    }
-    known = {cook: {rooms[cook][0]: {wanted[cook]: 1}} for cook in wanted}
-    cooks = _COOKS[: agents - 1]
-    feet = {
-        "anne": [reach - 3.5, 1, 4.5],
-        **abreast(cooks, [reach + 4.5, 1, 4.5], (0, 1)),
-    }
+    places, walls = passages(reach, chests)
+    mirrored = [{**each, "fill": [list(_across(at)) for at in each["fill"]]} for each in walls]
+    items = chance.sample(_ITEMS, 2 * len(_COOKS))
+    wanted = {"anne": items[:2], "bob": items[2:]}
+    common: dict[Position, dict[str, int]] = {}
+    secret: dict[str, dict[Position, dict[str, int]]] = {}
+    for cook, (known, hidden) in wanted.items():
+        one = chance.choice(places)
+        # Neither at the same end nor opposite: there one looks next who is not told.
+        other = chance.choice([at for at in places if at[0] != one[0] and at[2] != one[2]])
+        common[_of(cook, one)] = {known: 1}
+        secret[cook] = {_of(cook, other): {hidden: 1}}
+    full = {**common, **secret["anne"], **secret["bob"]}
+    onlookers = _ONLOOKERS[: agents - len(_COOKS)]
+    behind_glass, glass = booths(onlookers, 4)
+    # Enough for three ways through a passage and one utterance, too little for a second one.
+    ticks = _SPEECH + 3 * reach + 3
     return {
         "description": (
-            f"The pot needs {wanted['anne']} and {wanted['bob']}. Anne and Bob cannot leave their "
-            "rooms. Each knows where the other's half is in the other's room, but not its own."
-            f"{also(cooks[1:], 'can go where Bob can, but cannot talk.')}"
+            f"Anne fetches {' and '.join(wanted['anne'])}, Bob {' and '.join(wanted['bob'])}, each "
+            "in a room of its own. Each knows where everything is in the other's room, but not in "
+            "its own; talk takes time."
         ),
         "order": 1,
         "scenario": {
             "name": "recipe",
-            **hall(width, depth, [wall((reach, 1, 0), (reach, 3, depth), "glass")]),
-            "containers": [chest(pot, label="pot")]
-            + [chest(place, items) for place, items in sorted({**others, **contents}.items())],
-            "agents": {name: {"position": at, "facing": "north"} for name, at in feet.items()},
-            "perception": {"max_visible_distance": 64, "testimony": "accept"},
+            **hall(
+                2 * reach,
+                2 * _MIDDLE,
+                [
+                    *walls,
+                    *mirrored,
+                    wall((0, 1, _MIDDLE), (2 * reach, 3, _MIDDLE), "glass"),
+                    *glass,
+                ],
+            ),
+            "containers": [
+                chest(at, full.get(at)) for cook in _COOKS for at in (_of(cook, p) for p in places)
+            ],
+            "agents": {
+                "anne": {"position": [reach + 0.5, 1, 8.5], "facing": "north"},
+                "bob": {"position": [reach + 0.5, 1, 14.5], "facing": "south"},
+                **behind_glass,
+            },
+            "perception": {
+                "max_visible_distance": 64,
+                "testimony": "accept",
+                "speech_ticks": _SPEECH,
+            },
             "initial_beliefs": [
-                belief("/**", {pot: {}}),
-                belief("/anne", {pot: {}, **known["bob"]}, complete=False),
-                *(belief(f"/{name}", {pot: {}, **known["anne"]}, complete=False) for name in cooks),
+                belief("/**", common, complete=False),
+                belief("/anne", secret["bob"], complete=False),
+                belief("/bob", secret["anne"], complete=False),
             ],
         },
-        "goal": {"reach": [{"container": list(pot), "items": dict.fromkeys(wanted.values(), 1)}]},
-        "players": ["anne", "bob"],
-        **({"policies": dict.fromkeys(cooks[1:], "search:0")} if cooks[1:] else {}),
-        "talk": ["anne", "bob"],
-        "round_ticks": 5,
-        "rounds": -(-(2 * reach + 4) // 5),
+        "goal": {
+            "reach": [{"agent": cook, "items": dict.fromkeys(wanted[cook], 1)} for cook in _COOKS],
+            "ticks": ticks,
+        },
+        "players": list(_COOKS),
+        **({"policies": dict.fromkeys(onlookers, "search:0")} if onlookers else {}),
+        "talk": list(_COOKS),
+        "round_ticks": _SPEECH,
+        "rounds": -(-ticks // _SPEECH),
     }
 
 
-def _room(
-    chance: random.Random, chests: int, columns: list[int], farthest: int
-) -> list[tuple[int, int, int]]:
-    """Return the places of a room's chests; the first is the farthest from the pot."""
-    places = [(x, 1, chance.choice((0, 8))) for x in sorted(chance.sample(columns, chests - 1))]
-    return [(farthest, 1, chance.choice((1, 7))), *places]
+def _of(cook: str, at: Position) -> Position:
+    """Return the place in the room of a cook that is at a place of Anne's room."""
+    return at if cook == "anne" else _across(at)
+
+
+def _across(at: Any) -> Position:
+    x, y, z = at
+    return (x, y, 2 * _MIDDLE - z)
