@@ -5,7 +5,7 @@ from typing import Any
 
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
-from beliefnest.episodes.policies.course_planner import Bounds, Planner
+from beliefnest.episodes.policies.course_planner import Planner, SearchBounds
 from beliefnest.episodes.task import Task
 from beliefnest.facts.states import StateFacts
 from beliefnest.nest.face.nest import Nest
@@ -69,10 +69,10 @@ def _branches() -> Metric:
     with Episode(task) as episode:
         view = episode.view("nora")
         planner = Planner(view.brief)
-        planner.plan(view.imagine(1), "nora", 1, view.ticks_left, Bounds())
+        planner.plan(view.imagine(1), "nora", 1, view.ticks_left, SearchBounds())
         planner = Planner(view.brief)
         started = time.perf_counter()
-        planner.plan(view.imagine(1), "nora", 1, view.ticks_left, Bounds())
+        planner.plan(view.imagine(1), "nora", 1, view.ticks_left, SearchBounds())
         seconds = time.perf_counter() - started
     rate = planner.tried / seconds
     return Metric("branches, order 1, 3 agents", rate, "1/s", 200.0, at_least=True)

@@ -14,7 +14,7 @@ from pathlib import Path
 from beliefnest.belief.view import State
 from beliefnest.errors import StoreError
 from beliefnest.nest.face.nest import Nest
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
@@ -137,7 +137,7 @@ def _recorded(path: Path, walk: Sequence[Frame]) -> _Recorded:
         setting = nest.setting
     alone = followed = 0.0
     with SqliteJournal.open(path) as journal:
-        history = History(journal, setting)
+        history = StateHistory(journal, setting)
         history.state(_MAIN, parse_path(_DEEP, tuple(agents)))
         for start in range(1, _TICKS + 1, _BATCH):
             frames = [_later(walk, tick) for tick in range(start, start + _BATCH)]

@@ -3,12 +3,12 @@
 from tests.noninterference.doors import door
 from tests.noninterference.pairs import BOX, Played
 
-from beliefnest.adapters.pettingzoo.bounds import Bounds
+from beliefnest.adapters.pettingzoo.bounds import SpaceBounds
 from beliefnest.adapters.pettingzoo.order import KINDS, KnownOrder
 from beliefnest.belief.plain import belief_json
 from beliefnest.world.values import Box
 
-_BOUNDS = Bounds(Box.between(*BOX), dict.fromkeys(KINDS, 40), ("hello",))
+_BOUNDS = SpaceBounds(Box.between(*BOX), dict.fromkeys(KINDS, 40), ("hello",))
 _EVERY = 3
 """Ticks from one observation to the next."""
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.options import SenseLimits
+from beliefnest.world.array_types import Flags, Floats, Ints, States
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Beam
@@ -24,20 +25,14 @@ __all__ = [
     "Changes",
     "Facts",
     "Grids",
-    "Ints",
     "Looks",
     "Nodes",
     "Poses",
     "Space",
     "Span",
-    "States",
     "Weighing",
 ]
 
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
-States = npt.NDArray[np.int16]
 
 UNKNOWN = -1
 """Value of a block state, a pose id or a cell that is unknown or absent."""

@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from beliefnest.belief.arrays import Grids, Nodes, Space, States
+from beliefnest.belief.arrays import Grids, Nodes, Space
 from beliefnest.perception.chunks import Rows, chunk_in, index_at, place_at
 from beliefnest.perception.codes import INTRUDED, OWN
 from beliefnest.perception.compiling import inlined, inner, merged
 from beliefnest.perception.eyes import set_code
-from beliefnest.perception.rays import Cell, Codes, Scene, code_at, is_inside, neighbour
-from beliefnest.world.terrain import VOLUME, Chunks
+from beliefnest.perception.rays import GridCell, RayScene, code_at, is_inside, neighbour
+from beliefnest.world.array_types import Codes, States
+from beliefnest.world.terrain import VOLUME, ChunkCounts
 
 __all__ = [
     "block_at",
@@ -60,14 +61,14 @@ def grids_of(nodes: Nodes) -> Grids:
 
 
 @inlined
-def grid_cell(space: Space, cell: int) -> Cell:
+def grid_cell(space: Space, cell: int) -> GridCell:
     """Return the grid coordinates (with margin) of a flat cell."""
     ny, nz = space.sizes[1] - 2, space.sizes[2] - 2
     return cell // (ny * nz) + 1, cell // nz % ny + 1, cell % nz + 1
 
 
 @inlined
-def line_of(chunks: Chunks | None, node: int) -> int:
+def line_of(chunks: ChunkCounts | None, node: int) -> int:
     """Return the row of `Nodes.blocks` and `Nodes.codes` that holds a node's cells."""
     if chunks is None:
         return node
@@ -75,7 +76,7 @@ def line_of(chunks: Chunks | None, node: int) -> int:
 
 
 @inlined
-def chunk_at(chunks: Chunks | None, place: int) -> int:
+def chunk_at(chunks: ChunkCounts | None, place: int) -> int:
     """Return the number of the chunk of a place; in a dense grid, the place itself."""
     if chunks is None:
         return place
@@ -83,7 +84,7 @@ def chunk_at(chunks: Chunks | None, place: int) -> int:
 
 
 @inlined
-def place_of(chunks: Chunks | None, space: Space, cell: int) -> int:
+def place_of(chunks: ChunkCounts | None, space: Space, cell: int) -> int:
     """Return the place of a flat cell of the box in `Nodes.blocks`."""
     if chunks is None:
         return cell
@@ -91,18 +92,18 @@ def place_of(chunks: Chunks | None, space: Space, cell: int) -> int:
 
 
 @inlined
-def block_at(chunks: Chunks | None, blocks: States, rows: Rows, node: int, place: int) -> int:
+def block_at(chunks: ChunkCounts | None, blocks: States, rows: Rows, node: int, place: int) -> int:
     """Return the number of a node's block at a place; -1: unknown. `rows` are the node's."""
     return whole(blocks[line_of(chunks, node), index_at(chunks, rows, place)])
 
 
 @inlined
-def scene_of(chunks: Chunks | None, space: Space, codes: Codes, rows: Rows) -> Scene:
+def scene_of(chunks: ChunkCounts | None, space: Space, codes: Codes, rows: Rows) -> RayScene:
     """Return the shapes of a node, from its line of `Nodes.codes` and its rows."""
     if chunks is None:
         # As scenes without nodes: kernels of sight are then compiled once for both.
-        return Scene(codes, space.sizes, space.starts, space.boxes, space.no_rows, chunks)
-    return Scene(codes, space.sizes, space.starts, space.boxes, rows, chunks)
+        return RayScene(codes, space.sizes, space.starts, space.boxes, space.no_rows, chunks)
+    return RayScene(codes, space.sizes, space.starts, space.boxes, rows, chunks)
 
 
 @inner
@@ -146,7 +147,7 @@ def share(grids: Grids, node: int, parent: int, chunk: int) -> None:
 
 
 @inner
-def _intrude(space: Space, grids: Grids, node: int, cell: Cell) -> None:
+def _intrude(space: Space, grids: Grids, node: int, cell: GridCell) -> None:
     """Set or clear `INTRUDED` of a cell of a grid in chunks, from the shapes of its neighbours."""
     scene = scene_of(space.chunks, space, grids.codes[0], grids.rows[node])
     intruded = False
@@ -163,7 +164,7 @@ def _intrude(space: Space, grids: Grids, node: int, cell: Cell) -> None:
 
 
 @inner
-def _put_in_chunk(space: Space, grids: Grids, node: int, cell: Cell, state: int) -> None:
+def _put_in_chunk(space: Space, grids: Grids, node: int, cell: GridCell, state: int) -> None:
     """Set a block of a node whose cells are in chunks, and its geometry."""
     place = place_at(space.chunks, space.sizes, cell)
     _own(grids, node, chunk_in(place))
@@ -181,7 +182,7 @@ def _put_in_chunk(space: Space, grids: Grids, node: int, cell: Cell, state: int)
 
 @inlined
 def put_block(
-    chunks: Chunks | None, space: Space, grids: Grids, node: int, cell: int, state: int
+    chunks: ChunkCounts | None, space: Space, grids: Grids, node: int, cell: int, state: int
 ) -> None:
     """Set a block of a node, and its geometry."""
     grids.versions[node] += 1

@@ -10,14 +10,12 @@ import numpy.typing as npt
 from beliefnest.belief.arrays import UNKNOWN
 from beliefnest.perception.codes import EMPTY, Reaches, code_grid
 from beliefnest.perception.sight import ChunkGeometry, Sight, SightLines
+from beliefnest.world.array_types import Codes, Ints, States
 from beliefnest.world.terrain import SIDE, VOLUME, Terrain, chunks_of
 from beliefnest.world.values import Position
 
 __all__ = ["NOTHING", "ChunkPool", "CutGrids", "changed_lines", "cut_grids", "lines_of_sight"]
 
-Ints = npt.NDArray[np.int32]
-States = npt.NDArray[np.int16]
-Codes = npt.NDArray[np.uint16]
 Blocks = npt.NDArray[np.signedinteger[Any]]
 
 

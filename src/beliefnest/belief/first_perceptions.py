@@ -24,15 +24,15 @@ _MOST_BYTES = 16 << 20
 _LARGEST = 1 << 20
 """Bytes of node arrays above which nothing is cached: the digest would cost more than it saves."""
 
-Array = npt.NDArray[Any]
+_Array = npt.NDArray[Any]
 
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
     """Result of a first perception: the nodes' arrays, and rows of changes."""
 
-    nodes: Sequence[Array]
-    rows: Array
+    nodes: Sequence[_Array]
+    rows: _Array
 
     @property
     def bytes(self) -> int:
@@ -49,7 +49,7 @@ class FirstPerceptions:
 
     def keeps(self, nodes: Nodes, weighing: Weighing | None) -> bool:
         """Return True if the scene is small enough to be kept."""
-        arrays: Sequence[Array] = (*nodes, *(weighing or ()))
+        arrays: Sequence[_Array] = (*nodes, *(weighing or ()))
         return sum(each.nbytes for each in arrays) <= _LARGEST
 
     def perceive(
@@ -69,7 +69,7 @@ class FirstPerceptions:
         """
         from beliefnest.belief import kernel  # loads compiled code, which listing does not need
 
-        arrays: Sequence[Array] = (*nodes, *(weighing or ()))
+        arrays: Sequence[_Array] = (*nodes, *(weighing or ()))
         span = Span(0, 1, False, 0)
         key = _digest(space, (*poses, facts.tick, *arrays, below))
         seen = self._seen.get(key)
@@ -93,7 +93,7 @@ class FirstPerceptions:
                 self._bytes -= self._seen.pop(next(iter(self._seen))).bytes
 
 
-def _digest(space: Space, arrays: Sequence[Array]) -> bytes:
+def _digest(space: Space, arrays: Sequence[_Array]) -> bytes:
     """Return a digest of all that a perception depends on but the shapes of blocks.
 
     Shapes and types of the arrays are part of it, so that equal bytes of unequal arrays differ.

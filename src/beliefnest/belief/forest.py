@@ -1,7 +1,7 @@
 """Forest of all nodes below one timeline, folded together.
 
 The compiled kernel folds poses, blocks and perceived events in arrays. `HoldingsTable` follows with
-contents, possessions and dropped items, `Testimony` with claims.
+contents, possessions and dropped items, `EntryTestimony` with claims.
 """
 
 from bisect import bisect_left
@@ -22,7 +22,7 @@ from beliefnest.belief.holdings_table import HoldingsTable, RootFacts, SavedHold
 from beliefnest.belief.node_table import NodeTable, SavedNode
 from beliefnest.belief.perceived_table import PerceivedEventTable
 from beliefnest.belief.poses import PoseTable, SavedPoses
-from beliefnest.belief.testimony import Testimony, Verdict
+from beliefnest.belief.testimony import EntryTestimony, Verdict
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event, Items, Point
 
@@ -466,7 +466,7 @@ class Forest:
         count = columns.events_until(entry + 1) - first
         perceived = np.zeros((count, self.table.count), dtype=np.bool_)
         events = [columns.event(first + row) for row in range(count)]
-        testimony = Testimony(self.table, self.holdings, tick, events, perceived)
+        testimony = EntryTestimony(self.table, self.holdings, tick, events, perceived)
         self.holdings.see_root(tick)
         for level in self.table.levels():
             changes = self._changes(0)._replace(perceived=perceived)
@@ -499,7 +499,7 @@ class Forest:
         self.holdings.end_acts(below)
         edited.difference_update([(node, cell) for node, cell in edited if below[node]])
         perceived = np.zeros((0, self.table.count), dtype=np.bool_)
-        testimony = Testimony(self.table, self.holdings, self.tick, (), perceived)
+        testimony = EntryTestimony(self.table, self.holdings, self.tick, (), perceived)
         by_level = bool(context.unique) or self._reads
         parts = (level & below for level in self.table.levels()) if by_level else (below,)
         for part in parts:

@@ -17,13 +17,12 @@ from beliefnest.belief.holdings_table import HoldingsTable, RootFacts
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.belief.poses import PoseTable
 from beliefnest.belief.priors import merged_belief
+from beliefnest.world.array_types import Ints
 from beliefnest.world.claims import ClaimKind, claims_from_plain
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Position, Sign
-
-Rows = npt.NDArray[np.int32]
 
 __all__ = ["Beginning", "forked_forest", "initial_forest"]
 
@@ -141,7 +140,7 @@ def _numbers(context: BeliefContext, snapshot: Snapshot) -> Terrain:
     return numbers.terrain()
 
 
-def _add_world(table: NodeTable, beginning: Beginning, rows: Sequence[Rows]) -> Holdings:
+def _add_world(table: NodeTable, beginning: Beginning, rows: Sequence[Ints]) -> Holdings:
     """Add the node of the real world, and return its holdings.
 
     `rows` are those of the chunks of `Beginning.cut`, if nodes are in chunks.
@@ -171,7 +170,7 @@ def _add_prior(
     table: NodeTable,
     path: BeliefPath,
     beginning: Beginning,
-    rows: Sequence[Rows],
+    rows: Sequence[Ints],
     mine: InitialBelief,
 ) -> Holdings:
     """Add a node with its priors, and return its holdings; `rows` are as for `_add_world`."""

@@ -60,9 +60,9 @@ from beliefnest.perception.chunks import chunk_in, place_at
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.eyes import Eye
 from beliefnest.perception.options import HEAR_ALL, HEAR_SEEN, SenseLimits
-from beliefnest.perception.rays import Cell, Scene, lower, upper
+from beliefnest.perception.rays import GridCell, RayScene, lower, upper
 from beliefnest.world.event_kinds import Sense
-from beliefnest.world.terrain import SIDE, VOLUME, Chunks
+from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
 
 __all__ = ["fold", "put", "put_all"]
 
@@ -109,7 +109,7 @@ def _held(space: Space, grids: Grids, node: int, place: int) -> int:
 
 
 @inlined
-def _scene(space: Space, grids: Grids, node: int) -> Scene:
+def _scene(space: Space, grids: Grids, node: int) -> RayScene:
     """Return the shapes of a node."""
     return scene_of(space.chunks, space, grids.codes[line_of(space.chunks, node)], grids.rows[node])
 
@@ -425,7 +425,7 @@ def _observe_chunk(
     tick: int,
     node: int,
     eye: Eye,
-    corner: Cell,
+    corner: GridCell,
 ) -> bool:
     """Take over the blocks of a chunk that the owner of a node sees; return True if any is left.
 
@@ -716,7 +716,7 @@ def _begin(
 
 
 @merged
-def _lacks_room(chunks: Chunks | None, grids: Grids) -> bool:
+def _lacks_room(chunks: ChunkCounts | None, grids: Grids) -> bool:
     """Return True if a node that changes all of its chunks might not find room in the pool."""
     if chunks is None:
         return False
@@ -734,7 +734,7 @@ def fold(
     changes: Changes,
     span: Span,
     which: npt.NDArray[np.bool_],
-    chunks: Chunks | None,
+    chunks: ChunkCounts | None,
 ) -> int:
     """Fold the entries of a pass into the nodes that `which` marks; see the module's docstring.
 

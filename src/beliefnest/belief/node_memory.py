@@ -14,7 +14,7 @@ from beliefnest.world.paths import BeliefPath, path_text, paths_below
 from beliefnest.world.terrain import chunks_of
 
 __all__ = [
-    "Column",
+    "NodeColumn",
     "check_depth",
     "check_room",
     "columns_of",
@@ -27,7 +27,7 @@ _OBJECTS = 1_000
 """Bytes of the Python objects of a node that knows nothing: path, number and holdings."""
 
 
-class Column(NamedTuple):
+class NodeColumn(NamedTuple):
     """Array with a row for each node: the shape of a row, and the type of its numbers."""
 
     shape: tuple[int, ...]
@@ -39,7 +39,7 @@ class Column(NamedTuple):
         return math.prod(self.shape) * np.dtype(self.kind).itemsize
 
 
-def columns_of(context: BeliefContext, spots: int) -> Mapping[str, Column]:
+def columns_of(context: BeliefContext, spots: int) -> Mapping[str, NodeColumn]:
     """Return the columns of a table of nodes by name; see `arrays.Nodes` for what each holds.
 
     Args:
@@ -48,44 +48,47 @@ def columns_of(context: BeliefContext, spots: int) -> Mapping[str, Column]:
     """
     agents, number, flag = (len(context.agents),), np.int32, np.bool_
     columns = {
-        **{name: Column((), number) for name in ("parent", "agent", "twin", "unlike")},
-        **{name: Column((), number) for name in ("geometry", "versions", "eye", "seen_geometry")},
-        "fresh": Column((), flag),
-        **{name: Column(agents, number) for name in ("pose", "equipment", "seen_at", "tried")},
-        **{name: Column(agents, flag) for name in ("current", "sees")},
-        "watched": Column((spots,), flag),
-        "basis_at": Column((spots,), number),
-        "basis_source": Column((spots,), np.uint8),
-        "basis_current": Column((spots,), flag),
+        **{name: NodeColumn((), number) for name in ("parent", "agent", "twin", "unlike")},
+        **{
+            name: NodeColumn((), number)
+            for name in ("geometry", "versions", "eye", "seen_geometry")
+        },
+        "fresh": NodeColumn((), flag),
+        **{name: NodeColumn(agents, number) for name in ("pose", "equipment", "seen_at", "tried")},
+        **{name: NodeColumn(agents, flag) for name in ("current", "sees")},
+        "watched": NodeColumn((spots,), flag),
+        "basis_at": NodeColumn((spots,), number),
+        "basis_source": NodeColumn((spots,), np.uint8),
+        "basis_current": NodeColumn((spots,), flag),
         **_cells(context),
     }
     if context.weighs:
         columns |= {
-            "counted": Column((), number),
-            "missed": Column(agents, number),
-            "met": Column(agents, number),
-            "meets": Column(agents, flag),
-            "met_missed": Column((*agents, *agents), number),
-            "watch_missed": Column((spots, *agents), number),
+            "counted": NodeColumn((), number),
+            "missed": NodeColumn(agents, number),
+            "met": NodeColumn(agents, number),
+            "meets": NodeColumn(agents, flag),
+            "met_missed": NodeColumn((*agents, *agents), number),
+            "watch_missed": NodeColumn((spots, *agents), number),
         }
     return columns
 
 
-def _cells(context: BeliefContext) -> Mapping[str, Column]:
+def _cells(context: BeliefContext) -> Mapping[str, NodeColumn]:
     """Return the columns with cells: dense arrays of the box, or rows of a pool of chunks."""
     nx, ny, nz = context.box.shape
     sizes = (nx + 2, ny + 2, nz + 2)
     if context.is_dense:
         return {
-            "rows": Column((1,), np.int32),
-            "blocks": Column((context.cells,), np.int16),
-            "codes": Column((math.prod(sizes),), np.uint16),
-            "pending": Column((-(-context.cells // 64),), np.uint64),
+            "rows": NodeColumn((1,), np.int32),
+            "blocks": NodeColumn((context.cells,), np.int16),
+            "codes": NodeColumn((math.prod(sizes),), np.uint16),
+            "pending": NodeColumn((-(-context.cells // 64),), np.uint64),
         }
     chunks = math.prod(chunks_of(sizes))
     return {
-        "rows": Column((chunks,), np.int32),
-        "pending": Column((-(-chunks // 64),), np.uint64),
+        "rows": NodeColumn((chunks,), np.int32),
+        "pending": NodeColumn((-(-chunks // 64),), np.uint64),
     }
 
 

@@ -20,7 +20,7 @@ from beliefnest.world.values import Point
 
 __all__ = ["NodeTable", "SavedNode"]
 
-Row = npt.NDArray[Any]
+NodeRow = npt.NDArray[Any]
 
 _POSE_IDS = ("pose", "equipment", "eye", "tried", "met")
 """Names of the arrays that hold pose ids."""
@@ -96,7 +96,7 @@ class NodeTable:
         others = [cell for cell in extra if cell not in known]
         tracked = self._tracked = np.array([*context.tracked, *others], dtype=np.int32)
         # Not initialized: `_grow` fills the row of each node that is added.
-        self._rows: dict[str, Row] = {
+        self._rows: dict[str, NodeRow] = {
             name: np.empty((room, *column.shape), column.kind)
             for name, column in columns_of(context, len(tracked)).items()
         }
@@ -107,8 +107,8 @@ class NodeTable:
         self._weighing: Weighing | None = None
         # Results of the last call for the next one, until `link`: geometry of the blocks that were
         # set last, and rows of the chunks of another table that were copied.
-        self._coded: tuple[Terrain, Row] | None = None
-        self._copied: tuple[NodeTable, Row] | None = None
+        self._coded: tuple[Terrain, NodeRow] | None = None
+        self._copied: tuple[NodeTable, NodeRow] | None = None
 
     def nodes(self) -> Nodes:
         """Return the arrays for the kernel."""
@@ -122,7 +122,7 @@ class NodeTable:
                 self._weighing = Weighing(*(rows[name] for name in Weighing._fields))
         return self._nodes
 
-    def _stored(self) -> dict[str, Row]:
+    def _stored(self) -> dict[str, NodeRow]:
         """Return the arrays of chunks that the kernel takes; of no chunks if nodes have none."""
         if self.pool is None:
             return {"shares": np.zeros(0, np.int32), "spare": np.zeros(0, np.int32)}
@@ -237,7 +237,7 @@ class NodeTable:
         rows["basis_current"][0] = made.blocks_at(0, self._tracked) >= 0
         return made
 
-    def _copied_rows(self, other: "NodeTable", rows: Row) -> Row:
+    def _copied_rows(self, other: "NodeTable", rows: NodeRow) -> NodeRow:
         """Return rows of this table's pool with the same chunks as rows of another table's."""
         if self.pool is None or other.pool is None:
             return rows
@@ -313,7 +313,7 @@ class NodeTable:
         self._rows["blocks"][node] = blocks.dense().ravel()
         self._rows["codes"][node] = self._coded[1]
 
-    def set_rows(self, node: int, rows: Row) -> None:
+    def set_rows(self, node: int, rows: NodeRow) -> None:
         """Set the rows of all chunks of a node, and so its blocks and its geometry."""
         if self.pool is not None:
             self.pool.use(rows)
@@ -321,7 +321,7 @@ class NodeTable:
             self._rows["rows"][node] = rows
             self._nodes = None
 
-    def leave(self, rows: Row) -> None:
+    def leave(self, rows: NodeRow) -> None:
         """End the use of rows by the caller of `ChunkPool.add_grids`."""
         if self.pool is not None:
             self.pool.leave(rows)
@@ -552,7 +552,7 @@ class NodeTable:
             return self.pool.terrain(self._rows["rows"][node])
         return Terrain.of(self._rows["blocks"][node].reshape(self.context.box.shape))
 
-    def codes(self, node: int) -> tuple[npt.NDArray[np.uint16], Row]:
+    def codes(self, node: int) -> tuple[npt.NDArray[np.uint16], NodeRow]:
         """Return the geometry of a node of a box with a pool: its chunks, and one by place."""
         if self.pool is None:
             raise AssertionError("the box has no pool of chunks")
@@ -623,7 +623,7 @@ class NodeTable:
         seen = seeing.sees_cells(space, poses, *shapes, eye, wanted)
         return set(wanted[seen].tolist())
 
-    def _shapes(self, node: int) -> tuple[Row, Row]:
+    def _shapes(self, node: int) -> tuple[NodeRow, NodeRow]:
         """Return the codes and the rows through which the children of a node look."""
         rows = self._rows["rows"][node]
         return (self._rows["codes"][node] if self.pool is None else self.pool.codes.ravel()), rows
@@ -692,6 +692,6 @@ class NodeTable:
         return node
 
 
-def _filler(row: Row) -> int:
+def _filler(row: NodeRow) -> int:
     """Return the value that stands for "nothing known" in an array."""
     return UNKNOWN if row.dtype.kind == "i" else 0

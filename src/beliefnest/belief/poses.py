@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import NOBODY, Ints, Poses
+from beliefnest.belief.arrays import NOBODY, Poses
+from beliefnest.world.array_types import Ints
 from beliefnest.world.values import AgentState, Items, Point
 
 __all__ = ["Growing", "PoseDetails", "PoseTable", "SavedPoses"]

@@ -8,7 +8,8 @@ from beliefnest.belief.cells import grid_cell, line_of, scene_of, whole
 from beliefnest.perception.chunks import Rows
 from beliefnest.perception.compiling import allocating, compiled, inlined, inner
 from beliefnest.perception.eyes import Eye, eye_at, eye_sees_agent, eye_sees_block, eye_sees_point
-from beliefnest.perception.rays import Cell, Codes, Scene
+from beliefnest.perception.rays import GridCell, RayScene
+from beliefnest.world.array_types import Codes
 from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = [
@@ -35,7 +36,7 @@ def eye_of(space: Space, poses: Poses, pose: int) -> Eye:
 
 
 @inner
-def sees_agent(space: Space, poses: Poses, scene: Scene, eye: Eye, pose: int) -> bool:
+def sees_agent(space: Space, poses: Poses, scene: RayScene, eye: Eye, pose: int) -> bool:
     """Return True if an eye sees an agent at a pose, through the shapes of a node."""
     x, y, z = poses.feet[pose]
     feet = (x + space.origin[0], y + space.origin[1], z + space.origin[2])
@@ -43,7 +44,7 @@ def sees_agent(space: Space, poses: Poses, scene: Scene, eye: Eye, pose: int) ->
 
 
 @inner
-def sees_cell(space: Space, scene: Scene, eye: Eye, cell: Cell) -> bool:
+def sees_cell(space: Space, scene: RayScene, eye: Eye, cell: GridCell) -> bool:
     """Return True if an eye sees a cell of the grid, through the shapes of a node."""
     return eye_sees_block(scene, eye, cell, space.beam)
 

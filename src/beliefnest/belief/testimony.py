@@ -21,13 +21,13 @@ from beliefnest.belief.grounds import Basis
 from beliefnest.belief.holdings import Content, Holdings, SignTold, changed_items, replaced_block
 from beliefnest.belief.holdings_table import HoldingsTable
 from beliefnest.belief.node_table import NodeTable
+from beliefnest.world.array_types import Flags
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
 from beliefnest.world.signs import plain_state, text_of
 from beliefnest.world.values import Event, EventKind, Items, Sign
 
-__all__ = ["Testimony", "Verdict", "believe_absent", "believe_located", "stated"]
+__all__ = ["EntryTestimony", "Verdict", "believe_absent", "believe_located", "stated"]
 
-Flags = npt.NDArray[np.bool_]
 Numbers = npt.NDArray[np.int64]
 
 
@@ -89,7 +89,7 @@ class _Told(NamedTuple):
     claim: Claim
 
 
-class Testimony:
+class EntryTestimony:
     """Claims of one entry, which the nodes of a forest weigh level by level.
 
     The owner of a node perceives claims on a sign when it first perceives that text on that sign

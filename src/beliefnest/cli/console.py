@@ -15,7 +15,7 @@ from rich.table import Column, Table
 from beliefnest.cli.terminal_text import printable
 
 if TYPE_CHECKING:  # Importing nests takes long, and many commands need none.
-    from beliefnest.nest.face.nest import Progress as OnProgress
+    from beliefnest.nest.acting.script import OnProgress
 
 __all__ = ["folded", "print_table", "progress_on", "stdout"]
 

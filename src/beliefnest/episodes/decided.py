@@ -14,7 +14,7 @@ __all__ = [
     "Ended",
     "Failure",
     "HowEnded",
-    "Part",
+    "RoundPart",
     "Spent",
     "failures_in",
     "latest_end",
@@ -90,7 +90,7 @@ class Ended:
     message: str = ""
 
 
-class Part(msgspec.Struct, frozen=True):
+class RoundPart(msgspec.Struct, frozen=True):
     """Part of a round: decisions of agents that act together, and their results.
 
     Attributes:
@@ -134,7 +134,7 @@ class Failure:
         return f"round {self.round + 1}, {self.agent}: {self.reason}"
 
 
-def failures_in(parts: Sequence[Part], per_round: int) -> tuple[Failure, ...]:
+def failures_in(parts: Sequence[RoundPart], per_round: int) -> tuple[Failure, ...]:
     """Return the failures in parts of rounds.
 
     Args:
@@ -149,16 +149,16 @@ def failures_in(parts: Sequence[Part], per_round: int) -> tuple[Failure, ...]:
     )
 
 
-def latest_end(parts: Sequence[Part], agent: str) -> Ended:
+def latest_end(parts: Sequence[RoundPart], agent: str) -> Ended:
     """Return the end of an agent's latest program."""
     return next((p.ended[agent] for p in reversed(parts) if agent in p.ended), Ended())
 
 
-def programs_of(parts: Sequence[Part], agent: str) -> tuple[str, ...]:
+def programs_of(parts: Sequence[RoundPart], agent: str) -> tuple[str, ...]:
     """Return the programs of an agent, round by round."""
     return tuple(p.decisions[agent].program for p in parts if agent in p.decisions)
 
 
-def spent_in(parts: Sequence[Part]) -> Spent:
+def spent_in(parts: Sequence[RoundPart]) -> Spent:
     """Return the spending of policies on models."""
     return sum((each.spent for part in parts for each in part.decisions.values()), Spent())

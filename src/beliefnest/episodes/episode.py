@@ -11,7 +11,7 @@ from beliefnest.episodes.choosing import check_resumable, chosen, name_of
 from beliefnest.episodes.considered import SearchTrace
 from beliefnest.episodes.decided import (
     Failure,
-    Part,
+    RoundPart,
     Spent,
     failures_in,
     latest_end,
@@ -113,7 +113,7 @@ class Episode:
         self._lobby: Nest | None = None
         self._owns_nest = True
         self._start = 0
-        self._parts: list[Part] = []
+        self._parts: list[RoundPart] = []
         self._memo: dict[object, Any] = {}
         self._watching = Watch(task, 0)
         self._help: Help | None = None
@@ -351,7 +351,7 @@ class Episode:
         return tuple(self._asker.model_errors)
 
     @property
-    def parts(self) -> Sequence[Part]:
+    def parts(self) -> Sequence[RoundPart]:
         """Decisions in each part of each round, and their results."""
         return tuple(self._parts)
 
@@ -523,7 +523,7 @@ class Episode:
             )
         return self._lobby
 
-    def _take(self, nest: Nest, branch: str, start: int, parts: list[Part]) -> None:
+    def _take(self, nest: Nest, branch: str, start: int, parts: list[RoundPart]) -> None:
         self._nest, self._branch, self._start = nest, branch, start
         self._parts = parts
         self._watching = Watch(self.task, start)
@@ -539,7 +539,7 @@ class Episode:
         """Ask for the programs of a part, and record them before they run."""
         slot = self._slots[len(self._parts) % len(self._slots)]
         self._memo.clear()
-        self._parts.append(Part({agent: self._asker.ask(self.view(agent)) for agent in slot}))
+        self._parts.append(RoundPart({agent: self._asker.ask(self.view(agent)) for agent in slot}))
         self._keep()
 
     def _finish_part(self) -> None:

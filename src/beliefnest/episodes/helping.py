@@ -17,20 +17,20 @@ from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 from beliefnest.episodes.agent_view import GO_ON, AgentView, Policy
-from beliefnest.episodes.decided import Decision, Part
+from beliefnest.episodes.decided import Decision, RoundPart
 from beliefnest.episodes.shares import Share, shares_of
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.goals import Progress
 from beliefnest.world.values import EventKind
 
-__all__ = ["Act", "Help", "help_in"]
+__all__ = ["Help", "HelpingAct", "help_in"]
 
 _GAVE = EventKind.GIVE_ITEM_TO_OTHER
 
 
 @dataclass(frozen=True, slots=True)
-class Act:
+class HelpingAct:
     """Program in which a player said or gave something.
 
     Attributes:
@@ -65,10 +65,10 @@ class Help:
 
     needed: tuple[str, ...]
     given: tuple[str, ...]
-    acts: tuple[Act, ...]
+    acts: tuple[HelpingAct, ...]
 
     @property
-    def superfluous(self) -> tuple[Act, ...]:
+    def superfluous(self) -> tuple[HelpingAct, ...]:
         """Return the acts without which no agent would be worse off."""
         return tuple(act for act in self.acts if not act.worse)
 
@@ -91,7 +91,7 @@ class Branching(Protocol):
         """Ticks at which rounds began."""
 
     @property
-    def parts(self) -> Sequence[Part]:
+    def parts(self) -> Sequence[RoundPart]:
         """Decisions in each part of each round, and their results."""
 
     @property
@@ -167,19 +167,19 @@ def _done(episode: Branching, shares: Mapping[str, Share]) -> dict[str, float]:
     return {agent: share.done_at(progress[agent]) for agent, share in shares.items()}
 
 
-def _acts(episode: Branching, agent: str) -> list[Act]:
+def _acts(episode: Branching, agent: str) -> list[HelpingAct]:
     """Return the programs of an agent in which it said or gave something."""
     state = episode.nest["/"].state
     gave = {e.tick for e in state.events if (e.actor, e.kind) == (agent, _GAVE)}
     said = {tick for tick, speaker, _ in state.chat if speaker == agent} | gave
     own = [part for part in episode.parts if agent in part.decisions]
     ends = [*episode.beginnings[1:], episode.nest.tick]
-    found: list[Act] = []
+    found: list[HelpingAct] = []
     first = 0
     for number, part in enumerate(own):
         first = first if part.decisions[agent].goes_on else number
         if any(episode.beginnings[number] < tick <= ends[number] for tick in said):
             if found and found[-1].first == first:
                 found.pop()
-            found.append(Act(agent, first, number))
+            found.append(HelpingAct(agent, first, number))
     return found

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
-from beliefnest.episodes.decided import Failure, Part, Spent
+from beliefnest.episodes.decided import Failure, RoundPart, Spent
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
 from beliefnest.world.values import EventKind
@@ -88,7 +88,7 @@ class Measures:
         return asdict(self)
 
 
-class Played(Protocol):
+class Measurable(Protocol):
     """Protocol of an episode that can be measured."""
 
     task: Task
@@ -103,7 +103,7 @@ class Played(Protocol):
         """Tick at which the first round began."""
 
     @property
-    def parts(self) -> Sequence[Part]:
+    def parts(self) -> Sequence[RoundPart]:
         """Decisions in each part of each round, and their results."""
 
     @property
@@ -135,7 +135,7 @@ class Played(Protocol):
         """Spending of policies on models."""
 
 
-def measured(episode: Played) -> Measures:
+def measured(episode: Measurable) -> Measures:
     """Return the measures of an episode up to now."""
     nest, task = episode.nest, episode.task
     players, start = set(task.players), episode.start
@@ -179,7 +179,7 @@ def measured(episode: Played) -> Measures:
     )
 
 
-def false_beliefs(episode: Played) -> list[tuple[int, dict[str, int]]]:
+def false_beliefs(episode: Measurable) -> list[tuple[int, dict[str, int]]]:
     """Return the number of false beliefs of each agent at the beginnings of rounds and now.
 
     Each entry has its tick. Beliefs about the beliefs of others are not counted.
@@ -191,7 +191,7 @@ def false_beliefs(episode: Played) -> list[tuple[int, dict[str, int]]]:
     ]
 
 
-def _acted_on_false(episode: Played) -> int:
+def _acted_on_false(episode: Measurable) -> int:
     """Return how often agents opened a container with fewer of an item than they believed."""
     nest, count = episode.nest, 0
     opened = [

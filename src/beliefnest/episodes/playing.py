@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from beliefnest.episodes.agent_view import Policy
-from beliefnest.episodes.decided import Ended, Part
+from beliefnest.episodes.decided import Ended, RoundPart
 from beliefnest.episodes.live_people import RealRound
 from beliefnest.episodes.record import cut_in, ended_as, reasons_in
 from beliefnest.nest.face.nest import Nest
@@ -12,7 +12,7 @@ from beliefnest.worlds.protocol import ProgramPast, ProgramResult
 __all__ = ["look_around", "play_part", "play_part_with_people"]
 
 
-def play_part(nest: Nest, parts: Sequence[Part], ticks: int, end: int) -> Part:
+def play_part(nest: Nest, parts: Sequence[RoundPart], ticks: int, end: int) -> RoundPart:
     """Run the decided programs of the last part in virtual time.
 
     Args:
@@ -33,16 +33,16 @@ def play_part(nest: Nest, parts: Sequence[Part], ticks: int, end: int) -> Part:
     look_around(nest)
     ended = {agent: ended_as(each, results.get(agent)) for agent, each in part.decisions.items()}
     cut = cut_in(results, ended, past, end - ticks, end)
-    return Part(part.decisions, ended, cut, reasons=reasons_in(results))
+    return RoundPart(part.decisions, ended, cut, reasons=reasons_in(results))
 
 
 def play_part_with_people(
     nest: Nest,
-    parts: Sequence[Part],
+    parts: Sequence[RoundPart],
     ticks: int,
     policies: Mapping[str, Policy],
     decided: Callable[[], bool],
-) -> Part:
+) -> RoundPart:
     """Run the decided programs of the last part in real time, while people act.
 
     Args:
@@ -64,7 +64,7 @@ def play_part_with_people(
         for agent, each in part.decisions.items()
     }
     cut = cut_in(results, ended, past, here.began, here.cut)
-    return Part(part.decisions, ended, cut, here.began, reasons_in(results))
+    return RoundPart(part.decisions, ended, cut, here.began, reasons_in(results))
 
 
 def look_around(nest: Nest) -> None:
@@ -76,7 +76,7 @@ def look_around(nest: Nest) -> None:
     nest["/"].edit()
 
 
-def _programs(parts: Sequence[Part]) -> tuple[dict[str, str], dict[str, ProgramPast]]:
+def _programs(parts: Sequence[RoundPart]) -> tuple[dict[str, str], dict[str, ProgramPast]]:
     """Return the programs of the last part by agent, and the past of those that continue."""
     decisions = parts[-1].decisions
     programs = {agent: d.program for agent, d in decisions.items() if d.program}

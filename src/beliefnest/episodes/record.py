@@ -5,7 +5,7 @@ from typing import Any, Protocol
 
 import msgspec
 
-from beliefnest.episodes.decided import Decision, Ended, Part, Spent
+from beliefnest.episodes.decided import Decision, Ended, RoundPart, Spent
 from beliefnest.errors import BranchError, InputError, NotBegunError, StoreError
 from beliefnest.worlds.protocol import NO_WAY, Fault, ProgramPast, ProgramResult
 
@@ -105,7 +105,7 @@ class Branch(msgspec.Struct, frozen=True):
     """
 
     policies: dict[str, str]
-    parts: list[Part]
+    parts: list[RoundPart]
     goal: list[tuple[str, int | None]] = []
     reached: int | None = None
     violated: int | None = None

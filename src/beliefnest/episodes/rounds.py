@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 
 from beliefnest.episodes.agent_view import GO_ON, AgentView, Policy
-from beliefnest.episodes.decided import Decision, Part, Spent
+from beliefnest.episodes.decided import Decision, RoundPart, Spent
 from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.failures import UnavailableModelError, UnusableAnswerError
@@ -34,7 +34,7 @@ class ReplayedPolicy:
         return self.decisions[view.round].program
 
 
-def replayed(parts: Sequence[Part], agents: Iterable[str]) -> dict[str, Policy]:
+def replayed(parts: Sequence[RoundPart], agents: Iterable[str]) -> dict[str, Policy]:
     """Return policies of agents that repeat recorded decisions."""
     return {
         agent: ReplayedPolicy([part.decisions[agent] for part in parts if agent in part.decisions])

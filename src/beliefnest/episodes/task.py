@@ -14,7 +14,7 @@ from beliefnest.errors import BeliefNestError, InputError, ScenarioError, Unknow
 from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.goals import Goal
 from beliefnest.scenarios.instances import drawn_instance, has_instances
-from beliefnest.scenarios.loading import Change, condition_number
+from beliefnest.scenarios.loading import DocumentChange, condition_number
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry, check_rules, goal_of
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names, read_document
@@ -89,7 +89,7 @@ class Task:
         seed: int,
         condition: int | None,
         parameters: Mapping[str, object],
-        change: Change | None = None,
+        change: DocumentChange | None = None,
     ) -> Self:
         """Return an instance of a scenario; without `instances`, the scenario itself.
 

@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 
 from beliefnest.episodes.considered import told_trace
-from beliefnest.episodes.decided import Part
+from beliefnest.episodes.decided import RoundPart
 from beliefnest.episodes.record import Branch, EpisodeStart, Keeps, holds_episode, kept_in
 from beliefnest.episodes.task_form import TaskForm
 from beliefnest.errors import BeliefNestError, StoreError
@@ -96,7 +96,7 @@ def _branch(form: TaskForm, goal: Goal, start: EpisodeStart, branch: Branch) -> 
     }
 
 
-def _spans(parts: Sequence[Part], start: int, ticks: int) -> list[tuple[int, int]]:
+def _spans(parts: Sequence[RoundPart], start: int, ticks: int) -> list[tuple[int, int]]:
     """Return the first and last tick of each part; with people, parts last until the next one."""
     began = [
         start + number * ticks if part.began is None else part.began
@@ -105,7 +105,7 @@ def _spans(parts: Sequence[Part], start: int, ticks: int) -> list[tuple[int, int
     return [*pairwise(began), *((last, last + ticks) for last in began[-1:])]
 
 
-def _done(part: Part, agent: str) -> dict[str, Any]:
+def _done(part: RoundPart, agent: str) -> dict[str, Any]:
     decision, ended = part.decisions[agent], part.ended.get(agent)
     return {
         "agent": agent,

@@ -32,11 +32,11 @@ __all__ = [
     "TOP_SHIFT",
     "UNKNOWN",
     "UPPER",
-    "Codes",
+    "BodyCodes",
     "body_codes",
 ]
 
-Codes = npt.NDArray[np.uint32]
+BodyCodes = npt.NDArray[np.uint32]
 
 ROOM = 1
 """A body moves through the block."""
@@ -73,7 +73,7 @@ _LAYER = 0.1
 
 
 @lru_cache(maxsize=8)
-def body_codes(registry: Registry, *, opens: bool, guesses: bool) -> Codes:
+def body_codes(registry: Registry, *, opens: bool, guesses: bool) -> BodyCodes:
     """Return the codes of all states, counted from -1: unknown, then the states of the registry.
 
     Args:

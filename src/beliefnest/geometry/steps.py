@@ -24,6 +24,7 @@ from beliefnest.geometry.bodies import (
     UPPER,
 )
 from beliefnest.perception.compiling import compiled, inlined, inner
+from beliefnest.world.array_types import Cells, Flags, Ints
 
 __all__ = [
     "DEEPEST_DIVE",
@@ -47,11 +48,8 @@ __all__ = [
 
 Sizes = tuple[int, int, int]
 Grid = npt.NDArray[np.uint32]
-Ints = npt.NDArray[np.int32]
-Cells = npt.NDArray[np.int64]
 Sides = npt.NDArray[np.int64]
 Levels = npt.NDArray[np.int8]
-Flags = npt.NDArray[np.bool_]
 
 NOWHERE = 2
 """Change of height of a step that leads nowhere."""

@@ -5,7 +5,7 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-__all__ = ["Named", "Names", "Token", "plain_words", "sentences", "tokens_of"]
+__all__ = ["NamedOptions", "Names", "Token", "plain_words", "sentences", "tokens_of"]
 
 _LONGEST = 1000
 """Greatest number of words of a sentence. Longer ones tell nothing clearly."""
@@ -124,7 +124,7 @@ class Token:
 
 
 @dataclass(slots=True)
-class Named:
+class NamedOptions:
     """Options that a text names.
 
     Attributes:
@@ -238,10 +238,10 @@ class Names:
                 found.setdefault(form[:-1], []).append(number)
         return {form: own[0] for form, own in found.items() if len(own) == 1}
 
-    def named(self, sentence: str) -> Named:
+    def named(self, sentence: str) -> NamedOptions:
         """Return the options that a plain sentence names."""
         tokens = [token for token in tokens_of(sentence) if token.raw != "\n"]
-        found = Named()
+        found = NamedOptions()
         if len(tokens) > _LONGEST:
             for each in self._mentions(tokens[:_LONGEST]):
                 found.unsure |= each.options

@@ -7,7 +7,7 @@ from typing import Literal
 
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Finish
-from beliefnest.llm.naming import Named, Names, plain_words, sentences
+from beliefnest.llm.naming import NamedOptions, Names, plain_words, sentences
 from beliefnest.llm.statements import (
     Statement,
     afterthoughts,
@@ -215,13 +215,13 @@ class _Reader:
         named = self._names.named(plain)
         return named.bare and bool(named.yes) and not plain.endswith("?")
 
-    def _statement(self, statement: Statement) -> Named | None:
+    def _statement(self, statement: Statement) -> NamedOptions | None:
         """Return what a statement names; None: it is a question."""
         plain = plain_words(statement.text.replace("\\\\", " ")).strip()
         labelled = self._names.label_first(plain)
         if labelled is not None:
             return self._labelled(plain, *labelled)
-        whole = Named()
+        whole = NamedOptions()
         parts = sentences(plain) or [""]
         if statement.kind == "mark":
             stated = [e for e in parts if not e.endswith("?") or re.match(r"\W*or\b", e, re.I)]
@@ -243,13 +243,13 @@ class _Reader:
             whole.aside |= named.aside
         return whole
 
-    def _labelled(self, plain: str, number: int, rest: str) -> Named:
+    def _labelled(self, plain: str, number: int, rest: str) -> NamedOptions:
         """Return what a letter with a text behind it names: both must name the same."""
         head = sentences(rest)[:1] or [""]
         named = self._names.named(head[0])
         first = re.split(r"[,;(\u2014]|\s-\s|\b(?:because|since|as|so)\b", head[0])[0]
         lead = self._names.named(first)
-        whole = Named({number})
+        whole = NamedOptions({number})
         if lead.bare or (named.bare and named.yes):
             whole.yes |= lead.yes | (named.yes if named.bare else set())
         # A list of options after the mark names all of them.
@@ -283,7 +283,7 @@ class _Reader:
             # Doubts without another answer leave none.
             weak = sign.startswith(("actually", "hmm", "on reflection"))
             return (chosen, unclear, plain) if weak else (chosen, True, plain)
-        named = Named()
+        named = NamedOptions()
         for each in parts:
             other = self._names.named(each.lstrip(" ,:;-\u2014"))
             named.yes |= other.yes
@@ -302,7 +302,7 @@ class _Reader:
     def _prose(self, text: str) -> _Found:
         """Return what a text without any statement names, if it says one thing only."""
         plain = plain_words(text)
-        whole = Named()
+        whole = NamedOptions()
         told = False
         for sentence in sentences(plain):
             if sentence.endswith("?"):
@@ -407,7 +407,7 @@ def read_words(text: str, finish: Finish = "stop") -> AnswerReading:
 
 
 @dataclass(slots=True)
-class NamedInWords(Named):
+class NamedInWords(NamedOptions):
     """Names in an answer in words.
 
     Attributes:

@@ -16,7 +16,7 @@ from beliefnest.llm.own_models import installed_models, names_own_model, own_mod
 from beliefnest.llm.providers import PROVIDERS, endpoint
 from beliefnest.llm.recorded_models import FileRecordingModel, load_replay, load_script
 from beliefnest.llm.remote import AnswerLimits, RemoteModel
-from beliefnest.llm.retrying import RetryingModel, RetryPolicy, Tell, tell_on_stderr
+from beliefnest.llm.retrying import RetryingModel, RetryPolicy, TellWait, tell_on_stderr
 
 __all__ = [
     "Connection",
@@ -55,7 +55,7 @@ class Connection:
     cache_mode: CacheMode = "read"
     record: Path | None = None
     clock: Clock = field(default_factory=SystemClock)
-    tell: Tell = tell_on_stderr
+    tell: TellWait = tell_on_stderr
 
     @property
     def holds_answers(self) -> bool:

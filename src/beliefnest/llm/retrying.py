@@ -11,9 +11,9 @@ from beliefnest.llm.clock import Clock
 from beliefnest.llm.failures import TransientModelError, UnavailableModelError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 
-__all__ = ["RetryPolicy", "RetryingModel", "Tell", "tell_on_stderr"]
+__all__ = ["RetryPolicy", "RetryingModel", "TellWait", "tell_on_stderr"]
 
-Tell = Callable[[str], None]
+TellWait = Callable[[str], None]
 """Function that tells the user a line about a long wait."""
 
 _BETWEEN_LINES = 60.0
@@ -67,7 +67,7 @@ class RetryingModel:
     model: Model
     policy: RetryPolicy
     clock: Clock
-    tell: Tell = tell_on_stderr
+    tell: TellWait = tell_on_stderr
 
     @property
     def name(self) -> str:

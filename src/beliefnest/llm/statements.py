@@ -11,7 +11,7 @@ from beliefnest.llm.naming import plain_words
 
 __all__ = ["Statement", "afterthoughts", "given_reason", "statements", "without_made_up_turns"]
 
-Kind = Literal["mark", "line", "prose"]
+StatementKind = Literal["mark", "line", "prose"]
 
 _SPACE = r"(?:[^\w\n]|_)"
 _NOUN = (
@@ -128,7 +128,7 @@ class Statement:
     start: int
     end: int
     text: str
-    kind: Kind = "mark"
+    kind: StatementKind = "mark"
     alone: bool = False
 
 

@@ -16,12 +16,13 @@ import numpy.typing as npt
 
 from beliefnest.belief.chunk_pool import changed_lines, lines_of_sight
 from beliefnest.perception.sight import Sight, SightLines
+from beliefnest.world.array_types import Cells
 from beliefnest.world.terrain import SIDE, VOLUME, Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Items, Point, Position
 
-__all__ = ["Pose", "World", "Worlds"]
+__all__ = ["AgentPose", "AlternativeWorld", "AlternativeWorlds"]
 
-Pose = tuple[Point, float, float]
+AgentPose = tuple[Point, float, float]
 """Feet, yaw and pitch."""
 
 # Radius of a block's cube, and of its shape, which may reach half a block out along one axis.
@@ -34,12 +35,9 @@ _AROUND = np.array([(0, 0, 0), *np.eye(3, dtype=np.int64), *-np.eye(3, dtype=np.
 _IN_CHUNK = np.stack(np.unravel_index(np.arange(VOLUME), (SIDE, SIDE, SIDE)), axis=1)
 _NO_CELLS = np.empty((0, 3), dtype=np.int64)
 
-Cells = npt.NDArray[np.int64]
-"""Indices of cells (n, 3)."""
-
 
 @dataclass(frozen=True, eq=False)
-class World:
+class AlternativeWorld:
     """One alternative at one moment.
 
     Attributes:
@@ -50,7 +48,7 @@ class World:
 
     blocks: Terrain
     contents: Mapping[Position, Items]
-    agents: Mapping[str, Pose]
+    agents: Mapping[str, AgentPose]
 
 
 @lru_cache(maxsize=8)
@@ -58,7 +56,7 @@ def _all_round(sight: Sight) -> Sight:
     return replace(sight, field_of_view=360.0)
 
 
-class Worlds:
+class AlternativeWorlds:
     """All alternatives of a doubt at one moment.
 
     Args:
@@ -74,7 +72,7 @@ class Worlds:
         self,
         sight: Sight,
         box: Box,
-        worlds: Sequence[World],
+        worlds: Sequence[AlternativeWorld],
         items: Mapping[int, DroppedItem],
         agent: str,
         *,
@@ -178,7 +176,7 @@ class Worlds:
         everyone = (1 << count) - 1
         if not self.can_differ:
             return [everyone] * count
-        look: Pose = ((feet[0], feet[1] + EYE_HEIGHT, feet[2]), yaw, pitch)
+        look: AgentPose = ((feet[0], feet[1] + EYE_HEIGHT, feet[2]), yaw, pitch)
         if self.has_one_view and not self._doubted_contents and not self._doubted_agents:
             return self._alike_by_blocks(look, all_round)
         percepts = self._percepts(look, all_round)
@@ -205,7 +203,7 @@ class Worlds:
             if len({id(self._geometry_of[number]) for number in group}) > 1
         ]
 
-    def _alike_by_blocks(self, look: Pose, all_round: bool) -> list[int]:
+    def _alike_by_blocks(self, look: AgentPose, all_round: bool) -> list[int]:
         """Return the result of `alike` if only blocks differ, and all of them hide the same."""
         plain = self._geometry_of[0]
         seeing = self._round[id(plain)] if all_round else plain
@@ -221,7 +219,7 @@ class Worlds:
         """Alternatives with the same percept, by which of the differing blocks are seen."""
         return {}
 
-    def _percepts(self, look: Pose, all_round: bool) -> list[object]:
+    def _percepts(self, look: AgentPose, all_round: bool) -> list[object]:
         """Return the percepts of doubted blocks, of contents, agents and items."""
         everyone = range(len(self.worlds))
         return [
@@ -232,7 +230,7 @@ class Worlds:
         ]
 
     def _seen(
-        self, look: Pose, cells: Cells, which: Sequence[int], all_round: bool
+        self, look: AgentPose, cells: Cells, which: Sequence[int], all_round: bool
     ) -> list[npt.NDArray[np.bool_]]:
         """Return a mask of the cells whose blocks are seen, for some alternatives."""
         seen: dict[int, npt.NDArray[np.bool_]] = {}
@@ -302,7 +300,7 @@ class Worlds:
         return lattice.starts(numbers[self._is_known[numbers]])
 
     def _percept(
-        self, number: int, look: Pose, all_round: bool, seen: npt.NDArray[np.bool_]
+        self, number: int, look: AgentPose, all_round: bool, seen: npt.NDArray[np.bool_]
     ) -> tuple[object, ...]:
         """Return a percept of an alternative as a value to compare; `seen` masks doubted cells."""
         world, seeing = self.worlds[number], self._seeing(number, all_round)

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from beliefnest.errors import InputError
-from beliefnest.minds.findings import Change, Impossible
+from beliefnest.minds.findings import EvidenceEffect, Impossible
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.pictures.bars import BarChart, BarGroup
 from beliefnest.pictures.figure import Figure
@@ -50,7 +50,7 @@ class Posterior(Protocol):
     def marginal(self, factor: str, tick: int | None = None) -> dict[Any, float]:
         """Return the probability of each value of a factor at a tick; None: at the last one."""
 
-    def explain(self, tick: int | None = None) -> list[Change]:
+    def explain(self, tick: int | None = None) -> list[EvidenceEffect]:
         """Return the effect of each piece of evidence; with a tick, of those of this tick."""
 
     def predict(self, steps: int = 1, tick: int | None = None) -> list[dict[Position, float]]:

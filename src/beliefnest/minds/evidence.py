@@ -2,15 +2,15 @@
 
 from dataclasses import dataclass
 
-from beliefnest.minds.alternatives import Pose
-from beliefnest.minds.surroundings import Scene
+from beliefnest.minds.alternatives import AgentPose
+from beliefnest.minds.surroundings import Surroundings
 from beliefnest.world.values import Position
 
-__all__ = ["Moment"]
+__all__ = ["EvidenceMoment"]
 
 
 @dataclass(frozen=True, eq=False)
-class Moment:
+class EvidenceMoment:
     """One tick at which something changed in the observer's node, or its first one.
 
     Sets of alternatives are numbers, as in `stage`.
@@ -32,7 +32,7 @@ class Moment:
     """
 
     tick: int
-    scene: Scene
+    scene: Surroundings
     cell: Position | None
     alike: tuple[int, ...] = ()
     claims: tuple[int, ...] = ()
@@ -41,4 +41,4 @@ class Moment:
     act: int | None = None
     deed: bool = False
     agrees: int = -1
-    watch: Pose | None = None
+    watch: AgentPose | None = None

@@ -6,7 +6,7 @@ from typing import Any
 
 from beliefnest.world.values import Position
 
-__all__ = ["Change", "Impossible", "SampledPath"]
+__all__ = ["EvidenceEffect", "Impossible", "SampledPath"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class SampledPath:
 
 
 @dataclass(frozen=True)
-class Change:
+class EvidenceEffect:
     """Effect of one piece of evidence on the marginals.
 
     Attributes:

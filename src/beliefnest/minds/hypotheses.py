@@ -9,32 +9,31 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from beliefnest.minds.mind_model import MindModel
-from beliefnest.minds.planner import Knowledge, Planner, PlanRules, log_sum, planner_for
+from beliefnest.minds.planner import Knowledge, PlanRules, StagePlanner, log_sum, planner_for
 from beliefnest.minds.stage import Stage
+from beliefnest.world.array_types import Floats
 from beliefnest.world.values import Position
 
 __all__ = [
     "Action",
     "Hypotheses",
     "Layer",
-    "State",
-    "States",
     "Sums",
+    "WalkState",
+    "WalkStates",
     "conditioned",
     "joined",
     "log_sum",
     "told",
 ]
 
-Floats = npt.NDArray[np.float64]
 
-State = tuple[Position, int, int, bool]
+WalkState = tuple[Position, int, int, bool]
 """Cell, knowledge (possible, believed), and True if the course has ended."""
 
-States = tuple[Mapping[State, Floats], ...]
+WalkStates = tuple[Mapping[WalkState, Floats], ...]
 """By actual alternative and state, log weights (rationalities, utilities, credences)."""
 
 
@@ -96,12 +95,12 @@ class Hypotheses:
         """Numbers of rationalities, utilities and credences."""
         return len(self.rationalities), len(self.utilities), len(self.credences)
 
-    def planner(self, stage: Stage) -> Planner:
+    def planner(self, stage: Stage) -> StagePlanner:
         """Return the planner of a stage."""
         return planner_for(stage, self._key, self._new_planner)
 
-    def _new_planner(self, stage: Stage) -> Planner:
-        return Planner(stage, self.rules, self.utilities, self.credences)
+    def _new_planner(self, stage: Stage) -> StagePlanner:
+        return StagePlanner(stage, self.rules, self.utilities, self.credences)
 
     @cached_property
     def _key(self) -> bytes:
@@ -126,7 +125,7 @@ def joined(parts: Iterable[Floats]) -> Floats:
 Action = tuple[Stage, Position, Knowledge, tuple[int, ...]]
 """A stage, a cell, a knowledge, and the numbers of actions."""
 
-Edge = tuple[State, State, Action | None]
+Edge = tuple[WalkState, WalkState, Action | None]
 """State, next state, and the actions between them; None: no action."""
 
 
@@ -142,15 +141,15 @@ class Layer:
 
     tick: int
     edges: list[Edge]
-    before: Mapping[State, Floats]
+    before: Mapping[WalkState, Floats]
 
-    def sources(self, target: State) -> Sequence[tuple[State, Action | None]]:
+    def sources(self, target: WalkState) -> Sequence[tuple[WalkState, Action | None]]:
         """Return the states that lead to a state, with the actions; call it at the end."""
         return self._by_target.get(target, ())
 
     @cached_property
-    def _by_target(self) -> Mapping[State, Sequence[tuple[State, Action | None]]]:
-        found: dict[State, list[tuple[State, Action | None]]] = {}
+    def _by_target(self) -> Mapping[WalkState, Sequence[tuple[WalkState, Action | None]]]:
+        found: dict[WalkState, list[tuple[WalkState, Action | None]]] = {}
         for source, target, action in self.edges:
             found.setdefault(target, []).append((source, action))
         return found
@@ -160,14 +159,14 @@ class Sums:
     """Sums of weights by state. If a layer is kept, the edges are listed in it."""
 
     def __init__(self, layer: Layer | None = None) -> None:
-        self._parts: dict[State, list[Floats]] = {}
+        self._parts: dict[WalkState, list[Floats]] = {}
         self._layer = layer
 
     def add(
         self,
-        state: State,
+        state: WalkState,
         weights: Floats,
-        source: State,
+        source: WalkState,
         policy: Floats | None = None,
         action: Action | None = None,
     ) -> None:
@@ -180,7 +179,7 @@ class Sums:
         if self._layer is not None:
             self._layer.edges.append((source, state, action))
 
-    def total(self) -> dict[State, Floats]:
+    def total(self) -> dict[WalkState, Floats]:
         """Return the sums."""
         return {state: joined(parts) for state, parts in self._parts.items()}
 

@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import InputError, TickError
-from beliefnest.minds.findings import Change, Impossible, SampledPath
+from beliefnest.minds.findings import EvidenceEffect, Impossible, SampledPath
 from beliefnest.minds.hypotheses import log_sum
 from beliefnest.minds.looking_back import sampled_cells, smoothed_steps
 from beliefnest.minds.mind_model import MindModel
-from beliefnest.minds.tracking import Step, Tracker
+from beliefnest.minds.tracking import FilterStep, Tracker
+from beliefnest.world.array_types import Floats
 from beliefnest.world.values import Position
 
 if TYPE_CHECKING:  # Few results become tables or figures.
@@ -22,9 +23,7 @@ if TYPE_CHECKING:  # Few results become tables or figures.
 
     from beliefnest.pictures.figure import Figure
 
-__all__ = ["Change", "Impossible", "Inference", "SampledPath", "reported_credence"]
-
-Floats = npt.NDArray[np.float64]
+__all__ = ["EvidenceEffect", "Impossible", "Inference", "SampledPath", "reported_credence"]
 
 
 def reported_credence(row: Floats, possible: int, believed: int, lapse: float) -> Floats:
@@ -183,7 +182,7 @@ class Inference:
         ]
         return pd.DataFrame(rows, columns=["tick", "factor", "value", "probability"])
 
-    def explain(self, tick: int | None = None) -> list[Change]:
+    def explain(self, tick: int | None = None) -> list[EvidenceEffect]:
         """Return the changes of factors by each piece of evidence; None: at all ticks.
 
         Raises:
@@ -200,7 +199,9 @@ class Inference:
             after = {name: self._marginal_of(name, number) for name in names}
             if tick is None or step.tick == tick:
                 bits = {name: _divergence(after[name], before[name]) for name in names}
-                changes.append(Change(step.tick, step.text, bits, step.is_action, step.is_movement))
+                changes.append(
+                    EvidenceEffect(step.tick, step.text, bits, step.is_action, step.is_movement)
+                )
             before = after
         return changes
 
@@ -323,11 +324,11 @@ class Inference:
         numbers = [number for number, step in enumerate(self._known) if step.tick <= tick]
         return numbers[-1] if numbers else -1
 
-    def _step(self, tick: int | None) -> Step | None:
+    def _step(self, tick: int | None) -> FilterStep | None:
         number = self._number(tick)
         return None if number < 0 else self._known[number]
 
-    def _log_actual(self, step: Step | None) -> Floats:
+    def _log_actual(self, step: FilterStep | None) -> Floats:
         """Log weights of the possible actual alternatives, as far as they agree with the node."""
         weights = self.model.actual_weights
         names = self.model.alternative_names
@@ -347,15 +348,15 @@ class Inference:
             prior = np.log(self.model.prior_weights) - math.log(count)
         return np.broadcast_to(prior, (count, *prior.shape))
 
-    def _log_prior(self, step: Step | None) -> Floats:
+    def _log_prior(self, step: FilterStep | None) -> Floats:
         prior: Floats = self._log_actual(step)[:, None, None, None] + self._log_weights
         return prior
 
-    def _is_possible(self, step: Step) -> bool:
+    def _is_possible(self, step: FilterStep) -> bool:
         """Return True if a hypothesis that the model allows explains all evidence to a step."""
         return step.is_possible and bool(np.isfinite(self._log_prior(step) + step.weights).any())
 
-    def _posterior_of(self, step: Step | None) -> Floats:
+    def _posterior_of(self, step: FilterStep | None) -> Floats:
         logs = self._log_prior(step)
         if step is not None:
             logs = logs + step.weights
@@ -379,7 +380,7 @@ class Inference:
             return self._changing(kind, name, self._smooth_step(number))
         return self._grouped(factor, self._posterior_of(step))
 
-    def _smooth_step(self, number: int) -> Step:
+    def _smooth_step(self, number: int) -> FilterStep:
         # A course that no hypothesis explains stays unexplained.
         if not self.smooth or self._failed is not None:
             return self._known[number]
@@ -391,7 +392,7 @@ class Inference:
         return self._keep()
 
     @cached_property
-    def _smoothed(self) -> list[Step]:
+    def _smoothed(self) -> list[FilterStep]:
         return _merged([smoothed_steps(tracker) for tracker in self._kept])
 
     def _grouped(self, factor: str, posterior: Floats) -> dict[Any, float]:
@@ -403,7 +404,7 @@ class Inference:
             shares[value] = shares.get(value, 0.0) + share
         return dict(sorted(shares.items()))
 
-    def _changing(self, kind: str, name: str, step: Step) -> dict[Any, float]:
+    def _changing(self, kind: str, name: str, step: FilterStep) -> dict[Any, float]:
         actual = self._log_actual(step)
         logs: dict[Any, list[float]] = {}
         rows = self.model.credence_rows
@@ -457,14 +458,14 @@ class Inference:
         return {**told, "probability": float(posterior[a, b, u, w])}
 
 
-def _merged(parts: Sequence[Sequence[Step]]) -> list[Step]:
+def _merged(parts: Sequence[Sequence[FilterStep]]) -> list[FilterStep]:
     """Join the steps of chunks of utilities."""
     if len(parts) == 1:
         return list(parts[0])
     return list(_joined_steps(parts))
 
 
-def _joined_steps(parts: Sequence[Sequence[Step]]) -> Iterator[Step]:
+def _joined_steps(parts: Sequence[Sequence[FilterStep]]) -> Iterator[FilterStep]:
     longest = max(parts, key=len)
     for number, told in enumerate(longest):
         at = [steps[min(number, len(steps) - 1)] for steps in parts]

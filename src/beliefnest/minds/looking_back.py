@@ -8,18 +8,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
-from beliefnest.minds.hypotheses import Action, Hypotheses, Layer, State, log_sum
-from beliefnest.minds.tracking import Step, Tracker
+from beliefnest.minds.hypotheses import Action, Hypotheses, Layer, WalkState, log_sum
+from beliefnest.minds.tracking import FilterStep, Tracker
+from beliefnest.world.array_types import Floats
 from beliefnest.world.values import Position
 
 __all__ = ["sampled_cells", "smoothed_steps"]
 
-Floats = npt.NDArray[np.float64]
 
-
-def smoothed_steps(tracker: Tracker) -> list[Step]:
+def smoothed_steps(tracker: Tracker) -> list[FilterStep]:
     """Return the steps of a filter, with their states conditioned on all evidence."""
     by_actual = [_smoothed(tracker, actual, layers) for actual, layers in enumerate(tracker.trail)]
     count = len(tracker.hypotheses.credences)
@@ -64,7 +62,7 @@ def sampled_cells(
         for tick in range(layer.tick, left + 1):
             cells[tick] = state[0]
         left = min(left, layer.tick - 1)
-        parts: dict[State, list[float]] = {}
+        parts: dict[WalkState, list[float]] = {}
         for source, action in layer.sources(state):
             chance = _chance(tracker.hypotheses, action)
             inside = 0.0 if chance is None else float(_at(chance, hypothesis))
@@ -84,13 +82,15 @@ def _log_sum_of(logs: Sequence[float]) -> float:
 
 def _smoothed(
     tracker: Tracker, actual: int, layers: Sequence[Layer]
-) -> list[Mapping[State, Floats]]:
+) -> list[Mapping[WalkState, Floats]]:
     """Return joint weights of states and all evidence, before each layer and after the last."""
     last = tracker.states[actual]
-    ahead: dict[State, Floats] = {state: np.zeros_like(weight) for state, weight in last.items()}
-    found: list[Mapping[State, Floats]] = [last]
+    ahead: dict[WalkState, Floats] = {
+        state: np.zeros_like(weight) for state, weight in last.items()
+    }
+    found: list[Mapping[WalkState, Floats]] = [last]
     for layer in reversed(layers):
-        parts: dict[State, list[Floats]] = {}
+        parts: dict[WalkState, list[Floats]] = {}
         for source, target, action in layer.edges:
             if target in ahead:
                 chance = _chance(tracker.hypotheses, action)
@@ -123,7 +123,7 @@ def _at(chance: Floats, hypothesis: tuple[int, int, int]) -> float:
     return float(chance[b, u, min(w, chance.shape[2] - 1)])
 
 
-def _drawn(logs: Mapping[State, float], random: np.random.Generator) -> State:
+def _drawn(logs: Mapping[WalkState, float], random: np.random.Generator) -> WalkState:
     possible = [state for state, log in logs.items() if log > -math.inf]
     if len(possible) == 1:
         return possible[0]

@@ -13,14 +13,15 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import InputError
+from beliefnest.world.array_types import Floats
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = [
     "MOST_ALTERNATIVES",
     "Alternative",
-    "Goal",
     "MindModel",
+    "PossibleGoal",
     "read_doubt",
     "simplex_grid",
 ]
@@ -30,11 +31,9 @@ MOST_ALTERNATIVES = 62
 
 _SUM_SLACK = 1e-9
 
-Floats = npt.NDArray[np.float64]
-
 
 @dataclass(frozen=True, slots=True)
-class Goal:
+class PossibleGoal:
     """Thing that an agent may want to reach: exactly one field is set.
 
     Attributes:
@@ -157,7 +156,7 @@ class MindModel:
     stays: bool = True
     lapse: float = 0.0
 
-    goal_values: Mapping[str, Goal] = field(init=False, repr=False)
+    goal_values: Mapping[str, PossibleGoal] = field(init=False, repr=False)
     utility_rows: Floats = field(init=False, repr=False)
     """float64 (utilities, goals)."""
     alternatives: tuple[Alternative, ...] = field(init=False, repr=False)
@@ -349,7 +348,7 @@ def _point(name: str, agent: object, feet: object) -> Point:
     return (float(parts[0]), float(parts[1]), float(parts[2]))
 
 
-def _read_goals(goals: object) -> Mapping[str, Goal]:
+def _read_goals(goals: object) -> Mapping[str, PossibleGoal]:
     if not isinstance(goals, Mapping) or not goals:
         raise InputError(f"goals are {goals!r}; give goals by name")
     registry = Registry.load()
@@ -365,13 +364,13 @@ def _read_goals(goals: object) -> Mapping[str, Goal]:
             )
         ((kind, value),) = what.items()
         if kind == "at":
-            read[name] = Goal(at=_cell(f"goal {name!r}", value))
+            read[name] = PossibleGoal(at=_cell(f"goal {name!r}", value))
             continue
         text = str(value).removeprefix("minecraft:")
         known = registry.has_block(text) if kind == "block" else registry.has_item(text)
         if not known:
             raise InputError(f"goal {name!r} is about {kind} {value!r}, which does not exist")
-        read[name] = Goal(block=text) if kind == "block" else Goal(item=text)
+        read[name] = PossibleGoal(block=text) if kind == "block" else PossibleGoal(item=text)
     return read
 
 

@@ -17,18 +17,18 @@ import numpy.typing as npt
 
 from beliefnest.minds.relaxing import relax
 from beliefnest.minds.stage import Stage, numbers_in
+from beliefnest.world.array_types import Floats
 
 __all__ = [
     "Knowledge",
     "PlanRules",
-    "Planner",
+    "StagePlanner",
     "count_doubtful",
     "count_values",
     "log_sum",
     "planner_for",
 ]
 
-Floats = npt.NDArray[np.float64]
 
 Knowledge = tuple[int, int]
 """Alternatives that percepts leave possible, and the believed ones among them, as bits."""
@@ -106,7 +106,7 @@ class _Kinds:
         return len(self.utilities), len(self.credences)
 
 
-class Planner:
+class StagePlanner:
     """Values of one stage for utilities (u, goals) and credences (w, alternatives).
 
     Attributes:
@@ -329,9 +329,11 @@ class _Cache:
     """Planners by content, which drops the oldest ones when their values exceed the limit."""
 
     def __init__(self) -> None:
-        self._planners: OrderedDict[bytes, Planner] = OrderedDict()
+        self._planners: OrderedDict[bytes, StagePlanner] = OrderedDict()
 
-    def planner(self, stage: Stage, key: bytes, make: Callable[[Stage], Planner]) -> Planner:
+    def planner(
+        self, stage: Stage, key: bytes, make: Callable[[Stage], StagePlanner]
+    ) -> StagePlanner:
         key = stage.key + key
         found = self._planners.pop(key, None) or make(stage)
         room = _ROOM - found.size
@@ -348,6 +350,6 @@ def _cache() -> _Cache:
     return _Cache()
 
 
-def planner_for(stage: Stage, key: bytes, make: Callable[[Stage], Planner]) -> Planner:
+def planner_for(stage: Stage, key: bytes, make: Callable[[Stage], StagePlanner]) -> StagePlanner:
     """Return the planner of a stage and of hypotheses with a digest; equal ones are shared."""
     return _cache().planner(stage, key, make)

@@ -9,15 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import TooLargeError
-from beliefnest.minds.alternatives import Worlds
-from beliefnest.minds.mind_model import Goal
+from beliefnest.minds.alternatives import AlternativeWorlds
+from beliefnest.minds.mind_model import PossibleGoal
 from beliefnest.minds.stage import DIAGONALS, SIDES, Stage
 from beliefnest.minds.ways import Floor, Ways, bodies_in, ways_from
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Position, feet_in
 
-__all__ = ["Scene"]
+__all__ = ["Surroundings"]
 
 _MOST_STAGES = 64
 
@@ -28,7 +28,7 @@ _OBJECTS = 500
 """Bytes of the Python objects of a cell of a stage: position and number."""
 
 
-class Scene:
+class Surroundings:
     """All alternatives at one moment, with the goals of an agent in them.
 
     Args:
@@ -43,8 +43,8 @@ class Scene:
     def __init__(
         self,
         registry: Registry,
-        worlds: Worlds,
-        goals: Mapping[str, Goal],
+        worlds: AlternativeWorlds,
+        goals: Mapping[str, PossibleGoal],
         doubted: Sequence[Position],
         *,
         diagonal: bool,
@@ -54,9 +54,9 @@ class Scene:
         self._doubted, self._diagonal, self._key = tuple(doubted), diagonal, key
         self._stages: dict[Position, Stage] = {}
 
-    def with_worlds(self, worlds: Worlds, key: bytes) -> "Scene":
+    def with_worlds(self, worlds: AlternativeWorlds, key: bytes) -> "Surroundings":
         """Return a scene of other alternatives, with a digest of how they differ from these."""
-        return Scene(
+        return Surroundings(
             self._registry,
             worlds,
             self._goals,

@@ -12,22 +12,21 @@ from dataclasses import dataclass, field, replace
 from math import ceil
 
 import numpy as np
-import numpy.typing as npt
 
-from beliefnest.minds.evidence import Moment
+from beliefnest.minds.evidence import EvidenceMoment
 from beliefnest.minds.hypotheses import (
     Hypotheses,
     Layer,
-    State,
-    States,
     Sums,
+    WalkState,
+    WalkStates,
     conditioned,
     joined,
     log_sum,
     told,
 )
 from beliefnest.minds.stage import Stage, shortest
-from beliefnest.minds.surroundings import Scene
+from beliefnest.minds.surroundings import Surroundings
 from beliefnest.minds.transitions import (
     act,
     arrive,
@@ -39,11 +38,11 @@ from beliefnest.minds.transitions import (
     stage_of,
     unseen,
 )
+from beliefnest.world.array_types import Floats
 from beliefnest.world.values import Position
 
-__all__ = ["Step", "Tracker"]
+__all__ = ["FilterStep", "Tracker"]
 
-Floats = npt.NDArray[np.float64]
 
 # Reasons why no hypothesis explains a piece of evidence.
 _DISAGREES = "no alternative agrees with what the observer's node holds"
@@ -56,7 +55,7 @@ _APPEARS = "no way leads there on which the observer would not have seen it"
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class FilterStep:
     """The filter after a piece of evidence.
 
     Attributes:
@@ -75,7 +74,7 @@ class Step:
     tick: int
     text: str
     weights: Floats
-    states: tuple[Mapping[State, Floats], ...]
+    states: tuple[Mapping[WalkState, Floats], ...]
     agrees: int
     is_action: bool
     is_movement: bool
@@ -98,8 +97,8 @@ class _Gap:
 
     start: int
     cell: Position
-    before: States
-    moments: list[Moment]
+    before: WalkStates
+    moments: list[EvidenceMoment]
     marks: tuple[int, ...]
     count: int = 0
 
@@ -110,7 +109,8 @@ class Tracker:
 
     Attributes:
         hypotheses: The tracked hypotheses.
-        log_prior: float64 (utilities, credences), the prior with which `Step.states` are summed.
+        log_prior: float64 (utilities, credences), the prior with which `FilterStep.states` are
+            summed.
         states: Weights after the latest evidence.
         steps: The filter after each piece of evidence.
         tick: The last processed tick.
@@ -120,13 +120,13 @@ class Tracker:
 
     hypotheses: Hypotheses
     log_prior: Floats
-    states: States = ()
-    steps: list[Step] = field(default_factory=list)
+    states: WalkStates = ()
+    steps: list[FilterStep] = field(default_factory=list)
     tick: int = -1
     keeps: bool = False
     trail: tuple[list[Layer], ...] = ()
     _agrees: int = -1
-    _moment: Moment | None = None
+    _moment: EvidenceMoment | None = None
     _cell: Position | None = None
     _quiet: int = 0
     _gap: _Gap | None = None
@@ -158,7 +158,7 @@ class Tracker:
             self._claims,
         )
 
-    def follow(self, moments: Sequence[Moment], until: int) -> None:
+    def follow(self, moments: Sequence[EvidenceMoment], until: int) -> None:
         """Process the next moments, and then quiet ticks up to a tick."""
         for moment in moments:
             if self._moment is None:
@@ -185,21 +185,21 @@ class Tracker:
 
     # Moments in sight
 
-    def _begin(self, moment: Moment) -> None:
+    def _begin(self, moment: EvidenceMoment) -> None:
         everyone = (1 << self.hypotheses.alternatives) - 1
         assert moment.cell is not None
         zeros = np.zeros(self.hypotheses.shape)
         knowledge = (everyone, everyone)
         for mask in self._claims:
             knowledge = told(knowledge, mask)
-        start: State = (moment.cell, *knowledge, False)
+        start: WalkState = (moment.cell, *knowledge, False)
         self.states = tuple({start: zeros} for _ in range(self.hypotheses.alternatives))
         self.trail = tuple([] for _ in self.states)
         self._cell = moment.cell
         self._perceive(moment)
         self._note(moment.tick, f"is first seen at {moment.cell}", is_action=False)
 
-    def _take(self, moment: Moment) -> None:
+    def _take(self, moment: EvidenceMoment) -> None:
         if self._over:
             self._moment, self.tick = moment, moment.tick
             self._agree(moment)
@@ -231,7 +231,7 @@ class Tracker:
             return
         self._see(moment)
 
-    def _fork(self, moment: Moment) -> None:
+    def _fork(self, moment: EvidenceMoment) -> None:
         """Continue in a fork; there an agent out of sight stands at its last seen place."""
         if self._gap is not None and moment.cell is not None:
             self.states = self._gap.before
@@ -247,7 +247,7 @@ class Tracker:
             self._perceive(moment)
             self._note(moment.tick, f"perceives at {moment.cell}", is_action=False)
 
-    def _see(self, moment: Moment) -> None:
+    def _see(self, moment: EvidenceMoment) -> None:
         """Explain what the agent does in sight."""
         assert moment.cell is not None and self._cell is not None
         self.tick = moment.tick
@@ -301,17 +301,17 @@ class Tracker:
                 self._note(self.tick, f"stays at {self._cell}")
         self.tick = max(self.tick, tick)
 
-    def _stayed(self, stage: Stage) -> States:
+    def _stayed(self, stage: Stage) -> WalkStates:
         assert self._cell is not None
         return self._seen(stage, self.states, self._cell)
 
-    def _moved(self, moment: Moment, before: Position, cell: Position) -> States:
+    def _moved(self, moment: EvidenceMoment, before: Position, cell: Position) -> WalkStates:
         """Advance over a change of cell: one step, or several steps in one tick."""
         stage = self._stage(before)
         if cell not in stage.index:
             # The observer did not know before that an agent can stand there.
             stage = stage_of(moment.scene, before, cell)
-        found: list[Mapping[State, Floats]] = []
+        found: list[Mapping[WalkState, Floats]] = []
         for actual, weights in enumerate(self.states):
             steps = shortest(stage, actual, before, cell)
             found.append(
@@ -323,11 +323,11 @@ class Tracker:
         self,
         stage: Stage,
         actual: int,
-        weights: Mapping[State, Floats],
+        weights: Mapping[WalkState, Floats],
         cell: Position,
         steps: int,
         tick: int,
-    ) -> Mapping[State, Floats]:
+    ) -> Mapping[WalkState, Floats]:
         """Advance over several actions; only the end of the last one is seen."""
         for _ in range(steps - 1):
             sums = self._sums(actual, tick, weights)
@@ -340,7 +340,7 @@ class Tracker:
         arrive(self.hypotheses, stage, actual, weights, cell, sums)
         return sums.total()
 
-    def _seen(self, stage: Stage, states: States, cell: Position) -> States:
+    def _seen(self, stage: Stage, states: WalkStates, cell: Position) -> WalkStates:
         found = []
         for actual, weights in enumerate(states):
             sums = self._sums(actual, self.tick, weights)
@@ -348,7 +348,7 @@ class Tracker:
             found.append(sums.total())
         return tuple(found)
 
-    def _did(self, stage: Stage, moment: Moment) -> States:
+    def _did(self, stage: Stage, moment: EvidenceMoment) -> WalkStates:
         """Advance over a perceived opening or act on a goal."""
         if moment.act is not None:
             action = goal_acts(stage)[moment.act]
@@ -390,7 +390,9 @@ class Tracker:
         self._gap.count += 1
         self._note(tick, f"is out of sight, last seen at {self._gap.cell}", _HIDES)
 
-    def _unseen_action(self, scene: Scene, moment: Moment, states: States) -> States:
+    def _unseen_action(
+        self, scene: Surroundings, moment: EvidenceMoment, states: WalkStates
+    ) -> WalkStates:
         found = []
         for actual, weights in enumerate(states):
             moved = self._spread_all(scene, actual, weights, self.tick)
@@ -399,14 +401,14 @@ class Tracker:
         return tuple(found)
 
     def _spread_all(
-        self, scene: Scene, actual: int, weights: Mapping[State, Floats], tick: int
-    ) -> Mapping[State, Floats]:
+        self, scene: Surroundings, actual: int, weights: Mapping[WalkState, Floats], tick: int
+    ) -> Mapping[WalkState, Floats]:
         sums = self._sums(actual, tick, weights)
         for stage, part in by_stage(scene, weights):
             spread(self.hypotheses, stage, actual, part, sums)
         return sums.total()
 
-    def _reappear(self, moment: Moment) -> None:
+    def _reappear(self, moment: EvidenceMoment) -> None:
         """Explain the cell in which the agent is seen again."""
         gap = self._gap
         assert gap is not None and moment.cell is not None
@@ -418,7 +420,7 @@ class Tracker:
             # The observer did not know before that an agent can stand there.
             last = replace(last, scene=moment.scene)
             gap.moments[-1] = last
-        found: list[Mapping[State, Floats]] = []
+        found: list[Mapping[WalkState, Floats]] = []
         for actual in range(self.hypotheses.alternatives):
             stage = stage_of(last.scene, gap.cell, moment.cell)
             steps = shortest(stage, actual, gap.cell, moment.cell)
@@ -440,8 +442,12 @@ class Tracker:
         self._note(moment.tick, text, _APPEARS, is_movement=moment.cell != gap.cell)
 
     def _arrived_from(
-        self, scene: Scene, actual: int, weights: Mapping[State, Floats], moment: Moment
-    ) -> Mapping[State, Floats]:
+        self,
+        scene: Surroundings,
+        actual: int,
+        weights: Mapping[WalkState, Floats],
+        moment: EvidenceMoment,
+    ) -> Mapping[WalkState, Floats]:
         assert moment.cell is not None
         sums = self._sums(actual, moment.tick, weights)
         for stage, part in by_stage(scene, weights):
@@ -449,8 +455,8 @@ class Tracker:
         return sums.total()
 
     def _again_through(
-        self, gap: _Gap, actual: int, count: int, moment: Moment
-    ) -> Mapping[State, Floats]:
+        self, gap: _Gap, actual: int, count: int, moment: EvidenceMoment
+    ) -> Mapping[WalkState, Floats]:
         """Advance over a gap again, with a given number of evenly spread actions."""
         assert moment.cell is not None
         weights = gap.before[actual]
@@ -474,7 +480,7 @@ class Tracker:
 
     # Percepts
 
-    def _perceive(self, moment: Moment) -> bool:
+    def _perceive(self, moment: EvidenceMoment) -> bool:
         """Let the visible agent perceive; return True if its knowledge changed."""
         before = [set(weights) for weights in self.states]
         found = []
@@ -488,7 +494,7 @@ class Tracker:
         self._agree(moment)
         return before != [set(weights) for weights in self.states]
 
-    def _agree(self, moment: Moment) -> None:
+    def _agree(self, moment: EvidenceMoment) -> None:
         """Drop the alternatives that do not agree with the observer's node."""
         self._agrees &= moment.agrees
         self.states = tuple(
@@ -496,14 +502,14 @@ class Tracker:
             for actual, weights in enumerate(self.states)
         )
 
-    def _hear(self, moment: Moment) -> None:
+    def _hear(self, moment: EvidenceMoment) -> None:
         self.states = tuple(
             self._told_of(actual, weights, moment) for actual, weights in enumerate(self.states)
         )
 
     def _told_of(
-        self, actual: int, weights: Mapping[State, Floats], moment: Moment
-    ) -> Mapping[State, Floats]:
+        self, actual: int, weights: Mapping[WalkState, Floats], moment: EvidenceMoment
+    ) -> Mapping[WalkState, Floats]:
         """Let the agent take up the claims of a moment."""
         if not moment.claims:
             return weights
@@ -512,8 +518,8 @@ class Tracker:
         return sums.total()
 
     def _look_round(
-        self, scene: Scene, actual: int, weights: Mapping[State, Floats], tick: int
-    ) -> Mapping[State, Floats]:
+        self, scene: Surroundings, actual: int, weights: Mapping[WalkState, Floats], tick: int
+    ) -> Mapping[WalkState, Floats]:
         """Let an agent out of sight perceive from the middle of its cell."""
         sums = self._sums(actual, tick, weights)
         for stage, part in by_stage(scene, weights):
@@ -528,7 +534,7 @@ class Tracker:
         nobody = replace(self._moment, watch=None)
         self.states = self._unseen_action(nobody.scene, nobody, self.states)
 
-    def masses(self) -> tuple[Mapping[State, Floats], ...]:
+    def masses(self) -> tuple[Mapping[WalkState, Floats], ...]:
         """Return log weights of the states by credence, summed with the prior over the rest."""
         count = len(self.hypotheses.credences)
         return tuple(
@@ -548,7 +554,7 @@ class Tracker:
             np.isfinite(weight).any() for weights in self.states for weight in weights.values()
         )
 
-    def _sums(self, actual: int, tick: int, before: Mapping[State, Floats]) -> Sums:
+    def _sums(self, actual: int, tick: int, before: Mapping[WalkState, Floats]) -> Sums:
         """Begin a layer of an alternative, if layers are kept."""
         if not self.keeps:
             return Sums()
@@ -572,7 +578,7 @@ class Tracker:
                 total[actual] = joined(weights.values())
         is_possible = bool(np.isfinite(total).any())
         self.steps.append(
-            Step(
+            FilterStep(
                 tick,
                 text,
                 total,
@@ -588,7 +594,7 @@ class Tracker:
             self._over = True
 
 
-def _last_until(moments: Sequence[Moment], tick: int) -> Moment:
+def _last_until(moments: Sequence[EvidenceMoment], tick: int) -> EvidenceMoment:
     found = moments[0]
     for moment in moments:
         if moment.tick <= tick:

@@ -6,13 +6,13 @@ Each function adds to `Sums` what becomes of weights by state, for one actual al
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-from beliefnest.minds.evidence import Moment
-from beliefnest.minds.hypotheses import Hypotheses, State, Sums, conditioned, told
+from beliefnest.minds.evidence import EvidenceMoment
+from beliefnest.minds.hypotheses import Hypotheses, Sums, WalkState, conditioned, told
 from beliefnest.minds.planner import Knowledge
 from beliefnest.minds.stage import Stage
-from beliefnest.minds.surroundings import Scene
+from beliefnest.minds.surroundings import Surroundings
+from beliefnest.world.array_types import Floats
 from beliefnest.world.values import EYE_HEIGHT, Position, feet_in
 
 __all__ = [
@@ -28,18 +28,17 @@ __all__ = [
     "unseen",
 ]
 
-Floats = npt.NDArray[np.float64]
-Weights = Mapping[State, Floats]
+Weights = Mapping[WalkState, Floats]
 
 
-def stage_of(scene: Scene, *cells: Position) -> Stage:
+def stage_of(scene: Surroundings, *cells: Position) -> Stage:
     """Return the stage of some cells, of those that lie inside the box."""
     return scene.stage(*(cell for cell in cells if cell in scene.worlds.box))
 
 
-def by_stage(scene: Scene, weights: Weights) -> list[tuple[Stage, dict[State, Floats]]]:
+def by_stage(scene: Surroundings, weights: Weights) -> list[tuple[Stage, dict[WalkState, Floats]]]:
     """Return the parts of weights whose cells are on one stage."""
-    parts: dict[int, tuple[Stage, dict[State, Floats]]] = {}
+    parts: dict[int, tuple[Stage, dict[WalkState, Floats]]] = {}
     for state, weight in weights.items():
         stage = stage_of(scene, state[0])
         parts.setdefault(id(stage), (stage, {}))[1][state] = weight
@@ -168,7 +167,7 @@ def learn(
         sums.add((place, *knowledge, has_ended), weight, state)
 
 
-def unseen(moment: Moment, actual: int, weights: Weights) -> Weights:
+def unseen(moment: EvidenceMoment, actual: int, weights: Weights) -> Weights:
     """Return the states in which the observer, if it is present, does not see the agent."""
     if moment.watch is None or not weights:
         return weights
@@ -181,7 +180,7 @@ def unseen(moment: Moment, actual: int, weights: Weights) -> Weights:
     return {state: weight for state, weight in weights.items() if state[0] not in visible}
 
 
-def known_after(moments: Sequence[Moment], alternatives: int) -> list[Knowledge]:
+def known_after(moments: Sequence[EvidenceMoment], alternatives: int) -> list[Knowledge]:
     """Return an agent's knowledge by actual alternative, from its percepts at some moments.
 
     While the agent is out of the observer's sight, it is credited with no percepts (semantics,

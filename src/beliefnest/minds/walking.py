@@ -7,17 +7,17 @@ from random import Random
 
 import numpy as np
 
-from beliefnest.minds.alternatives import Pose, World, Worlds
+from beliefnest.minds.alternatives import AgentPose, AlternativeWorld, AlternativeWorlds
 from beliefnest.minds.hypotheses import Hypotheses, conditioned
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.planner import Knowledge
 from beliefnest.minds.stage import Stage
-from beliefnest.minds.surroundings import Scene
+from beliefnest.minds.surroundings import Surroundings
 from beliefnest.perception.sight import Sight
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position
 
-__all__ = ["Act", "Changes", "Draw", "Open", "Step", "Strategy", "Walker"]
+__all__ = ["Draw", "Open", "Strategy", "WalkAct", "WalkChanges", "WalkStep", "Walker"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Draw:
 
 
 @dataclass(frozen=True, slots=True)
-class Changes:
+class WalkChanges:
     """Changes in a history since its start.
 
     Attributes:
@@ -51,7 +51,7 @@ class Changes:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class WalkStep:
     """Step into a cell. Into its own cell: the agent stays or is blocked."""
 
     cell: Position
@@ -65,7 +65,7 @@ class Open:
 
 
 @dataclass(frozen=True, slots=True)
-class Act:
+class WalkAct:
     """Act on a goal, which ends the course, and the item that it takes, if any."""
 
     item: str | None
@@ -86,7 +86,7 @@ class Strategy:
     def __init__(
         self,
         model: MindModel,
-        scene: Scene,
+        scene: Surroundings,
         agrees: int,
         step_ticks: int,
         sight: Sight,
@@ -102,9 +102,9 @@ class Strategy:
             for a, name in enumerate(model.alternative_names)
         ]
         self._prior = np.cumsum(model.prior_weights.reshape(-1))
-        self._scenes: dict[Changes, Scene] = {Changes(): scene}
+        self._scenes: dict[WalkChanges, Surroundings] = {WalkChanges(): scene}
         self._sums: dict[tuple[Stage, Position, Knowledge, int, int, int], list[float]] = {}
-        self._looks: dict[tuple[int, Pose], list[int]] = {}
+        self._looks: dict[tuple[int, AgentPose], list[int]] = {}
 
     def draw_actual(self, chance: Random) -> int:
         """Draw the number of the actual alternative."""
@@ -118,7 +118,7 @@ class Strategy:
         rationality = chance.randrange(len(self.model.rationalities))
         return Draw(rationality, number // credences, number % credences, actual)
 
-    def scene(self, changes: Changes) -> Scene:
+    def scene(self, changes: WalkChanges) -> Surroundings:
         """Return all alternatives, with what has changed in a history since it began."""
         found = self._scenes.get(changes)
         if found is None:
@@ -136,7 +136,7 @@ class Strategy:
             found = self._sums[key] = np.cumsum(np.exp(column)).tolist()
         return found
 
-    def alike(self, scene: Scene, pose: Pose, actual: int) -> int:
+    def alike(self, scene: Surroundings, pose: AgentPose, actual: int) -> int:
         """Return the alternatives with the same percept from a pose as the actual one."""
         if self._sight.field_of_view >= 360:
             pose = (pose[0], 0.0, 0.0)
@@ -163,7 +163,7 @@ class Strategy:
             told["rationality"] = model.rationalities[draw.rationality]
         return told
 
-    def _changed(self, changes: Changes) -> Scene:
+    def _changed(self, changes: WalkChanges) -> Surroundings:
         before = self._scene.worlds
         made: dict[int, Terrain] = {}
         worlds = []
@@ -178,8 +178,8 @@ class Strategy:
                 held = contents.setdefault(place, {})
                 held[item] = max(0, held.get(item, 0) + count)
             kept = {place: _without_nothing(items) for place, items in contents.items()}
-            worlds.append(World(made[id(world.blocks)], kept, world.agents))
-        changed = Worlds(
+            worlds.append(AlternativeWorld(made[id(world.blocks)], kept, world.agents))
+        changed = AlternativeWorlds(
             self._sight,
             before.box,
             worlds,
@@ -200,11 +200,11 @@ class Walker:
         cell: The cell it begins in.
     """
 
-    def __init__(self, strategy: Strategy, draw: Draw, pose: Pose, cell: Position) -> None:
+    def __init__(self, strategy: Strategy, draw: Draw, pose: AgentPose, cell: Position) -> None:
         self.strategy, self.draw, self.cell = strategy, draw, cell
         self.is_over = False
         everyone = (1 << len(strategy.model.alternatives)) - 1
-        self._scene = strategy.scene(Changes())
+        self._scene = strategy.scene(WalkChanges())
         self._knowledge: Knowledge = (everyone, everyone)
         self._perceive(pose)
 
@@ -219,7 +219,7 @@ class Walker:
         other.__dict__.update(self.__dict__)
         return other
 
-    def choose(self, chance: Random, changes: Changes) -> Step | Open | Act:
+    def choose(self, chance: Random, changes: WalkChanges) -> WalkStep | Open | WalkAct:
         """Choose the next action in the world as it is now."""
         self._scene = self.strategy.scene(changes)
         stage = self._scene.stage(self.cell)
@@ -228,23 +228,23 @@ class Walker:
         steps = stage.moves.shape[2]
         if action <= steps:
             if action == 0:
-                return Step(self.cell)
+                return WalkStep(self.cell)
             number = stage.index[self.cell]
-            return Step(stage.cells[int(stage.moves[self.draw.actual, number, action - 1])])
+            return WalkStep(stage.cells[int(stage.moves[self.draw.actual, number, action - 1])])
         if action <= steps + len(stage.boxes):
             box = action - 1 - steps
             self._learn(int(stage.content[box, self.draw.actual]))
             return Open(stage.boxes[box])
         self.is_over = True
         goal = list(self.strategy.model.goal_values.values())[action - 1 - steps - len(stage.boxes)]
-        return Act(goal.item)
+        return WalkAct(goal.item)
 
-    def arrive(self, pose: Pose, cell: Position) -> None:
+    def arrive(self, pose: AgentPose, cell: Position) -> None:
         """Be in a cell, and perceive from there."""
         self.cell = cell
         self._perceive(pose)
 
-    def _perceive(self, pose: Pose) -> None:
+    def _perceive(self, pose: AgentPose) -> None:
         self._learn(self.strategy.alike(self._scene, pose, self.draw.actual))
 
     def _learn(self, mask: int) -> None:

@@ -13,17 +13,15 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.geometry.bodies import ROOM, Codes, body_codes
+from beliefnest.geometry.bodies import ROOM, BodyCodes, body_codes
 from beliefnest.minds.stage import DIAGONALS, SIDES
+from beliefnest.world.array_types import Cells, Flags
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
 __all__ = ["Floor", "Ways", "bodies_in", "ways_from"]
 
-Flags = npt.NDArray[np.bool_]
-Cells = npt.NDArray[np.int64]
-"""Indices of cells, shape (n, 3), or their numbers in a dense array, shape (n,)."""
 
 _MARGIN = (1, 2, 1)
 """Cells around a dense box, so that every neighbour of a cell has an index."""
@@ -34,9 +32,9 @@ _AT_ONCE = 4096
 """Number of cells whose steps are computed together."""
 
 
-def bodies_in(registry: Registry, states: npt.NDArray[np.int32]) -> Codes:
+def bodies_in(registry: Registry, states: npt.NDArray[np.int32]) -> BodyCodes:
     """Return what block states, -1 unknown, are to a body, as in `geometry.bodies`."""
-    codes: Codes = body_codes(registry, opens=True, guesses=False)[states + 1]
+    codes: BodyCodes = body_codes(registry, opens=True, guesses=False)[states + 1]
     return codes
 
 
@@ -94,7 +92,7 @@ class Floor:
         return part
 
     @cached_property
-    def _whole(self) -> tuple[Codes, tuple[int, int, int]]:
+    def _whole(self) -> tuple[BodyCodes, tuple[int, int, int]]:
         """Codes of the box with its margin, and its sizes; only of a box of one chunk."""
         codes = np.pad(
             bodies_in(self._registry, self.blocks.dense()), [(part, part) for part in _MARGIN]
@@ -103,7 +101,7 @@ class Floor:
         codes[x:-x, -y, z:-z] = ROOM
         return codes.reshape(-1), codes.shape
 
-    def _around(self, cells: Cells) -> tuple[Codes, tuple[int, int, int], Cells]:
+    def _around(self, cells: Cells) -> tuple[BodyCodes, tuple[int, int, int], Cells]:
         """Return the codes of a grid that holds some cells with their neighbours, and their places.
 
         In a box of many chunks the grid is a row of the cells' surroundings.

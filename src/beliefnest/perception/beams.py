@@ -15,8 +15,8 @@ from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, LIMI
 from beliefnest.perception.compiling import inlined, inlined_allocating, inner, merged
 from beliefnest.perception.rays import (
     LEAST_LENGTH,
-    Cell,
-    Scene,
+    GridCell,
+    RayScene,
     Vector,
     cell_at,
     code_at,
@@ -113,7 +113,7 @@ def _inverse(d: float) -> float:
 
 
 @inlined
-def _offset(eye: Vector, cell: Cell, number: int) -> Vector:
+def _offset(eye: Vector, cell: GridCell, number: int) -> Vector:
     """Return a sample point's place from the middle of its cell.
 
     Number 0 is the middle; 1 to 5 are on the face turned to the eye along x, 6 to 10
@@ -147,7 +147,7 @@ def _block_box(eye: Vector, low: Vector, high: Vector, beam: Beam) -> bool:
 
 
 @inner
-def _block_cell(scene: Scene, eye: Vector, cell: Cell, beam: Beam) -> bool:
+def _block_cell(scene: RayScene, eye: Vector, cell: GridCell, beam: Beam) -> bool:
     """Close the rays that enter the block of a cell; return True if any ray is still open."""
     i, j, k = cell
     starts, boxes = scene.starts, scene.boxes
@@ -177,7 +177,7 @@ def _bounds(
 
 
 @inner
-def _beam_ends(scene: Scene, eye: Vector, target: Cell, beam: Beam) -> bool:
+def _beam_ends(scene: RayScene, eye: Vector, target: GridCell, beam: Beam) -> bool:
     """Return True if any ray of a beam reaches the target.
 
     The loop goes layer by layer along the longest axis of the beam. In each layer it visits the
@@ -258,7 +258,7 @@ def _take_middles(opens: npt.NDArray[np.int64], levels: int) -> int:
 
 
 @inner
-def _aim(eye: Eye, cell: Cell, beam: Beam) -> int:
+def _aim(eye: Eye, cell: GridCell, beam: Beam) -> int:
     """Set up the beam from an eye to a block.
 
     Rays in the plane of a face are not part of the beam. The result has bit n set for each such
@@ -298,7 +298,7 @@ def _is_open(beam: Beam) -> bool:
 
 
 @inlined
-def _sees_in_plane(scene: Scene, eye: Eye, cell: Cell, rays: int) -> bool:
+def _sees_in_plane(scene: RayScene, eye: Eye, cell: GridCell, rays: int) -> bool:
     """Return True if one of the rays, given as bits, that `_aim` left out is free."""
     place = eye[0]
     x, y, z = cell[0] + 0.5 - place[0], cell[1] + 0.5 - place[1], cell[2] + 0.5 - place[2]
@@ -312,7 +312,7 @@ def _sees_in_plane(scene: Scene, eye: Eye, cell: Cell, rays: int) -> bool:
 
 
 @inner
-def sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam) -> bool:
+def sees_block(scene: RayScene, eye: Eye, cell: GridCell, beam: Beam) -> bool:
     """Return True if a block, within the visible distance, is seen; `beam` is scratch memory."""
     in_plane = _aim(eye, cell, beam)
     if _is_open(beam) and _beam_ends(scene, eye[0], cell, beam):
@@ -321,7 +321,9 @@ def sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam) -> bool:
 
 
 @inner
-def sees_past(scene: Scene, eye: Eye, cell: Cell, beam: Beam, shadows: Shadows, index: int) -> bool:
+def sees_past(
+    scene: RayScene, eye: Eye, cell: GridCell, beam: Beam, shadows: Shadows, index: int
+) -> bool:
     """Return what `sees_block` returns, from the suspects that `cast_shadows` noted.
 
     `index` is the index of the cell in `shadows`.

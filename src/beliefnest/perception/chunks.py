@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.perception.compiling import inlined
-from beliefnest.world.terrain import SIDE, VOLUME, Chunks
+from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
 
 __all__ = ["Rows", "chunk_in", "index_at", "part", "place_at", "stride"]
 
@@ -28,7 +28,7 @@ Rows = npt.NDArray[np.int32]
 
 
 @inlined
-def stride(chunks: Chunks | None, sizes: tuple[int, int, int], axis: int) -> int:
+def stride(chunks: ChunkCounts | None, sizes: tuple[int, int, int], axis: int) -> int:
     """Return by how much the place grows along an axis, from cell to cell or chunk to chunk."""
     if chunks is None:
         if axis == 2:
@@ -40,7 +40,7 @@ def stride(chunks: Chunks | None, sizes: tuple[int, int, int], axis: int) -> int
 
 
 @inlined
-def part(chunks: Chunks | None, number: int, stride: int, axis: int) -> int:
+def part(chunks: ChunkCounts | None, number: int, stride: int, axis: int) -> int:
     """Return the part of a place that comes from the cell's number along an axis."""
     if chunks is None:
         return number * stride
@@ -48,7 +48,9 @@ def part(chunks: Chunks | None, number: int, stride: int, axis: int) -> int:
 
 
 @inlined
-def place_at(chunks: Chunks | None, sizes: tuple[int, int, int], cell: tuple[int, int, int]) -> int:
+def place_at(
+    chunks: ChunkCounts | None, sizes: tuple[int, int, int], cell: tuple[int, int, int]
+) -> int:
     """Return the place of a cell."""
     if chunks is None:
         return (cell[0] * sizes[1] + cell[1]) * sizes[2] + cell[2]
@@ -65,7 +67,7 @@ def chunk_in(place: int) -> int:
 
 
 @inlined
-def index_at(chunks: Chunks | None, rows: Rows | None, place: int) -> int:
+def index_at(chunks: ChunkCounts | None, rows: Rows | None, place: int) -> int:
     """Return the index of a place in the array that holds the grid."""
     if chunks is None or rows is None:
         return place

@@ -9,14 +9,14 @@ import numpy.typing as npt
 from beliefnest.perception.beams import Eye, in_field, in_reach, new_beam, sees_past
 from beliefnest.perception.compiling import allocating
 from beliefnest.perception.eyes import eye_sees_agent, eye_sees_block, eye_sees_point
-from beliefnest.perception.rays import Scene, at
+from beliefnest.perception.rays import RayScene, at
 from beliefnest.perception.shadows import CLEAR, HIDDEN, Shadows
 
 __all__ = ["seen_agents", "seen_blocks", "seen_grid", "seen_points"]
 
 
 @allocating
-def seen_grid(scene: Scene, eye: Eye, shadows: Shadows) -> npt.NDArray[np.bool_]:
+def seen_grid(scene: RayScene, eye: Eye, shadows: Shadows) -> npt.NDArray[np.bool_]:
     """Return a mask of the blocks of the grid that are seen, from the shadows in it.
 
     The margin of the grid is never seen.
@@ -38,7 +38,7 @@ def seen_grid(scene: Scene, eye: Eye, shadows: Shadows) -> npt.NDArray[np.bool_]
 
 
 @allocating
-def seen_blocks(scene: Scene, eye: Eye, cells: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+def seen_blocks(scene: RayScene, eye: Eye, cells: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
     """Return a mask of the cells (n, 3), inside or outside the grid, whose blocks are seen."""
     seen = np.zeros(len(cells), dtype=np.bool_)
     beam = new_beam()
@@ -48,7 +48,7 @@ def seen_blocks(scene: Scene, eye: Eye, cells: npt.NDArray[np.int64]) -> npt.NDA
 
 
 @allocating
-def seen_agents(scene: Scene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+def seen_agents(scene: RayScene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
     """Return a mask of the agents, with feet at (n, 3), that are seen."""
     seen = np.zeros(len(feet), dtype=np.bool_)
     for n in range(len(feet)):
@@ -57,7 +57,9 @@ def seen_agents(scene: Scene, eye: Eye, feet: npt.NDArray[np.float64]) -> npt.ND
 
 
 @allocating
-def seen_points(scene: Scene, eye: Eye, points: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+def seen_points(
+    scene: RayScene, eye: Eye, points: npt.NDArray[np.float64]
+) -> npt.NDArray[np.bool_]:
     """Return a mask of the points (n, 3) that are seen."""
     seen = np.zeros(len(points), dtype=np.bool_)
     for n in range(len(points)):

@@ -9,9 +9,8 @@ from beliefnest.perception.beams import Beam, Eye, eye_at, in_field, in_reach, s
 from beliefnest.perception.codes import FULL, INTRUDED, OWN, Reaches
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.rays import (
-    Cell,
-    Codes,
-    Scene,
+    GridCell,
+    RayScene,
     Vector,
     at,
     code_at,
@@ -19,6 +18,7 @@ from beliefnest.perception.rays import (
     is_inside,
     neighbour,
 )
+from beliefnest.world.array_types import Codes
 from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
 
 __all__ = [
@@ -50,7 +50,7 @@ def _side(e: float, low: int) -> int:
 
 # Merged into its caller, it makes a tick in unknown ground four times as long.
 @inner
-def _is_enclosed(scene: Scene, eye: Vector, cell: Cell) -> bool:
+def _is_enclosed(scene: RayScene, eye: Vector, cell: GridCell) -> bool:
     """Return True if full cubes hide a cell from the eye; False if that is not certain.
 
     These are the neighbours on the eye's side, across faces, edges and corners, because a ray may
@@ -71,7 +71,7 @@ def _is_enclosed(scene: Scene, eye: Vector, cell: Cell) -> bool:
 
 
 @merged
-def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam) -> bool:
+def eye_sees_block(scene: RayScene, eye: Eye, cell: GridCell, beam: Beam) -> bool:
     """Return True if a block is seen; `beam` is scratch memory."""
     x, y, z = eye[0]
     if not in_reach(eye, cell[0] + 0.5 - x, cell[1] + 0.5 - y, cell[2] + 0.5 - z):
@@ -80,7 +80,7 @@ def eye_sees_block(scene: Scene, eye: Eye, cell: Cell, beam: Beam) -> bool:
 
 
 @merged
-def _sees_sample(scene: Scene, eye: Eye, d: Vector) -> bool:
+def _sees_sample(scene: RayScene, eye: Eye, d: Vector) -> bool:
     if not in_field(eye, d[0], d[1], d[2]):
         return False
     # Not the constant: a tuple of literals would have the ray compiled a second time.
@@ -89,7 +89,7 @@ def _sees_sample(scene: Scene, eye: Eye, d: Vector) -> bool:
 
 
 @inlined
-def eye_sees_point(scene: Scene, eye: Eye, point: Vector) -> bool:
+def eye_sees_point(scene: RayScene, eye: Eye, point: Vector) -> bool:
     """Return True if a point is within the visible distance and seen."""
     place = eye[0]
     d = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
@@ -97,7 +97,7 @@ def eye_sees_point(scene: Scene, eye: Eye, point: Vector) -> bool:
 
 
 @merged
-def eye_sees_agent(scene: Scene, eye: Eye, feet: Vector) -> bool:
+def eye_sees_agent(scene: RayScene, eye: Eye, feet: Vector) -> bool:
     """Return True if an agent with its feet at a point is seen by one of its sample points."""
     place = eye[0]
     x, y, z = feet[0] - place[0], feet[1] - place[1], feet[2] - place[2]
@@ -110,7 +110,7 @@ def eye_sees_agent(scene: Scene, eye: Eye, feet: Vector) -> bool:
 
 
 @merged
-def _update_intruded(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell) -> None:
+def _update_intruded(codes: Codes, sizes: GridCell, reaches: Reaches, cell: GridCell) -> None:
     """Set or clear a cell's `INTRUDED` from the shapes of its neighbours."""
     intruded = False
     for side in range(6):
@@ -123,7 +123,7 @@ def _update_intruded(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell) ->
 
 
 @inner
-def set_code(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell, code: int) -> None:
+def set_code(codes: Codes, sizes: GridCell, reaches: Reaches, cell: GridCell, code: int) -> None:
     """Put the code of another block into a cell of the grid; the margin stays as it is."""
     old = codes[at(sizes, cell)]
     codes[at(sizes, cell)] = old & INTRUDED | code
@@ -134,6 +134,6 @@ def set_code(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell, code: int)
 
 
 @compiled
-def change_code(codes: Codes, sizes: Cell, reaches: Reaches, cell: Cell, code: int) -> None:
+def change_code(codes: Codes, sizes: GridCell, reaches: Reaches, cell: GridCell, code: int) -> None:
     """Call `set_code`; kernels call that one, which has no wrapper for Python."""
     set_code(codes, sizes, reaches, cell, code)

@@ -14,13 +14,13 @@ import numpy.typing as npt
 
 from beliefnest.perception.codes import FULL, OWN
 from beliefnest.perception.compiling import allocating, inlined, inner
-from beliefnest.perception.rays import Cell, Scene, Vector, turned
+from beliefnest.perception.rays import GridCell, RayScene, Vector, turned
+from beliefnest.world.array_types import Flags
 
 __all__ = ["lit_cells"]
 
-Flags = npt.NDArray[np.bool_]
 Light = npt.NDArray[np.float64]
-Rectangle = tuple[float, float, float, float]
+SlopeBounds = tuple[float, float, float, float]
 """Least and greatest slope along b, then along c; b and c are the axes after the main axis."""
 
 # No light: the least slope exceeds the greatest.
@@ -57,8 +57,13 @@ def _outwards(e: float, first: int, last: int, number: int) -> int:
 
 @inlined
 def _arriving(
-    light: Light, cell: Cell, sides: Cell, place: tuple[float, float], near: float, far: float
-) -> Rectangle:
+    light: Light,
+    cell: GridCell,
+    sides: GridCell,
+    place: tuple[float, float],
+    near: float,
+    far: float,
+) -> SlopeBounds:
     """Return the rectangle of the light that a cell gets from its nearer neighbours.
 
     Light comes across sides, edges and a corner. From each neighbour it passes what both cells
@@ -96,7 +101,7 @@ def _arriving(
 
 @inner
 def _flood(
-    scene: Scene, eye: Vector, axis: int, step: int, layers: int, light: Light, lit: Flags
+    scene: RayScene, eye: Vector, axis: int, step: int, layers: int, light: Light, lit: Flags
 ) -> None:
     """Let light spread in the pyramid along an axis and mark the cells that it reaches.
 
@@ -138,7 +143,7 @@ def _flood(
 
 
 @allocating
-def lit_cells(scene: Scene, eye: Vector, layers: int) -> Flags:
+def lit_cells(scene: RayScene, eye: Vector, layers: int) -> Flags:
     """Return a mask of the cells that light may reach; all others are certainly not seen.
 
     Args:

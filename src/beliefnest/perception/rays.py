@@ -18,14 +18,14 @@ import numpy.typing as npt
 from beliefnest.perception.chunks import Rows, index_at, part, place_at, stride
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, INTRUDED, OWN
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
-from beliefnest.world.terrain import Chunks
+from beliefnest.world.array_types import Codes, Ints
+from beliefnest.world.terrain import ChunkCounts
 
 __all__ = [
     "LEAST_LENGTH",
     "NOWHERE",
-    "Cell",
-    "Codes",
-    "Scene",
+    "GridCell",
+    "RayScene",
     "Vector",
     "at",
     "blocker",
@@ -45,17 +45,14 @@ __all__ = [
 ]
 
 N = TypeVar("N", int, float)
-Cell = tuple[int, int, int]
+GridCell = tuple[int, int, int]
 Vector = tuple[float, float, float]
-Codes = npt.NDArray[np.uint16]
-"""The codes of a grid, flattened."""
-Starts = npt.NDArray[np.int32]
 Boxes = npt.NDArray[np.float64]
 Ray = tuple[Vector, Vector, Vector, float]
 """Eye, d, 1 / d (0 where d is 0), and the length of 1e-9 blocks in units of t."""
 
 
-class Scene(NamedTuple):
+class RayScene(NamedTuple):
     """Code grid and the shapes of its codes, as kernels take them.
 
     Attributes:
@@ -69,11 +66,11 @@ class Scene(NamedTuple):
     """
 
     codes: Codes
-    sizes: Cell
-    starts: Starts
+    sizes: GridCell
+    starts: Ints
     boxes: Boxes
     rows: Rows | None = None
-    chunks: Chunks | None = None
+    chunks: ChunkCounts | None = None
 
 
 NOWHERE = (-1, -1, -1)
@@ -100,20 +97,20 @@ def upper(a: N, b: N) -> N:
 
 
 @inlined
-def is_inside(sizes: Cell, cell: Cell) -> bool:
+def is_inside(sizes: GridCell, cell: GridCell) -> bool:
     """Return True if a cell is one of the grid's."""
     nx, ny, nz = sizes
     return 0 <= cell[0] < nx and 0 <= cell[1] < ny and 0 <= cell[2] < nz
 
 
 @inlined
-def at(sizes: Cell, cell: Cell) -> int:
+def at(sizes: GridCell, cell: GridCell) -> int:
     """Return the index of a cell in a flat array over a grid of these sizes."""
     return (cell[0] * sizes[1] + cell[1]) * sizes[2] + cell[2]
 
 
 @inlined
-def cell_at(sizes: Cell, index: int) -> Cell:
+def cell_at(sizes: GridCell, index: int) -> GridCell:
     """Return the cell of an index in a flat array over a grid of these sizes."""
     row = index // sizes[2]
     i = row // sizes[1]
@@ -121,7 +118,7 @@ def cell_at(sizes: Cell, index: int) -> Cell:
 
 
 @inlined
-def code_at(scene: Scene, cell: Cell) -> int:
+def code_at(scene: RayScene, cell: GridCell) -> int:
     """Return the code of a cell of the grid."""
     place = place_at(scene.chunks, scene.sizes, cell)
     code: int = scene.codes[index_at(scene.chunks, scene.rows, place)]
@@ -129,7 +126,7 @@ def code_at(scene: Scene, cell: Cell) -> int:
 
 
 @inlined
-def neighbour(cell: Cell, side: int) -> Cell:
+def neighbour(cell: GridCell, side: int) -> GridCell:
     """Return the cell across a side: 0 and 1 are low and high x, then y, then z."""
     by = 2 * (side % 2) - 1
     axis = side // 2
@@ -174,7 +171,7 @@ def span(ray: Ray, low: Vector, high: Vector) -> tuple[float, float]:
 
 
 @inlined
-def _block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
+def _block_entry(scene: RayScene, code: int, cell: GridCell, ray: Ray) -> float:
     """Return the t at which a ray first enters the block of a cell; `MISSED` if it does not."""
     i, j, k = cell
     least = ray[3]
@@ -192,7 +189,9 @@ def _block_entry(scene: Scene, code: int, cell: Cell, ray: Ray) -> float:
 
 
 @inlined
-def _cell_entry(scene: Scene, cell: Cell, target: Cell, ray: Ray) -> tuple[float, Cell]:
+def _cell_entry(
+    scene: RayScene, cell: GridCell, target: GridCell, ray: Ray
+) -> tuple[float, GridCell]:
     """Return t and cell of the first block that a ray enters inside a cell.
 
     Candidates are the block of the cell itself and blocks of neighbours that reach into it.
@@ -232,7 +231,7 @@ def turned(vector: tuple[N, N, N], axis: int) -> tuple[N, N, N]:
 
 
 @inlined
-def turned_back(a: int, b: int, c: int, axis: int) -> Cell:
+def turned_back(a: int, b: int, c: int, axis: int) -> GridCell:
     """Return the cell of components from an axis on; undoes `turned`."""
     if axis == 0:
         return a, b, c
@@ -251,7 +250,7 @@ def main_axis(d: Vector) -> int:
 
 
 @merged
-def _part_inside(sizes: Cell, ray: Ray) -> tuple[float, float]:
+def _part_inside(sizes: GridCell, ray: Ray) -> tuple[float, float]:
     """Return the part (t0, t1) of a ray inside the grid, short of its outer rim."""
     nx, ny, nz = sizes
     (x, y, z), d, _, _ = ray
@@ -269,7 +268,7 @@ def _part_inside(sizes: Cell, ray: Ray) -> tuple[float, float]:
 
 
 @inner
-def _first_hit(scene: Scene, target: Cell, ray: Ray) -> Cell:
+def _first_hit(scene: RayScene, target: GridCell, ray: Ray) -> GridCell:
     """Return the cell of the first block whose shape a ray enters; `NOWHERE` if there is none.
 
     The loop goes layer by layer along the longest axis of the ray. In one layer the ray touches
@@ -333,7 +332,7 @@ def may_lie_in_face(e: float, d: float) -> bool:
 
 
 @inner
-def hidden_by(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
+def hidden_by(scene: RayScene, target: GridCell, eye: Vector, d: Vector) -> GridCell:
     """Return the cell of the first block that hides eye + d; `NOWHERE` if none does.
 
     The target hides nothing. A ray in the plane of a face is free if it is free on one side of
@@ -362,6 +361,6 @@ def hidden_by(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
 
 
 @compiled
-def blocker(scene: Scene, target: Cell, eye: Vector, d: Vector) -> Cell:
+def blocker(scene: RayScene, target: GridCell, eye: Vector, d: Vector) -> GridCell:
     """Return `hidden_by`; kernels call that one, which has no wrapper for Python."""
     return hidden_by(scene, target, eye, d)

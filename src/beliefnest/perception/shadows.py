@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, Reaches
 from beliefnest.perception.compiling import allocating, compiled, inlined, inlined_allocating
-from beliefnest.perception.rays import Cell, Scene, Vector, at, turned
+from beliefnest.perception.rays import GridCell, RayScene, Vector, at, turned
 
 __all__ = [
     "CLEAR",
@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 N = TypeVar("N", int, float)
-Part = tuple[float, float]
+RayPart = tuple[float, float]
 """Part of a ray, from one fraction of its length to another."""
 
 
@@ -61,7 +61,7 @@ _TOUCHING = 1e-3
 
 
 @inlined
-def _is_enclosed(scene: Scene, shadows: Shadows, sides: Cell, index: int) -> bool:
+def _is_enclosed(scene: RayScene, shadows: Shadows, sides: GridCell, index: int) -> bool:
     """Return True if every ray to a cell passes a full cube or a hidden cell just before it.
 
     `sides` are the index steps to the neighbours nearer to the eye, 0 along an axis where the
@@ -110,7 +110,7 @@ def _cells_within(
 
 
 @inlined
-def _clipped(t: Part, low: float, high: float, d: float) -> Part:
+def _clipped(t: RayPart, low: float, high: float, d: float) -> RayPart:
     """Return the part (t0, t1) of a ray that is also between two planes; t0 > t1: there is none.
 
     `d` is the ray's component across the planes. A ray in a plane counts as between the planes,
@@ -183,7 +183,7 @@ def _gap(eye: Vector, low: Vector, high: Vector) -> tuple[int, float]:
 @compiled
 def _cast_box(
     shadows: Shadows,
-    sizes: Cell,
+    sizes: GridCell,
     eye: Vector,
     low: Vector,
     high: Vector,
@@ -257,7 +257,7 @@ def _outward(e: float, size: int) -> npt.NDArray[np.int64]:
 
 
 @allocating
-def cast_shadows(scene: Scene, reaches: Reaches, eye: Vector) -> Shadows:
+def cast_shadows(scene: RayScene, reaches: Reaches, eye: Vector) -> Shadows:
     """Return the shadows of all blocks.
 
     Blocks cast their shadows in order of distance, near ones first, so that hidden blocks need

@@ -31,7 +31,7 @@ from beliefnest.world.values import Point, Position
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Eye
-    from beliefnest.perception.rays import Scene
+    from beliefnest.perception.rays import RayScene
 
 __all__ = ["ChunkGeometry", "Geometry", "Sight", "SightLines"]
 
@@ -203,7 +203,7 @@ class SightLines(ABC):
 
     @property
     @abstractmethod
-    def _scene(self) -> "Scene":
+    def _scene(self) -> "RayScene":
         """Codes of the blocks and their shapes, as kernels take them."""
 
     def _local(self, points: Points) -> Points:
@@ -276,12 +276,12 @@ class Geometry(SightLines):
         return seen[1:-1, 1:-1, 1:-1]
 
     @functools.cached_property
-    def _scene(self) -> "Scene":
-        from beliefnest.perception.rays import Scene
+    def _scene(self) -> "RayScene":
+        from beliefnest.perception.rays import RayScene
 
         nx, ny, nz = self.codes.shape
         registry = self.sight.registry
-        return Scene(
+        return RayScene(
             self.codes.reshape(-1), (nx, ny, nz), registry.shape_start, registry.shape_boxes
         )
 
@@ -327,12 +327,12 @@ class ChunkGeometry(SightLines):
         return found
 
     @functools.cached_property
-    def _scene(self) -> "Scene":
-        from beliefnest.perception.rays import Scene
+    def _scene(self) -> "RayScene":
+        from beliefnest.perception.rays import RayScene
 
         x, y, z = (size + 2 for size in self.shape)
         registry = self.sight.registry
-        return Scene(
+        return RayScene(
             self.codes.reshape(-1),
             (x, y, z),
             registry.shape_start,

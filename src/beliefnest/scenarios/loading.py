@@ -13,13 +13,13 @@ from beliefnest.scenarios.older_spellings import respelled
 from beliefnest.scenarios.parameters import text_of, with_parameters
 
 __all__ = [
-    "Change",
+    "DocumentChange",
     "condition_number",
     "condition_numbers",
     "scenario_in",
 ]
 
-Change = Callable[[Document], Document]
+DocumentChange = Callable[[Document], Document]
 """Function from a document to a changed document."""
 
 
@@ -51,7 +51,7 @@ def scenario_in(
     document: Document,
     condition: int | None,
     parameters: Mapping[str, object] | None = None,
-    change: Change | None = None,
+    change: DocumentChange | None = None,
 ) -> ScenarioContent:
     """Return the scenario of a document after applying parameters, a condition, and a change.
 

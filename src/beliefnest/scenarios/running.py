@@ -4,7 +4,7 @@ import time
 
 from beliefnest.facts.states import StateFacts
 from beliefnest.llm.messages import Model, Usage
-from beliefnest.nest.face.nest import Nest, Progress
+from beliefnest.nest.face.nest import Nest, OnProgress
 from beliefnest.scenarios.expected import Deed
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome
 from beliefnest.scenarios.probing import Asking, resolved, run_probe
@@ -21,7 +21,7 @@ def run_scenario(
     model: Model,
     seed: int,
     started: float,
-    on_progress: Progress,
+    on_progress: OnProgress,
     asking: Asking | None = None,
 ) -> Outcome:
     """Play the script, check the expectations against the nest, and run the probes.

@@ -8,7 +8,7 @@ from typing import Any, Self
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, wrapped
 from beliefnest.scenarios.loading import (
-    Change,
+    DocumentChange,
     condition_number,
     condition_numbers,
     scenario_in,
@@ -75,7 +75,7 @@ class Scenario(ScenarioContent):
         document: Document,
         condition: int | None,
         parameters: Mapping[str, object] | None = None,
-        change: Change | None = None,
+        change: DocumentChange | None = None,
     ) -> Self:
         """Return a variation of a document that was read once.
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from beliefnest.studies.counting import Row
-from beliefnest.studies.fits import Array
+from beliefnest.world.array_types import Floats
 from beliefnest.world.words import counted
 
 __all__ = [
@@ -50,7 +50,7 @@ def rows_fault(rows: Sequence[Row], names: Sequence[str]) -> str:
 def support_fault(
     rows: Sequence[Row],
     effects: Sequence[ColumnNames],
-    design: Array,
+    design: Floats,
     groups: Any,
     terms: Sequence[str],
 ) -> str:
@@ -84,7 +84,7 @@ def support_fault(
     return ""
 
 
-def certainty_fault(right: Array, design: Array) -> str:
+def certainty_fault(right: Floats, design: Floats) -> str:
     """Return that the effects leave no error to estimate; empty: they leave some."""
     patterns, codes = np.unique(design, axis=0, return_inverse=True)
     shares = np.bincount(codes.ravel(), right) / np.bincount(codes.ravel())
@@ -96,8 +96,8 @@ def certainty_fault(right: Array, design: Array) -> str:
 def separation_fault(
     rows: Sequence[Row],
     effects: Sequence[ColumnNames],
-    right: Array,
-    design: Array,
+    right: Floats,
+    design: Floats,
     terms: Sequence[str],
 ) -> str:
     """Return which log odds have no finite estimate; empty: all have one.
@@ -123,7 +123,7 @@ def separation_fault(
     )
 
 
-def _endless(right: Array, design: Array) -> list[int]:
+def _endless(right: Floats, design: Floats) -> list[int]:
     """Return the numbers of the columns whose coefficients may grow without bound."""
     from scipy.optimize import linprog
 

@@ -12,13 +12,12 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from beliefnest.errors import MissingExtraError
+from beliefnest.world.array_types import Floats
 
-__all__ = ["Z95", "Array", "Family", "Fit", "bootstrap", "firth", "gee", "mixed", "statsmodels"]
+__all__ = ["Z95", "Family", "Fit", "bootstrap", "firth", "gee", "mixed", "statsmodels"]
 
-Array = npt.NDArray[np.float64]
 Family = Literal["binomial", "gaussian"]
 
 Z95 = 1.959963984540054
@@ -49,11 +48,11 @@ class Fit:
         raw: Result object of the library; None: there is none.
     """
 
-    estimates: Array
-    errors: Array
-    low: Array
-    high: Array
-    tests: Array
+    estimates: Floats
+    errors: Floats
+    low: Floats
+    high: Floats
+    tests: Floats
     correlation: float = 0.0
     told: str = ""
     fault: str = ""
@@ -80,7 +79,7 @@ class Fit:
         return cls(found, own, low, high, tests, correlation, told, raw=raw)
 
 
-def gee(right: Array, design: Array, groups: Any, family: Family) -> Fit:
+def gee(right: Floats, design: Floats, groups: Any, family: Family) -> Fit:
     """Fit generalized estimating equations with bias-reduced robust errors.
 
     The working correlation is exchangeable. If the estimated correlation makes the matrix of the
@@ -114,7 +113,7 @@ def _bounded(estimates: Any, family: Family) -> bool:
     return family == "gaussian" or bool((np.abs(estimates) < _FARTHEST).all())
 
 
-def mixed(right: Array, design: Array, groups: Any, family: Family) -> Fit:
+def mixed(right: Floats, design: Floats, groups: Any, family: Family) -> Fit:
     """Fit a mixed model with a random intercept for each variation."""
     fitted = _logistic_mixed if family == "binomial" else _linear_mixed
     try:
@@ -129,7 +128,7 @@ _BOUNDARY = (
 )
 
 
-def _linear_mixed(right: Array, design: Array, groups: Any) -> Fit:
+def _linear_mixed(right: Floats, design: Floats, groups: Any) -> Fit:
     """Fit a linear model with a normal random intercept by REML.
 
     The likelihood is profiled over one parameter: the ratio of the variance of the intercepts to
@@ -143,7 +142,7 @@ def _linear_mixed(right: Array, design: Array, groups: Any) -> Fit:
     np.add.at(sums, groups, design)
     totals = np.bincount(groups, right)
 
-    def solved(share: float) -> tuple[float, Array, float, Array]:
+    def solved(share: float) -> tuple[float, Floats, float, Floats]:
         ratio = share / (1 - share)
         weights = ratio / (1 + sizes * ratio)
         matrix = design.T @ design - (sums.T * weights) @ sums
@@ -176,7 +175,7 @@ def _linear_mixed(right: Array, design: Array, groups: Any) -> Fit:
     return Fit.wald(estimates, errors, spread, raw=found)
 
 
-def _logistic_mixed(right: Array, design: Array, groups: Any) -> Fit:
+def _logistic_mixed(right: Floats, design: Floats, groups: Any) -> Fit:
     """Fit a logistic model with a normal random intercept by maximum likelihood.
 
     The likelihood of a group integrates over its intercept by adaptive Gauss-Hermite quadrature
@@ -209,7 +208,7 @@ def _logistic_mixed(right: Array, design: Array, groups: Any) -> Fit:
     return Fit.wald(result.x[:-1], errors[:-1], abs(float(result.x[-1])), raw=result)
 
 
-def _marginal(right: Array, design: Array, groups: Any) -> Callable[[Array], float]:
+def _marginal(right: Floats, design: Floats, groups: Any) -> Callable[[Floats], float]:
     """Return the negative log likelihood of coefficients and deviation of the intercepts."""
     # Equal rows of a group are computed once.
     table = np.column_stack([groups, right, design])
@@ -218,7 +217,7 @@ def _marginal(right: Array, design: Array, groups: Any) -> Callable[[Array], flo
     starts = np.flatnonzero(np.diff(owners, prepend=-1))
     nodes, weights = np.polynomial.hermite.hermgauss(_NODES)
 
-    def negative(values: Array) -> float:
+    def negative(values: Floats) -> float:
         fixed, spread = rows @ values[:-1], float(values[-1])
         middles = np.zeros(len(starts))
         for _ in range(100):
@@ -240,7 +239,7 @@ def _marginal(right: Array, design: Array, groups: Any) -> Callable[[Array], flo
     return negative
 
 
-def firth(right: Array, design: Array, groups: Any) -> Fit:
+def firth(right: Floats, design: Floats, groups: Any) -> Fit:
     """Fit a logistic regression with Firth's penalty, whose estimates are always finite.
 
     A row of a variation with m rows weighs 1 / (1 + (m - 1) r), with the intraclass correlation r
@@ -252,7 +251,7 @@ def firth(right: Array, design: Array, groups: Any) -> Fit:
     codes = codes.ravel()
     _, alike = np.unique(np.column_stack([groups, codes]), axis=0, return_inverse=True)
 
-    def penalised(weights: Array) -> "_Penalised":
+    def penalised(weights: Floats) -> "_Penalised":
         totals, rights = (
             np.bincount(codes, each, len(patterns)).astype(np.float64)
             for each in (weights, weights * right)
@@ -272,7 +271,7 @@ def firth(right: Array, design: Array, groups: Any) -> Fit:
     return Fit(best, errors, low, high, np.array(tests))
 
 
-def _weights(residuals: Array, groups: Any) -> Array:
+def _weights(residuals: Floats, groups: Any) -> Floats:
     """Return the weight of each row, from the correlation of residuals of one group."""
     sizes, sums = np.bincount(groups), np.bincount(groups, residuals)
     pairs, squares = float((sizes * (sizes - 1)).sum()), float((residuals**2).sum())
@@ -292,28 +291,28 @@ class _Penalised:
         rights: Weight of the right ones.
     """
 
-    patterns: Array
-    totals: Array
-    rights: Array
+    patterns: Floats
+    totals: Floats
+    rights: Floats
 
-    def chances(self, values: Array) -> Array:
+    def chances(self, values: Floats) -> Floats:
         """Return the probability of a right answer of each pattern."""
         return np.asarray(1 / (1 + np.exp(-np.clip(self.patterns @ values, -30, 30))))
 
-    def information(self, values: Array) -> Array:
+    def information(self, values: Floats) -> Floats:
         """Return Fisher's information."""
         chances = self.chances(values)
         return np.asarray(
             (self.patterns.T * (self.totals * chances * (1 - chances))) @ self.patterns
         )
 
-    def likelihood(self, values: Array) -> float:
+    def likelihood(self, values: Floats) -> float:
         """Return the penalised log likelihood."""
         linear = np.clip(self.patterns @ values, -30, 30)
         logs = self.rights @ linear - self.totals @ np.logaddexp(0, linear)
         return float(logs + np.linalg.slogdet(self.information(values))[1] / 2)
 
-    def fitted(self, fixed: int | None = None, begin: Array | None = None) -> Array:
+    def fitted(self, fixed: int | None = None, begin: Floats | None = None) -> Floats:
         """Return the coefficients of the maximum; that of `fixed` keeps its value in `begin`."""
         values = np.zeros(self.patterns.shape[1]) if begin is None else begin.copy()
         free = [number for number in range(len(values)) if number != fixed]
@@ -342,17 +341,17 @@ class _Penalised:
                 break
         return values
 
-    def _distance(self, best: Array, number: int, value: float) -> float:
+    def _distance(self, best: Floats, number: int, value: float) -> float:
         """Return twice the loss of likelihood if a coefficient has another value."""
         begin = best.copy()
         begin[number] = value
         return 2 * (self.likelihood(best) - self.likelihood(self.fitted(number, begin)))
 
-    def p(self, best: Array, number: int) -> float:
+    def p(self, best: Floats, number: int) -> float:
         """Return the p of the likelihood ratio test of a coefficient."""
         return math.erfc(math.sqrt(max(0.0, self._distance(best, number, 0.0)) / 2))
 
-    def bounds(self, best: Array, number: int, error: float) -> tuple[float, float]:
+    def bounds(self, best: Floats, number: int, error: float) -> tuple[float, float]:
         """Return the 95 % interval of a coefficient by the profile likelihood."""
         found = []
         for side in (-1.0, 1.0):
@@ -369,7 +368,7 @@ class _Penalised:
         return found[0], found[1]
 
 
-def bootstrap(right: Array, design: Array, groups: Any) -> Fit:
+def bootstrap(right: Floats, design: Floats, groups: Any) -> Fit:
     """Fit a linear regression by least squares, with intervals of the cluster bootstrap.
 
     Whole variations are drawn with replacement, always in the same way (Field and Welsh, 2007);

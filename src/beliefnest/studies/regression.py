@@ -19,8 +19,9 @@ from beliefnest.studies.fit_checks import (
     separation_fault,
     support_fault,
 )
-from beliefnest.studies.fits import Array, Family, Fit, bootstrap, firth, gee, mixed, statsmodels
+from beliefnest.studies.fits import Family, Fit, bootstrap, firth, gee, mixed, statsmodels
 from beliefnest.studies.plainframe import Typed, plain_frame
+from beliefnest.world.array_types import Floats
 
 if TYPE_CHECKING:  # pandas is optional, and imported when a table is made.
     import pandas
@@ -277,8 +278,8 @@ def _fitted(
 
 
 def _substitute(
-    right: Array,
-    design: Array,
+    right: Floats,
+    design: Floats,
     groups: Any,
     terms: Sequence[str],
     kind: FitKind,
@@ -353,7 +354,7 @@ def _codes(values: Sequence[object]) -> "np.ndarray[Any, Any]":
 
 def _design(
     rows: Sequence[Row], effects: Sequence[ColumnNames], names: Sequence[str]
-) -> tuple[Array, list[str]]:
+) -> tuple[Floats, list[str]]:
     """Return the design matrix in treatment coding, and the names of its columns."""
     levels = {name: list(dict.fromkeys(level_of(row, name) for row in rows)) for name in names}
     dummies = {

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.registry import Registry, parse_state
-from beliefnest.world.terrain import States, Terrain
+from beliefnest.world.terrain import BlockStates, Terrain
 from beliefnest.world.values import Box
 
 __all__ = ["SYMMETRIES", "Placing", "Symmetry", "symmetry_named"]
@@ -188,7 +188,7 @@ class _Moved:
         x, y, z = self.terrain.shape
         return (z, y, x) if self.symmetry.turns % 2 else (x, y, z)
 
-    def __getitem__(self, layers: slice, /) -> States:
+    def __getitem__(self, layers: slice, /) -> BlockStates:
         first, last, _ = layers.indices(self.shape[0])
         mirrored, turns = self.symmetry.mirrored, self.symmetry.turns
         # A quarter turn clockwise leads from (x, z) to (depth - z, x).

@@ -6,13 +6,14 @@ depends on the pose of the agent in the embedded world, and to break what holds 
 """
 
 import functools
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import msgspec
 
 from beliefnest.errors import WorldError
 from beliefnest.world.bundled import Bundled, read_bundled
+from beliefnest.world.double_chests import StateAt
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
@@ -41,7 +42,6 @@ _NEEDS_HOLDER = (
     "rail",
 )
 
-StateAt = Callable[[Position], int]
 """Function that returns the block state at a position; air outside the world."""
 
 

@@ -23,15 +23,15 @@ __all__ = [
     "MARGIN",
     "SIDE",
     "VOLUME",
-    "Change",
-    "Chunks",
+    "BlockStates",
+    "ChunkCounts",
     "Counts",
     "Draft",
     "Index",
     "Lattice",
     "Layers",
     "Slabs",
-    "States",
+    "StateChange",
     "Terrain",
     "chunks_of",
 ]
@@ -44,19 +44,19 @@ VOLUME = SIDE**3
 DENSE = 1 << 16
 """Greatest number of cells of a box that is one chunk."""
 
-Chunks = tuple[int, int, int]
+ChunkCounts = tuple[int, int, int]
 """Numbers of chunks along x, y, z."""
 
 Index = tuple[int, int, int]
 
-States = npt.NDArray[np.int32]
+BlockStates = npt.NDArray[np.int32]
 """Block state ids along x, y, z."""
 
 Layers = tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], npt.NDArray[np.intp]]
 """Numbers of layers along x, y, z, each in order."""
 
-Counts = Callable[[States, States], npt.NDArray[np.bool_]]
-Change = Callable[[States, States], npt.NDArray[np.signedinteger[Any]]]
+Counts = Callable[[BlockStates, BlockStates], npt.NDArray[np.bool_]]
+StateChange = Callable[[BlockStates, BlockStates], npt.NDArray[np.signedinteger[Any]]]
 
 MARGIN = 1
 """Number of cells that chunks have before and behind the box on every side."""
@@ -65,7 +65,7 @@ _SPARE = 256
 _MOST_LISTED = 1 << 16
 
 
-def chunks_of(sizes: tuple[int, int, int]) -> Chunks:
+def chunks_of(sizes: tuple[int, int, int]) -> ChunkCounts:
     """Return the numbers of chunks of a grid of these sizes, its margin included."""
     x, y, z = sizes
     return -(-x // SIDE), -(-y // SIDE), -(-z // SIDE)
@@ -90,7 +90,7 @@ class Lattice:
         return cls(shape, x * y * z <= DENSE)
 
     @cached_property
-    def counts(self) -> Chunks:
+    def counts(self) -> ChunkCounts:
         """Numbers of chunks along x, y, z."""
         if self.is_one:
             return (1, 1, 1)
@@ -186,7 +186,10 @@ class Terrain:
     """
 
     def __init__(
-        self, shape: tuple[int, int, int], rows: npt.NDArray[np.int32], chunks: Sequence[States]
+        self,
+        shape: tuple[int, int, int],
+        rows: npt.NDArray[np.int32],
+        chunks: Sequence[BlockStates],
     ) -> None:
         self.shape = shape
         self.rows, self.chunks = rows, chunks
@@ -212,7 +215,7 @@ class Terrain:
             chunk.setflags(write=False)
             return cls(lattice.shape, np.zeros(1, dtype=np.int32), [chunk])
         known: dict[bytes, int] = {}
-        chunks: list[States] = []
+        chunks: list[BlockStates] = []
         rows: list[int] = []
         for layer in _layers(lattice, grid):
             for cube in layer:
@@ -226,7 +229,7 @@ class Terrain:
 
     @classmethod
     def of_cubes(
-        cls, shape: tuple[int, int, int], rows: npt.NDArray[np.int32], states: States
+        cls, shape: tuple[int, int, int], rows: npt.NDArray[np.int32], states: BlockStates
     ) -> "Terrain":
         """Return the terrain of a box that is cut into cubes, also if it would be one chunk.
 
@@ -248,7 +251,7 @@ class Terrain:
         return cls.of(found.dense()) if Lattice.of(shape).is_one else found
 
     @classmethod
-    def of_one(cls, grid: States) -> "Terrain":
+    def of_one(cls, grid: BlockStates) -> "Terrain":
         """Return the terrain of a dense grid as one chunk; the grid must not change any more."""
         nx, ny, nz = grid.shape
         return cls((nx, ny, nz), np.zeros(1, dtype=np.int32), [grid])
@@ -268,7 +271,7 @@ class Terrain:
         number, within = self.lattice.slot(index)
         return int(self.chunks[self.rows[number]][within])
 
-    def cut(self, low: Index, high: Index) -> States:
+    def cut(self, low: Index, high: Index) -> BlockStates:
         """Return the states of the cells from index `low` to before `high`, read-only.
 
         A terrain of one chunk returns a view.
@@ -287,9 +290,9 @@ class Terrain:
         found.setflags(write=False)
         return found
 
-    def at(self, cells: npt.NDArray[np.integer[Any]]) -> States:
+    def at(self, cells: npt.NDArray[np.integer[Any]]) -> BlockStates:
         """Return the states of the cells with some numbers (n,), counted as in a dense array."""
-        found: States
+        found: BlockStates
         if self.is_dense:
             found = self.chunks[0].reshape(-1)[cells]
             return found
@@ -306,18 +309,18 @@ class Terrain:
         ]
         return found
 
-    def at_indices(self, cells: npt.NDArray[np.integer[Any]]) -> States:
+    def at_indices(self, cells: npt.NDArray[np.integer[Any]]) -> BlockStates:
         """Return the states of the cells with some indices (n, 3)."""
         return self.at(np.ravel_multi_index(tuple(cells.T), self.shape))
 
-    def slabs(self) -> Iterator[tuple[int, States]]:
+    def slabs(self) -> Iterator[tuple[int, BlockStates]]:
         """Yield the box in parts along x: number of the first layer, and states of the layers."""
         _, y, z = self.shape
         for number, first, last in self.lattice.ranges((0, 0, 0), self.shape)[0]:
             start = self._begin(number)
             yield start + first, self.cut((start + first, 0, 0), (start + last, y, z))
 
-    def sampled(self, layers: Layers) -> States:
+    def sampled(self, layers: Layers) -> BlockStates:
         """Return the states of the cells that lie in one of some layers along each axis."""
         x, y, z = layers
         found = np.empty((len(x), len(y), len(z)), dtype=np.int32)
@@ -359,7 +362,7 @@ class Terrain:
         """Return the layer of the box at which the chunks of a number along an axis begin."""
         return 0 if self.is_dense else number * SIDE - MARGIN
 
-    def dense(self) -> States:
+    def dense(self) -> BlockStates:
         """Return the states of all cells, read-only; takes 4 bytes for each cell of the box."""
         return self.chunks[0] if self.is_dense else self.cut((0, 0, 0), self.shape)
 
@@ -386,7 +389,7 @@ class Terrain:
 
     def kinds(
         self,
-    ) -> Iterator[tuple[States, npt.NDArray[np.int64], tuple[slice, slice, slice]]]:
+    ) -> Iterator[tuple[BlockStates, npt.NDArray[np.int64], tuple[slice, slice, slice]]]:
         """Yield each different chunk once, with the numbers of its places and its cells in the box.
 
         A chunk whose places at the edge of the box differ is yielded for each kind of place.
@@ -433,7 +436,7 @@ class Terrain:
         found = np.flatnonzero(firsts >= 0)
         numbers = np.zeros(len(firsts), dtype=np.int32)
         known: dict[bytes, int] = {}
-        chunks: list[States] = []
+        chunks: list[BlockStates] = []
         for key in found[np.argsort(firsts[found])].tolist():
             row, kind = divmod(key, len(insides))
             chunk = np.zeros((SIDE, SIDE, SIDE), dtype=np.int32)
@@ -529,7 +532,9 @@ class Terrain:
             found.append(apart[places[at]] + np.array(start))
         return self.lattice.clipped(np.concatenate(found))
 
-    def mapped(self, change: Callable[[States], npt.NDArray[np.signedinteger[Any]]]) -> "Terrain":
+    def mapped(
+        self, change: Callable[[BlockStates], npt.NDArray[np.signedinteger[Any]]]
+    ) -> "Terrain":
         """Return the terrain after a change of each cell that depends on its state alone.
 
         The two share the chunks that stay as they are.
@@ -543,7 +548,7 @@ class Terrain:
             return self
         return Terrain(self.shape, self.rows, chunks)
 
-    def joined(self, other: "Terrain", change: Change) -> "Terrain":
+    def joined(self, other: "Terrain", change: StateChange) -> "Terrain":
         """Return the terrain with states that depend on those of the cell here and in another."""
         if self.is_dense is not other.is_dense:
             raise AssertionError("the terrains are cut differently")
@@ -632,7 +637,7 @@ class Draft:
             self._is_shared = True
         return self._terrain
 
-    def _add(self, chunk: States) -> int:
+    def _add(self, chunk: BlockStates) -> int:
         if self._lattice.is_one:
             self._chunks = [chunk]
             return 0

@@ -27,7 +27,7 @@ __all__ = [
     "ProgramPast",
     "ProgramResult",
     "RunRules",
-    "Sense",
+    "SenseSource",
     "Sensed",
     "Sink",
     "Unfinished",
@@ -252,7 +252,7 @@ class Sensed:
     signs: Mapping[Position, str] = field(default_factory=dict)
 
 
-Sense = Callable[[], Sensed]
+SenseSource = Callable[[], Sensed]
 """Function that returns what a program may read, as of the latest tick that has ended."""
 
 
@@ -306,7 +306,7 @@ class Body(Protocol):
         self,
         programs: Mapping[str, str],
         timeout_ticks: int,
-        senses: Mapping[str, Sense] | None = None,
+        senses: Mapping[str, SenseSource] | None = None,
         rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended.

@@ -7,7 +7,7 @@ import pytest
 import beliefnest as bn
 from beliefnest.belief.forest import Forest
 from beliefnest.nest.past import history
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.world.paths import path_text
 
 AGENTS = ("ann", "bob", "carl")
@@ -79,7 +79,7 @@ def test_beliefs_of_the_past_asked_one_by_one_share_few_forests(
     assert len({id(state._forest) for each in states.values() for state in each}) == 1
     for tick, found in states.items():
         for name, state in zip(names, found, strict=True):
-            alone = History(recording.journal, recording.setting)
+            alone = StateHistory(recording.journal, recording.setting)
             key = recording.controller(())
             moment = recording.moment((name,), tick)
             assert state == alone.state(key, (name,), moment.entries, tick)

@@ -13,7 +13,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 from beliefnest.worlds.scripted import footing, footpaths
-from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach, Near
+from beliefnest.worlds.scripted.footpaths import Ground, InReach, Near, WalkGoal
 
 STONE, AIR, UNKNOWN = "stone", "air", ""
 ALONG_X = "oak_fence_gate[facing=east,open=true]"
@@ -217,13 +217,13 @@ def test_paths_are_shortest_and_keep_the_rules(seed: int) -> None:
         assert standing == [cell for cell in around if ground.stands(cell)]
         for _ in range(10):
             start, block = random.choice(standing), random.choice(around)
-            goal: Goal = random.choice(
+            goal: WalkGoal = random.choice(
                 (Near(block, 0), Near(block, 1.5), InReach(block, 4.0), InReach(block, 2.0, True))
             )
             _check(ground, rules, start, goal)
 
 
-def _check(ground: Ground, rules: Rules, start: Position, goal: Goal) -> None:
+def _check(ground: Ground, rules: Rules, start: Position, goal: WalkGoal) -> None:
     lengths = {
         cell: length for cell, length in rules.lengths(start).items() if ground.meets(goal, cell)
     }
@@ -330,7 +330,7 @@ def test_windows_of_a_large_box_have_the_paths_of_all_of_it(
 
     for _ in range(60):
         start, block = random.choice(standing), random.choice(random.choice((standing, around)))
-        goal: Goal = random.choice(
+        goal: WalkGoal = random.choice(
             (
                 Near(block, 0),
                 Near(block, 1.5),

@@ -11,9 +11,9 @@ from beliefnest.errors import InputError
 from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, checked_form, read_json
 from beliefnest.studies.result import StudyResult
 
-__all__ = ["RecordedCell", "Source", "cells_of", "study_of"]
+__all__ = ["FrameSource", "RecordedCell", "cells_of", "study_of"]
 
-Source = str | Path | StudyResult
+FrameSource = str | Path | StudyResult
 """A run file, the folder of a run, the folder of a study, or a study's result."""
 
 _RUN_FILE = "run.bn"
@@ -52,14 +52,14 @@ class RecordedCell:
     file: Path | None
 
 
-def study_of(source: Source) -> StudyResult | None:
+def study_of(source: FrameSource) -> StudyResult | None:
     """Return the study of a source; None if the source is not a study."""
     if isinstance(source, StudyResult):
         return source
     return StudyResult.read(source) if (Path(source) / "cells").is_dir() else None
 
 
-def cells_of(source: Source) -> Iterator[RecordedCell]:
+def cells_of(source: FrameSource) -> Iterator[RecordedCell]:
     """Yield the cells of a source, in order.
 
     Raises:

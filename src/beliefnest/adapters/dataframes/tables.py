@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from beliefnest.adapters.dataframes.sources import RecordedCell, Source, cells_of, study_of
+from beliefnest.adapters.dataframes.sources import FrameSource, RecordedCell, cells_of, study_of
 from beliefnest.belief.plain import belief_json
 from beliefnest.episodes.measures import Measures
 from beliefnest.episodes.telling import round_rows, told_episode
@@ -34,10 +34,10 @@ __all__ = [
     "rounds_df",
 ]
 
-Row = dict[str, Any]
+FrameRow = dict[str, Any]
 
 
-def cells_df(source: Source) -> "pandas.DataFrame":
+def cells_df(source: FrameSource) -> "pandas.DataFrame":
     """Return one row per cell: its settings, `ok`, `error`, `ticks`, `probes`, `right`, `run`.
 
     Args:
@@ -50,7 +50,7 @@ def cells_df(source: Source) -> "pandas.DataFrame":
     return _frame((_cell_row(each) for each in cells_of(source)), ["cell"])
 
 
-def episodes_df(source: Source | Iterable[Measures]) -> "pandas.DataFrame":
+def episodes_df(source: FrameSource | Iterable[Measures]) -> "pandas.DataFrame":
     """Return one row per episode: its settings, success, ticks, messages and other measures.
 
     Args:
@@ -70,7 +70,7 @@ def episodes_df(source: Source | Iterable[Measures]) -> "pandas.DataFrame":
     return _frame(iter(study.rows), ["cell"])
 
 
-def rounds_df(source: Source) -> "pandas.DataFrame":
+def rounds_df(source: FrameSource) -> "pandas.DataFrame":
     """Return one row for each agent in each round of episodes.
 
     The columns `cell`, `branch`, `round` and `agent` identify a row. The others are its policy,
@@ -79,7 +79,7 @@ def rounds_df(source: Source) -> "pandas.DataFrame":
     return _frame(_recorded(source, _rounds), ["cell", "branch", "round", "agent"])
 
 
-def probes_df(source: Source) -> "pandas.DataFrame":
+def probes_df(source: FrameSource) -> "pandas.DataFrame":
     """Return one row per probe: `cell`, `probe` (its name in requests and branches), `ok`, ...
 
     Arguments and errors as for `cells_df`. A run file without its folder has no probes.
@@ -96,7 +96,7 @@ def probes_df(source: Source) -> "pandas.DataFrame":
     return _frame(rows, ["cell", "probe"])
 
 
-def requests_df(source: Source) -> "pandas.DataFrame":
+def requests_df(source: FrameSource) -> "pandas.DataFrame":
     """Return one row per request to a model: `cell`, `request`, `probe`, messages, answer.
 
     Arguments and errors as for `cells_df`. Cells of a study that were not recorded have no rows.
@@ -104,7 +104,7 @@ def requests_df(source: Source) -> "pandas.DataFrame":
     return _frame(_recorded(source, _requests), ["cell", "request"])
 
 
-def events_df(source: Source) -> "pandas.DataFrame":
+def events_df(source: FrameSource) -> "pandas.DataFrame":
     """Return one row per event: its place, `tick`, `kind`, `actor` and details.
 
     The columns `cell`, `path`, `branch`, `entry` and `number` identify a row. Arguments and
@@ -113,7 +113,7 @@ def events_df(source: Source) -> "pandas.DataFrame":
     return _frame(_recorded(source, _events), ["cell", "path", "branch", "entry", "number"])
 
 
-def claims_df(source: Source, paths: Sequence[str] | None = None) -> "pandas.DataFrame":
+def claims_df(source: FrameSource, paths: Sequence[str] | None = None) -> "pandas.DataFrame":
     """Return one row per claim and belief: if the claim was taken up there, and why.
 
     Args:
@@ -130,7 +130,7 @@ def claims_df(source: Source, paths: Sequence[str] | None = None) -> "pandas.Dat
     )
 
 
-def beliefs_df(source: Source, paths: Sequence[str]) -> "pandas.DataFrame":
+def beliefs_df(source: FrameSource, paths: Sequence[str]) -> "pandas.DataFrame":
     """Return one row per known container and agent of a belief, at each tick with a change.
 
     Args:
@@ -147,7 +147,7 @@ def beliefs_df(source: Source, paths: Sequence[str]) -> "pandas.DataFrame":
     )
 
 
-def _cell_row(recorded: RecordedCell) -> Row:
+def _cell_row(recorded: RecordedCell) -> FrameRow:
     about = recorded.about
     probes = about.get("probes", [])
     usages = [probe["usage"] for probe in probes]
@@ -166,7 +166,7 @@ def _cell_row(recorded: RecordedCell) -> Row:
     }
 
 
-def _recorded(source: Source, rows: Any) -> Iterator[Row]:
+def _recorded(source: FrameSource, rows: Any) -> Iterator[FrameRow]:
     """Yield the rows of every recorded cell; each run file is read in one consistent state."""
     cells = list(cells_of(source))
     if cells and all(each.file is None for each in cells):
@@ -186,7 +186,7 @@ def _recorded(source: Source, rows: Any) -> Iterator[Row]:
                 yield {"cell": each.cell, **row}
 
 
-def _requests(journal: SqliteJournal) -> Iterator[Row]:
+def _requests(journal: SqliteJournal) -> Iterator[FrameRow]:
     for number, prompt in enumerate(journal.records.prompts(), start=1):
         _, row = prompt_row(prompt)
         detail = row.pop("detail")
@@ -200,7 +200,7 @@ def _requests(journal: SqliteJournal) -> Iterator[Row]:
         }
 
 
-def _events(journal: SqliteJournal) -> Iterator[Row]:
+def _events(journal: SqliteJournal) -> Iterator[FrameRow]:
     registry = Registry.load()
     for info in journal.timelines():
         for number, entry in enumerate(journal.entries(info.key, 0, info.entries)):
@@ -210,12 +210,12 @@ def _events(journal: SqliteJournal) -> Iterator[Row]:
                         yield {key: _plain(value) for key, value in row.items()}
 
 
-def _rounds(journal: SqliteJournal) -> Iterator[Row]:
+def _rounds(journal: SqliteJournal) -> Iterator[FrameRow]:
     told = told_episode(RecordedNest(journal))
     return iter(()) if told is None else round_rows(told)
 
 
-def _claims(journal: SqliteJournal, paths: Sequence[str] | None) -> Iterator[Row]:
+def _claims(journal: SqliteJournal, paths: Sequence[str] | None) -> Iterator[FrameRow]:
     nest = RecordedNest(journal)
     asked = [path_text((name,)) for name in nest.agents] if paths is None else paths
     for number, told in enumerate(nest.claims(), start=1):
@@ -235,11 +235,11 @@ def _claims(journal: SqliteJournal, paths: Sequence[str] | None) -> Iterator[Row
             }
 
 
-def _claim(plain: Mapping[str, Any]) -> Row:
+def _claim(plain: Mapping[str, Any]) -> FrameRow:
     return {key: plain.get(key) for key in ("kind", "place", "item", "agent", "state")}
 
 
-def _beliefs(journal: SqliteJournal, paths: Sequence[str]) -> Iterator[Row]:
+def _beliefs(journal: SqliteJournal, paths: Sequence[str]) -> Iterator[FrameRow]:
     nest = RecordedNest(journal)
     for path in paths:
         for moment in nest.over_time(path):
@@ -255,7 +255,7 @@ def _beliefs(journal: SqliteJournal, paths: Sequence[str]) -> Iterator[Row]:
                     yield {**place, "kind": kind, "subject": subject, **_held(held)}
 
 
-def _held(held: Mapping[str, Any]) -> Row:
+def _held(held: Mapping[str, Any]) -> FrameRow:
     items = held.get("items", held.get("inventory"))
     return {
         "items": _plain(items),
@@ -274,7 +274,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _frame(rows: Iterator[Row], ids: Sequence[str]) -> "pandas.DataFrame":
+def _frame(rows: Iterator[FrameRow], ids: Sequence[str]) -> "pandas.DataFrame":
     found = list(rows)
     columns = dict.fromkeys([*ids, *(key for row in found for key in row)])
     return plain_frame({name: Typed([row.get(name) for row in found]) for name in columns})

@@ -16,7 +16,7 @@ from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.variation import Variation
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = ["JudgedOutcome", "Stage", "requests_of"]
+__all__ = ["JudgedOutcome", "ScenarioStage", "requests_of"]
 
 _ONCE = Asking(attempts=1)
 
@@ -65,7 +65,7 @@ class _Listener:
         return Answer(self.text, finish=self.finish)
 
 
-class Stage:
+class ScenarioStage:
     """Plays scenarios in worlds that stay open; threads take turns."""
 
     def __init__(self) -> None:

@@ -10,7 +10,7 @@ from inspect_ai.scorer import Score, Scorer, Target, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from beliefnest.adapters.inspect_ai.metrics import CLUSTER, metrics_by
-from beliefnest.adapters.inspect_ai.samples import Stage, requests_of
+from beliefnest.adapters.inspect_ai.samples import ScenarioStage, requests_of
 from beliefnest.adapters.inspect_ai.task_parts import (
     finish_of,
     messages_of,
@@ -107,7 +107,7 @@ def _samples(cell: Cell, scenario: str) -> list[Sample]:
 @solver
 def belief_prompt() -> Solver:
     """Replace the messages by the prompt that is rendered from the probe's belief."""
-    stage = Stage()
+    stage = ScenarioStage()
 
     async def solve(state: TaskState, generate: Generate) -> TaskState:
         messages = await run_sync(stage.prompt, state.metadata)
@@ -120,7 +120,7 @@ def belief_prompt() -> Solver:
 @scorer(metrics=metrics_by("case"))
 def in_the_belief() -> Scorer:
     """Score an answer: run its program in the belief it is meant for, or judge its words."""
-    stage = Stage()
+    stage = ScenarioStage()
 
     async def score(state: TaskState, target: Target) -> Score:
         lost = without_answer(state)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:  # Imported when an environment is made.
     from pettingzoo import AECEnv
 
     from beliefnest.adapters.pettingzoo.bounds import Phrases
-    from beliefnest.adapters.pettingzoo.environment import BeliefEnv, Options
+    from beliefnest.adapters.pettingzoo.environment import BeliefEnv, EnvironmentOptions
     from beliefnest.adapters.pettingzoo.playing import Instances
     from beliefnest.adapters.pettingzoo.vector import BeliefVectorEnv
     from beliefnest.episodes.task import Task
@@ -142,16 +142,16 @@ def vector_env(scenario: "str | Scenario | Task", copies: int, **options: Any) -
     return vector(lambda: parallel_env(scenario, **options), copies)
 
 
-def _classes() -> "tuple[type[BeliefEnv], type[Options], type[BeliefVectorEnv]]":
+def _classes() -> "tuple[type[BeliefEnv], type[EnvironmentOptions], type[BeliefVectorEnv]]":
     """Import the classes that need PettingZoo."""
     try:
-        from beliefnest.adapters.pettingzoo.environment import BeliefEnv, Options
+        from beliefnest.adapters.pettingzoo.environment import BeliefEnv, EnvironmentOptions
         from beliefnest.adapters.pettingzoo.vector import BeliefVectorEnv
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in ("pettingzoo", "gymnasium"):
             raise
         raise MissingExtraError(f"environments need {error.name}", "pettingzoo") from None
-    return BeliefEnv, Options, BeliefVectorEnv
+    return BeliefEnv, EnvironmentOptions, BeliefVectorEnv
 
 
 def _loaded(

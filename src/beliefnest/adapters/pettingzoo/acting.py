@@ -19,11 +19,11 @@ from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.hand import Doing, Hand
 from beliefnest.worlds.scripted.skills import perform
 
-__all__ = ["Acting", "Deed", "JointStep", "ProgramActing", "SkillActing"]
+__all__ = ["Acting", "ActionState", "JointStep", "ProgramActing", "SkillActing"]
 
 
 @dataclass(frozen=True, slots=True)
-class Deed:
+class ActionState:
     """State of an agent's latest action.
 
     Attributes:
@@ -44,7 +44,7 @@ class JointStep:
         spoken: True if any agent said something.
     """
 
-    deeds: Mapping[str, Deed]
+    deeds: Mapping[str, ActionState]
     spoken: bool
 
 
@@ -82,13 +82,13 @@ class ProgramActing:
         programs = {agent: code for agent, code in codes.items() if code.strip()}
         if not programs:
             self._real.step(1)
-            return JointStep({agent: Deed() for agent in actions}, spoken=False)
+            return JointStep({agent: ActionState() for agent in actions}, spoken=False)
         results = self._real.run_all(programs, self._timeout_ticks, self._senses)
         errors = {agent: str(each.error or "") for agent, each in results.items()}
         spoken = any(
             event.kind is EventKind.CHAT for each in results.values() for event in each.events
         )
-        return JointStep({agent: Deed(errors.get(agent, "")) for agent in actions}, spoken)
+        return JointStep({agent: ActionState(errors.get(agent, "")) for agent in actions}, spoken)
 
 
 class SkillActing:
@@ -145,7 +145,10 @@ class SkillActing:
             for agent in self._doing:
                 errors[agent] = f"it did not end within {self._timeout_ticks} ticks"
             self._doing.clear()
-        deeds = {agent: Deed(errors.get(agent, ""), busy=agent in self._doing) for agent in actions}
+        deeds = {
+            agent: ActionState(errors.get(agent, ""), busy=agent in self._doing)
+            for agent in actions
+        }
         return JointStep(deeds, self._spoken)
 
     def _begin(self, agent: str, call: Call, errors: dict[str, str]) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from beliefnest.adapters.pettingzoo.bounds import Bounds, Phrases
+from beliefnest.adapters.pettingzoo.bounds import Phrases, SpaceBounds
 from beliefnest.adapters.pettingzoo.order import Things
 from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
 from beliefnest.skills.calls import Call, callables
@@ -63,7 +63,7 @@ class Calls:
         parts: Number of values of each part of an action; `position` has three numbers instead.
     """
 
-    def __init__(self, bounds: Bounds, phrases: Phrases) -> None:
+    def __init__(self, bounds: SpaceBounds, phrases: Phrases) -> None:
         self._bounds = bounds
         self._phrases = phrases
         sizes = {part: bounds.most[kind] for part, kind in _KINDS.items() if kind in bounds.most}

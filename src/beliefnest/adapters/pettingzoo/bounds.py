@@ -18,7 +18,7 @@ from beliefnest.world.claims import Claim
 from beliefnest.world.registry import parse_state
 from beliefnest.world.values import Box, Position
 
-__all__ = ["Arrays", "Bounds", "Layout", "Phrases"]
+__all__ = ["Arrays", "Phrases", "SpaceBounds", "ThingsLayout"]
 
 Arrays = dict[str, npt.NDArray[Any]]
 """An observation or a belief as arrays by name."""
@@ -28,7 +28,7 @@ Phrases = Mapping[str, Sequence[Claim]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Layout(Things):
+class ThingsLayout(Things):
     """All things of an instance, for its user; agents number those that they know.
 
     Names are sorted, positions are in order.
@@ -43,7 +43,7 @@ class Layout(Things):
 
 
 @dataclass(frozen=True)
-class Bounds:
+class SpaceBounds:
     """Sizes of the arrays, which are the same for all instances and agents.
 
     Attributes:
@@ -57,7 +57,7 @@ class Bounds:
     phrases: tuple[str, ...]
 
     @classmethod
-    def of(cls, layouts: Iterable[Layout], given: Mapping[str, int]) -> "Bounds":
+    def of(cls, layouts: Iterable[ThingsLayout], given: Mapping[str, int]) -> "SpaceBounds":
         """Return the least bounds of several instances.
 
         Args:
@@ -80,7 +80,7 @@ class Bounds:
             bounds.check_box(each)
         return bounds
 
-    def check_box(self, layout: Layout) -> None:
+    def check_box(self, layout: ThingsLayout) -> None:
         """Raise InputError if an instance has another box."""
         if layout.box.shape != self.box.shape:
             sides = (" x ".join(map(str, each.shape)) for each in (layout.box, self.box))
@@ -89,7 +89,7 @@ class Bounds:
                 "not fit; give all the same box, or make an environment for each".format(*sides)
             )
 
-    def check(self, layout: Layout) -> None:
+    def check(self, layout: ThingsLayout) -> None:
         """Raise InputError if an instance has more things than there is room for."""
         self.check_box(layout)
         for kind, count in layout.counts.items():

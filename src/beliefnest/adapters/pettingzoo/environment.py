@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from pettingzoo import ParallelEnv
 
-from beliefnest.adapters.pettingzoo.acting import Acting, Deed, ProgramActing, SkillActing
+from beliefnest.adapters.pettingzoo.acting import Acting, ActionState, ProgramActing, SkillActing
 from beliefnest.adapters.pettingzoo.actions import (
     MOST_ITEMS,
     Call,
@@ -17,7 +17,7 @@ from beliefnest.adapters.pettingzoo.actions import (
     NamedAction,
     NotKnownError,
 )
-from beliefnest.adapters.pettingzoo.bounds import Bounds, Layout, Phrases
+from beliefnest.adapters.pettingzoo.bounds import Phrases, SpaceBounds, ThingsLayout
 from beliefnest.adapters.pettingzoo.layout import layout_of
 from beliefnest.adapters.pettingzoo.order import KnownOrder, Things
 from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
@@ -38,7 +38,7 @@ from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.names import check_world
 
-__all__ = ["BeliefEnv", "BeliefSpace", "Options"]
+__all__ = ["BeliefEnv", "BeliefSpace", "EnvironmentOptions"]
 
 _MAX_STEPS = 100
 _TIMEOUT_TICKS = 1200
@@ -47,12 +47,12 @@ _TRIED = 8
 _LONGEST_PROGRAM = 10_000
 _LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
 
-Told = dict[str, Any]
+Infos = dict[str, Any]
 """Info dictionary of one agent."""
 
 
 @dataclass(frozen=True)
-class Options:
+class EnvironmentOptions:
     """Options of an environment; the arguments of `parallel_env`, with the same names."""
 
     world: str = "scripted"
@@ -161,7 +161,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
     metadata = {"name": "beliefnest_v0", "render_modes": [], "is_parallelizable": True}  # noqa: RUF012 - as PettingZoo declares it
     render_mode = None
 
-    def __init__(self, source: Scenario | Instances, options: Options) -> None:
+    def __init__(self, source: Scenario | Instances, options: EnvironmentOptions) -> None:
         self._source, self._options = source, options
         self._task: Task | None = None
         players: Sequence[str] = ()
@@ -174,7 +174,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             scenario = source
         self._arrange(scenario)
         layouts = [self.layout, *self._further_layouts()]
-        self._bounds = Bounds.of(layouts, options.sizes)
+        self._bounds = SpaceBounds.of(layouts, options.sizes)
         self._bounds.check(self.layout)
         self._calls = Calls(self._bounds, options.said)
         self.skills = self._calls.skills
@@ -203,7 +203,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """Set what there is in an instance."""
         self.layout = layout_of(scenario.setting, self._options.said, self._options.items)
 
-    def _further_layouts(self) -> Sequence[Layout]:
+    def _further_layouts(self) -> Sequence[ThingsLayout]:
         """Return the layouts of a few other instances, the same ones for each seed."""
         source, chosen = self._source, self._options
         if not isinstance(source, Instances):
@@ -317,7 +317,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     def reset(
         self, seed: int | None = None, options: Mapping[str, Any] | None = None
-    ) -> tuple[dict[str, Any], dict[str, Told]]:
+    ) -> tuple[dict[str, Any], dict[str, Infos]]:
         """Begin an episode.
 
         Args:
@@ -344,7 +344,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             None: KnownOrder(),
             **{a: KnownOrder(self._declared(a)) for a in self.agents},
         }
-        return self._told({agent: Deed() for agent in self.agents}, spoken=True)
+        return self._told({agent: ActionState() for agent in self.agents}, spoken=True)
 
     def _begun(self, worlds: Worlds) -> Acting:
         """Open the nest of an episode; return the executor of its actions."""
@@ -375,7 +375,9 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
     def step(
         self, actions: Mapping[str, Any]
-    ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Told]]:
+    ) -> tuple[
+        dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Infos]
+    ]:
         """Let agents act together; agents without an action begin nothing.
 
         Raises:
@@ -396,12 +398,12 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             return {}, {}, {}, {}, {}
         nothing = "" if self._options.actions == "programs" else Call("doNothing")
         read: dict[str, Call | str] = {}
-        unknown: dict[str, Deed] = {}
+        unknown: dict[str, ActionState] = {}
         for agent in self.agents:
             try:
                 read[agent] = self._read(agent, actions.get(agent, nothing))
             except NotKnownError as error:
-                read[agent], unknown[agent] = nothing, Deed(str(error))
+                read[agent], unknown[agent] = nothing, ActionState(str(error))
         step = self._acting.act(read)
         self._steps += 1
         told = {
@@ -469,10 +471,10 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         return self._calls.read(self.known(agent), action)
 
     def _told(
-        self, deeds: Mapping[str, Deed], *, spoken: bool
-    ) -> tuple[dict[str, Any], dict[str, Told]]:
+        self, deeds: Mapping[str, ActionState], *, spoken: bool
+    ) -> tuple[dict[str, Any], dict[str, Infos]]:
         """Return the observations and infos of all agents."""
-        infos: dict[str, Told] = {
+        infos: dict[str, Infos] = {
             agent: {"error": deeds[agent].error, "busy": deeds[agent].busy} for agent in self.agents
         }
         for agent in self.agents:

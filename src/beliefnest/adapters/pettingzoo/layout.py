@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from beliefnest.adapters.pettingzoo.bounds import Layout, Phrases
+from beliefnest.adapters.pettingzoo.bounds import Phrases, ThingsLayout
 from beliefnest.adapters.pettingzoo.order import placed_states
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.registry import Registry
@@ -10,7 +10,7 @@ from beliefnest.world.registry import Registry
 __all__ = ["layout_of"]
 
 
-def layout_of(setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> Layout:
+def layout_of(setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> ThingsLayout:
     """Return the layout of the start of a scenario.
 
     Args:
@@ -34,7 +34,7 @@ def layout_of(setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> 
     held += list(snapshot.containers.values())
     worn = {name for agent in snapshot.agents.values() for name in agent.equipment.values()}
     placed = {k: tuple(snapshot.places(states)) for k, states in placed_states().items()}
-    return Layout(
+    return ThingsLayout(
         agents=agents,
         items=tuple(sorted({*items, *worn, *(name for each in held for name in each)})),
         **placed,

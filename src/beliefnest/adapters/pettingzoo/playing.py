@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import msgspec
 
-from beliefnest.adapters.pettingzoo.acting import Deed, JointStep
+from beliefnest.adapters.pettingzoo.acting import ActionState, JointStep
 from beliefnest.adapters.pettingzoo.actions import Call
 from beliefnest.episodes.agent_view import GO_ON, AgentView
 from beliefnest.episodes.decided import latest_end
@@ -146,11 +146,11 @@ class TaskActing:
         speaks = isinstance(action, Call) and action.skill in _SPEECH
         return speaks and agent not in self._task.form.talk
 
-    def _deed(self, agent: str, refused: set[str]) -> Deed:
+    def _deed(self, agent: str, refused: set[str]) -> ActionState:
         if agent in refused:
-            return Deed(f"{agent} may not speak in this task; it did nothing")
+            return ActionState(f"{agent} may not speak in this task; it did nothing")
         ended = latest_end(self._episode.parts, agent)
-        return Deed(ended.message if ended.how in _FAILED else "", busy=ended.how == "cut")
+        return ActionState(ended.message if ended.how in _FAILED else "", busy=ended.how == "cut")
 
     def _earned(self, agent: str) -> float:
         """Return the reward for the latest round, by the agent's own goal."""

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from beliefnest.adapters.pettingzoo.bounds import Bounds
+from beliefnest.adapters.pettingzoo.bounds import SpaceBounds
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.node_memory import check_depth, check_room
 from beliefnest.errors import InputError
@@ -34,7 +34,7 @@ def check_nested(context: BeliefContext, acting: Sequence[str], depth: int) -> N
     check_room(context, count, f" to depth {depth}", "choose a smaller depth of nested beliefs")
 
 
-def check_arrays(context: BeliefContext, bounds: Bounds, acting: int, nested: int) -> None:
+def check_arrays(context: BeliefContext, bounds: SpaceBounds, acting: int, nested: int) -> None:
     """Raise InputError if memory has no room for observations as arrays, and for their spaces.
 
     Args:

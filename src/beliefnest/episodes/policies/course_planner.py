@@ -28,9 +28,18 @@ from beliefnest.world.doors import is_door
 from beliefnest.world.registry import parse_state
 from beliefnest.world.values import Event, EventKind, Position
 
-__all__ = ["OPEN", "REACHED", "USUAL", "VIOLATED", "Bounds", "FoundPlan", "Planner", "Score"]
+__all__ = [
+    "OPEN",
+    "REACHED",
+    "USUAL",
+    "VIOLATED",
+    "CourseScore",
+    "FoundPlan",
+    "Planner",
+    "SearchBounds",
+]
 
-Score = tuple[float, ...]
+CourseScore = tuple[float, ...]
 """Score of a plan, compared from left to right; less is better."""
 
 REACHED, OPEN, VIOLATED = 0.0, 1.0, 2.0
@@ -44,7 +53,7 @@ _MOST_CHANGES = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Bounds:
+class SearchBounds:
     """Bounds of the search.
 
     Attributes:
@@ -59,12 +68,14 @@ class Bounds:
     horizon: int = 160
     changes: int = 3
 
-    def lower(self) -> "Bounds":
+    def lower(self) -> "SearchBounds":
         """Return the smaller bounds for the imagined planners of other agents."""
-        return Bounds(max(1, self.beam - 1), self.depth, self.horizon, max(1, self.changes - 1))
+        return SearchBounds(
+            max(1, self.beam - 1), self.depth, self.horizon, max(1, self.changes - 1)
+        )
 
 
-USUAL = Bounds()
+USUAL = SearchBounds()
 """Bounds of policies that are named on the command line."""
 
 
@@ -81,8 +92,8 @@ class FoundPlan:
     """
 
     calls: tuple[Call, ...]
-    score: Score
-    considered: Sequence[tuple[tuple[Call, ...], Score]] = ()
+    score: CourseScore
+    considered: Sequence[tuple[tuple[Call, ...], CourseScore]] = ()
     others: Mapping[str, tuple[Call, ...]] = field(default_factory=dict)
     reason: str = ""
 
@@ -126,7 +137,7 @@ class _Node:
     reached: int | None = None
     violated: int | None = None
     changes: int | None = None
-    score: Score = field(default=())
+    score: CourseScore = field(default=())
 
     def fork(self) -> "_Node":
         return _Node(
@@ -171,7 +182,7 @@ class Planner:
         agent: str,
         order: int,
         ticks: int,
-        bounds: Bounds,
+        bounds: SearchBounds,
         before: Sequence[Call] | None = None,
         *,
         idle: bool = False,
@@ -199,13 +210,13 @@ class Planner:
         agent: str,
         order: int,
         ticks: int,
-        bounds: Bounds,
+        bounds: SearchBounds,
         calls: Sequence[Call],
-    ) -> Score:
+    ) -> CourseScore:
         """Return how good a course of an agent is; other arguments as for `plan`."""
         return self._planning(agent, order, ticks, bounds).outcome(mind, calls)
 
-    def _planning(self, agent: str, order: int, ticks: int, bounds: Bounds) -> "_Planning":
+    def _planning(self, agent: str, order: int, ticks: int, bounds: SearchBounds) -> "_Planning":
         horizon = min(ticks, bounds.horizon)
         return _Planning(self, self._brief, agent, order, horizon, bounds)
 
@@ -220,7 +231,7 @@ class _Planning:
         agent: str,
         order: int,
         horizon: int,
-        bounds: Bounds,
+        bounds: SearchBounds,
     ) -> None:
         self._planner, self._brief = planner, brief
         self._agent, self._order = agent, order
@@ -269,7 +280,7 @@ class _Planning:
         considered = [(node.calls, node.score) for node in tried]
         return FoundPlan(calls, best.score, considered, others, reason)
 
-    def outcome(self, mind: Imagination, calls: Sequence[Call]) -> Score:
+    def outcome(self, mind: Imagination, calls: Sequence[Call]) -> CourseScore:
         """Return the score of a course, which ends with the first call that cannot be done."""
         _, node = self._begun(mind)
         for call in calls:
@@ -378,7 +389,7 @@ class _Planning:
                     break
         node.score = self._score(end)
 
-    def _score(self, end: _Node) -> Score:
+    def _score(self, end: _Node) -> CourseScore:
         messages = sum(call.skill in ("say", "whisper") for call in end.calls)
         cost = 2.0 * messages + 0.5 * len(end.calls)
         if end.violated is not None:

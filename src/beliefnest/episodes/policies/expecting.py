@@ -17,9 +17,9 @@ from beliefnest.episodes.policies.course_planner import (
     OPEN,
     REACHED,
     VIOLATED,
-    Bounds,
+    CourseScore,
     Planner,
-    Score,
+    SearchBounds,
 )
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.skills.calls import Call, program_of
@@ -63,7 +63,7 @@ class Expecting:
         bounds: How much it looks at.
     """
 
-    def __init__(self, view: AgentView, order: int, bounds: Bounds) -> None:
+    def __init__(self, view: AgentView, order: int, bounds: SearchBounds) -> None:
         self._view, self._order, self._bounds = view, order, bounds
 
     def program(self, shares: GoalShares, *, learns: bool = False) -> str:
@@ -114,7 +114,7 @@ class Expecting:
         agent, ticks = self._view.agent, self._ticks(each)
         return each.planner.plan(each.mind, agent, self._order, ticks, self._bounds).calls
 
-    def _expected(self, supposed: Sequence[_Supposition], calls: tuple[Call, ...]) -> Score:
+    def _expected(self, supposed: Sequence[_Supposition], calls: tuple[Call, ...]) -> CourseScore:
         agent = self._view.agent
         return _mean(
             (each.weight, self._judged(each, calls, score))
@@ -126,7 +126,7 @@ class Expecting:
             ]
         )
 
-    def _learning(self, supposed: Sequence[_Supposition], calls: tuple[Call, ...]) -> Score:
+    def _learning(self, supposed: Sequence[_Supposition], calls: tuple[Call, ...]) -> CourseScore:
         agent = self._view.agent
         return _mean(
             (each.weight, self._judged(each, (*calls, *plan.calls), plan.score))
@@ -138,7 +138,7 @@ class Expecting:
             ]
         )
 
-    def _judged(self, each: _Supposition, calls: Sequence[Call], score: Score) -> Score:
+    def _judged(self, each: _Supposition, calls: Sequence[Call], score: CourseScore) -> CourseScore:
         """Return a score with the utterances counted that the goal allows."""
         most = each.brief.goals[self._view.agent].messages
         if most is not None and self._spoken + sum(c.skill == "say" for c in calls) > most:
@@ -205,7 +205,7 @@ def _with_item(mind: Imagination, place: Position, item: str) -> Imagination:
     return made
 
 
-def _mean(scores: "Iterator[tuple[float, Score]]") -> Score:
+def _mean(scores: "Iterator[tuple[float, CourseScore]]") -> CourseScore:
     """Return the expected outcome: how far from success, then in how many ticks."""
     kinds, ticks = [], []
     for weight, score in scores:

@@ -13,7 +13,7 @@ from beliefnest.belief.grounds import Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
-from beliefnest.episodes.policies.course_planner import USUAL, Bounds
+from beliefnest.episodes.policies.course_planner import USUAL, SearchBounds
 from beliefnest.episodes.policies.expecting import Expecting, GoalShares, combinations, uniform
 from beliefnest.episodes.policies.search import Search
 from beliefnest.episodes.policies.traces import likelihoods_of_traces
@@ -55,7 +55,7 @@ class Infer:
     """
 
     order: int
-    bounds: Bounds = USUAL
+    bounds: SearchBounds = USUAL
 
     def act(self, view: AgentView) -> str:
         """Return the calls of the course with the best expected outcome, as a program."""
@@ -67,7 +67,7 @@ class Infer:
         return Expecting(view, self.order, self.bounds).program(shares, learns=learns)
 
 
-def posterior(view: AgentView, order: int, bounds: Bounds = USUAL) -> GoalShares:
+def posterior(view: AgentView, order: int, bounds: SearchBounds = USUAL) -> GoalShares:
     """Return the probabilities of the others' possible goals, given the agent's percepts.
 
     Args:
@@ -96,7 +96,7 @@ def posterior(view: AgentView, order: int, bounds: Bounds = USUAL) -> GoalShares
 
 
 def _by_traces(
-    view: AgentView, start: Imagination, order: int, bounds: Bounds, prior: GoalShares
+    view: AgentView, start: Imagination, order: int, bounds: SearchBounds, prior: GoalShares
 ) -> GoalShares:
     """Update the probabilities of goals by the traces that the others left."""
     combined = list(combinations(prior))

@@ -10,9 +10,9 @@ from beliefnest.episodes.policies.course_planner import (
     REACHED,
     USUAL,
     VIOLATED,
-    Bounds,
     FoundPlan,
     Planner,
+    SearchBounds,
 )
 from beliefnest.episodes.policies.expecting import Expecting, uniform
 from beliefnest.skills.calls import program_of
@@ -35,7 +35,7 @@ class Search:
     """
 
     order: int
-    bounds: Bounds = USUAL
+    bounds: SearchBounds = USUAL
 
     def act(self, view: AgentView) -> str:
         """Return the calls of its plan, as a program."""
@@ -94,7 +94,7 @@ class Omniscient:
     """
 
     order: int = 2
-    bounds: Bounds = USUAL
+    bounds: SearchBounds = USUAL
     sees_all: bool = True
 
     def act(self, view: AgentView) -> str:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from beliefnest.belief.grounds import ContainerBelief, Source
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView
-from beliefnest.episodes.policies.course_planner import Bounds, Planner
+from beliefnest.episodes.policies.course_planner import Planner, SearchBounds
 from beliefnest.nest.acting.imagination import Imagination, Performer
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
@@ -39,7 +39,7 @@ def likelihoods_of_traces(
     view: AgentView,
     start: Imagination,
     order: int,
-    bounds: Bounds,
+    bounds: SearchBounds,
     supposed: Sequence[Mapping[str, str]],
 ) -> list[float]:
     """Return the likelihood of the found world for combinations of goals; 1 without a trace.
@@ -125,7 +125,11 @@ class _Found:
 
 
 def _course(
-    view: AgentView, start: Imagination, order: int, bounds: Bounds, supposed: Mapping[str, str]
+    view: AgentView,
+    start: Imagination,
+    order: int,
+    bounds: SearchBounds,
+    supposed: Mapping[str, str],
 ) -> list[_Moment]:
     """Return the course of the others from the start until now, given their goals."""
     possible = view.brief.possible_goals

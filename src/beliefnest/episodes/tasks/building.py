@@ -3,11 +3,12 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from beliefnest.world.values import Position
+
 __all__ = [
     "FLOOR",
     "WALL",
     "WINDOW",
-    "Position",
     "abreast",
     "also",
     "belief",
@@ -20,8 +21,6 @@ __all__ = [
 ]
 
 FLOOR, WALL, WINDOW = "smooth_stone", "stone_bricks", "glass"
-
-Position = tuple[int, int, int]
 
 
 def floor(width: int, depth: int) -> dict[str, Any]:

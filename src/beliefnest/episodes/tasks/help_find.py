@@ -9,7 +9,8 @@ her what she knows already.
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import Position, belief, booths, chest, hall, passages
+from beliefnest.episodes.tasks.building import belief, booths, chest, hall, passages
+from beliefnest.world.values import Position
 
 PARAMETERS = {"chests": (4, 3, 6), "reach": (16, 16, 24), "agents": (2, 2, 4)}
 

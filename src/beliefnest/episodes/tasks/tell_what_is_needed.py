@@ -11,7 +11,6 @@ from typing import Any
 
 from beliefnest.episodes.tasks.building import (
     WINDOW,
-    Position,
     belief,
     booths,
     chest,
@@ -19,6 +18,7 @@ from beliefnest.episodes.tasks.building import (
     passages,
     wall,
 )
+from beliefnest.world.values import Position
 
 PARAMETERS = {"items": (3, 2, 4), "moved": (1, 1, 2), "reach": (20, 20, 26), "agents": (2, 2, 4)}
 

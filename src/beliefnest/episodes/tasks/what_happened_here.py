@@ -10,7 +10,8 @@ and leave doors open. If Dan does not infer who it was, he has to guess.
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import Position, chest, hall, wall
+from beliefnest.episodes.tasks.building import chest, hall, wall
+from beliefnest.world.values import Position
 
 PARAMETERS = {"reach": (14, 12, 20)}
 

@@ -11,7 +11,8 @@ can only believe her always or never.
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import Position, belief, booths, chest, hall, wall
+from beliefnest.episodes.tasks.building import belief, booths, chest, hall, wall
+from beliefnest.world.values import Position
 
 PARAMETERS = {"reach": (16, 14, 22)}
 

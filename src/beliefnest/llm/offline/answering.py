@@ -15,7 +15,8 @@ import re
 
 from beliefnest.llm.offline.phrases import match_item, match_name, place_named_last, singular
 from beliefnest.llm.offline.planning import believed_place
-from beliefnest.llm.offline.prompt_reading import Point, Reading, words
+from beliefnest.llm.offline.prompt_reading import PromptReading, words
+from beliefnest.world.values import Point
 
 __all__ = ["answer_question"]
 
@@ -24,7 +25,7 @@ _OPTION = re.compile(r"^([A-Z])\) (.+)$", re.MULTILINE)
 _NOT_KNOWN = "I do not know"
 
 
-def answer_question(question: str, text: str, reading: Reading) -> str:
+def answer_question(question: str, text: str, reading: PromptReading) -> str:
     """Return an answer in the requested form.
 
     Args:
@@ -46,7 +47,7 @@ def answer_question(question: str, text: str, reading: Reading) -> str:
     return _said(chosen[0] if options else names[0], reason)
 
 
-def _sign(question: str, reading: Reading) -> tuple[list[str], str]:
+def _sign(question: str, reading: PromptReading) -> tuple[list[str], str]:
     """Return the text of the sign in question and the reason; no text if it is unclear."""
     near = place_named_last(question, reading.places)
     signs = [at for at in reading.signs if near is None or math.dist(at, near) <= _NEAR]
@@ -56,7 +57,7 @@ def _sign(question: str, reading: Reading) -> tuple[list[str], str]:
     return [says or "nothing"], f"The sign at {_text(signs[0])} says so."
 
 
-def _found(question: str, reading: Reading) -> tuple[Point, str] | None:
+def _found(question: str, reading: PromptReading) -> tuple[Point, str] | None:
     asked = set(singular(question))
     named = {item for held in reading.chests.values() for item in held}
     items = [item for item in sorted(named) if set(singular(item)) <= asked]
@@ -73,7 +74,7 @@ def _found(question: str, reading: Reading) -> tuple[Point, str] | None:
     return None
 
 
-def _names(place: Point, reading: Reading) -> list[str]:
+def _names(place: Point, reading: PromptReading) -> list[str]:
     """Return the names of a place, the nearest first, and its coordinates last."""
     far = {name: math.dist(place, there) for name, there in reading.places.items()}
     near = sorted((name for name in far if far[name] <= _NEAR), key=lambda name: far[name])

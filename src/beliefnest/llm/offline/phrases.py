@@ -3,7 +3,8 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-from beliefnest.llm.offline.prompt_reading import Point, points_in, words
+from beliefnest.llm.offline.prompt_reading import points_in, words
+from beliefnest.world.values import Point
 
 __all__ = ["match_item", "match_name", "place_named_last", "singular"]
 

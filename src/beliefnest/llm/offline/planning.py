@@ -23,7 +23,8 @@ from dataclasses import dataclass
 
 from beliefnest.llm.offline import program_texts
 from beliefnest.llm.offline.phrases import match_item, match_name, place_named_last, singular
-from beliefnest.llm.offline.prompt_reading import Point, Reading, points_in, words
+from beliefnest.llm.offline.prompt_reading import PromptReading, points_in, words
+from beliefnest.world.values import Point
 
 __all__ = ["believed_place", "plan"]
 
@@ -61,14 +62,14 @@ class _Wanted:
     source: str | None
 
 
-def plan(reading: Reading) -> str:
+def plan(reading: PromptReading) -> str:
     """Return the program for the task of a prompt, as JavaScript."""
     sentences = (part.rstrip(".!? ") for part in _SENTENCE_END.split(reading.task))
     programs = (_plan_sentence(sentence, reading) for sentence in sentences)
     return next((program for program in programs if program), _not_understood(reading))
 
 
-def _plan_sentence(task: str, reading: Reading) -> str | None:
+def _plan_sentence(task: str, reading: PromptReading) -> str | None:
     for form in (_GO, _FIND):
         going = form.fullmatch(task)
         program = _go(going[1], reading) if going is not None else None
@@ -86,7 +87,7 @@ def _wanted(task: str) -> _Wanted | None:
     return None if match is None else _Wanted(_count(match[1]), match[2], match[3])
 
 
-def _not_understood(reading: Reading) -> str:
+def _not_understood(reading: PromptReading) -> str:
     task = reading.task or "nothing"
     return program_texts.wonder(f"I do not understand the task, so I do nothing: {task}")
 
@@ -96,7 +97,7 @@ def _count(word: str | None) -> int:
     return int(text) if text.isdigit() else _COUNTS.get(text, 1)
 
 
-def _get(wanted: _Wanted, reading: Reading) -> str:
+def _get(wanted: _Wanted, reading: PromptReading) -> str:
     chests = _nearest_first(_chests_meant(wanted.source, reading), reading.position)
     item = _item_in(chests, wanted, reading)
     if item is not None:
@@ -108,12 +109,12 @@ def _get(wanted: _Wanted, reading: Reading) -> str:
     return program_texts.search_chests(chests, names, wanted.count)
 
 
-def _item_in(chests: Sequence[Point], wanted: _Wanted, reading: Reading) -> str | None:
+def _item_in(chests: Sequence[Point], wanted: _Wanted, reading: PromptReading) -> str | None:
     held = [name for chest in chests for name in reading.chests[chest]]
     return match_item(wanted.phrase, held)
 
 
-def _help(phrase: str, reading: Reading) -> str | None:
+def _help(phrase: str, reading: PromptReading) -> str | None:
     """Return a program that gets a player its wish; None if the phrase names no player."""
     player = match_name(phrase, reading.players)
     if player is None:
@@ -136,7 +137,7 @@ def _help(phrase: str, reading: Reading) -> str | None:
     return "\n".join(parts)
 
 
-def _wish(player: str, reading: Reading) -> _Wanted | None:
+def _wish(player: str, reading: PromptReading) -> _Wanted | None:
     """Return the wish of a player, from its task or its own words."""
     told = reading.others_tasks.get(player)
     if told is not None:
@@ -148,7 +149,7 @@ def _wish(player: str, reading: Reading) -> _Wanted | None:
     return None
 
 
-def _chests_meant(source: str | None, reading: Reading) -> list[Point]:
+def _chests_meant(source: str | None, reading: PromptReading) -> list[Point]:
     """Return the chest whose position the task gives, or all known chests."""
     given = points_in(source or "")
     meant = [chest for chest in reading.chests if chest in given]
@@ -162,7 +163,7 @@ def _nearest_first(points: Sequence[Point], here: Point | None) -> list[Point]:
 
 
 def _takings(
-    count: int, item: str, chests: Sequence[Point], reading: Reading
+    count: int, item: str, chests: Sequence[Point], reading: PromptReading
 ) -> list[tuple[Point, dict[str, int]]]:
     """Return the chests to take from, in order, with the items to take."""
     holding = {chest: reading.chests[chest].get(item, 0) for chest in chests}
@@ -179,7 +180,7 @@ def _takings(
     return takings
 
 
-def _go(phrase: str, reading: Reading) -> str | None:
+def _go(phrase: str, reading: PromptReading) -> str | None:
     """Return a program that goes to the place or player of a phrase; None if it is unknown."""
     given = points_in(phrase)
     if given:
@@ -196,14 +197,14 @@ def _go(phrase: str, reading: Reading) -> str | None:
     return program_texts.look_for_player(player, list(reading.places.values()))
 
 
-def believed_place(player: str, reading: Reading) -> Point | None:
+def believed_place(player: str, reading: PromptReading) -> Point | None:
     """Return where a player is seen, else is said to be, else was last seen."""
     return (
         reading.players[player] or _said_to_be_at(player, reading) or reading.sightings.get(player)
     )
 
 
-def _said_to_be_at(player: str, reading: Reading) -> Point | None:
+def _said_to_be_at(player: str, reading: PromptReading) -> Point | None:
     """Return the last place in the newest message that a player said or that names the player."""
     for heard in reversed(reading.chat):
         if heard.speaker == player or set(words(player)) <= set(words(heard.text)):

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 
-from beliefnest.llm.offline.prompt_reading import Point
+from beliefnest.world.values import Point
 
 __all__ = [
     "fenced",

@@ -6,9 +6,10 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-__all__ = ["Point", "Reading", "Utterance", "points_in", "read_prompt", "words"]
+from beliefnest.world.values import Point
 
-Point = tuple[float, float, float]
+__all__ = ["HeardUtterance", "PromptReading", "points_in", "read_prompt", "words"]
+
 
 _HEADING = re.compile(r"([A-Z][A-Za-z ]*):")
 _TASK = re.compile(r"Task:\s*(.*)")
@@ -39,7 +40,7 @@ _PLACE_IN_SENTENCE = re.compile(rf"\b([A-Z]\w*(?: [A-Z]\w*)*) is at ({_POINT.pat
 
 
 @dataclass(frozen=True, slots=True)
-class Utterance:
+class HeardUtterance:
     """Speaker, text and tick of something heard."""
 
     speaker: str
@@ -48,7 +49,7 @@ class Utterance:
 
 
 @dataclass(frozen=True)
-class Reading:
+class PromptReading:
     """Contents of a prompt.
 
     Attributes:
@@ -67,7 +68,7 @@ class Reading:
     position: Point | None
     chests: Mapping[Point, Mapping[str, int]]
     players: Mapping[str, Point | None]
-    chat: Sequence[Utterance]
+    chat: Sequence[HeardUtterance]
     places: Mapping[str, Point]
     sightings: Mapping[str, Point]
     others_tasks: Mapping[str, str]
@@ -84,7 +85,7 @@ def points_in(text: str) -> list[Point]:
     return [(float(x), float(y), float(z)) for x, y, z in _POINT.findall(text)]
 
 
-def read_prompt(text: str) -> Reading:
+def read_prompt(text: str) -> PromptReading:
     """Parse a prompt; missing or unclear sections are read as unknown."""
     sections = _sections(text)
     chat = _chat(sections.get("Chat log", []))
@@ -92,7 +93,7 @@ def read_prompt(text: str) -> Reading:
     told = {"Chest", "Containers"} & sections.keys()
     chests = _chests(sections.get("Chest", [])) | _containers(sections.get("Containers", []))
     here = points_in("\n".join(sections.get("Position", [])))
-    return Reading(
+    return PromptReading(
         task=_task(text),
         position=here[0] if here else None,
         chests=chests if told else _remembered(text, chat, places),
@@ -201,7 +202,7 @@ def _players(lines: Sequence[str]) -> dict[str, Point | None]:
 
 
 def _remembered(
-    text: str, chat: Sequence[Utterance], places: Mapping[str, Point]
+    text: str, chat: Sequence[HeardUtterance], places: Mapping[str, Point]
 ) -> dict[Point, dict[str, int]]:
     """Return the contents of chests that follow from a history of observations.
 
@@ -212,12 +213,12 @@ def _remembered(
     rows = [match for match in map(_OBSERVED.fullmatch, text.splitlines()) if match is not None]
     heard = [said for said in chat if owner is None or said.speaker != owner[1]]
     # Events of a tick come before words of the same tick. Narrators know all and need no words.
-    changes: list[tuple[int, int, re.Match[str] | Utterance]] = []
+    changes: list[tuple[int, int, re.Match[str] | HeardUtterance]] = []
     changes += [(int(row[1]), 0, row) for row in rows]
     changes += [(said.tick, 1, said) for said in heard if owner is not None]
     chests: dict[Point, dict[str, int]] = {}
     for _, _, change in sorted(changes, key=lambda each: each[:2]):
-        if isinstance(change, Utterance):
+        if isinstance(change, HeardUtterance):
             _believe(change.text, chests, places)
         else:
             _observe(change, chests)
@@ -256,9 +257,11 @@ def _seen_players(text: str) -> dict[str, Point | None]:
     }
 
 
-def _chat(lines: Sequence[str]) -> list[Utterance]:
+def _chat(lines: Sequence[str]) -> list[HeardUtterance]:
     matches = (_CHAT.fullmatch(line.strip()) for line in lines)
-    return [Utterance(match[2], match[3], int(match[1])) for match in matches if match is not None]
+    return [
+        HeardUtterance(match[2], match[3], int(match[1])) for match in matches if match is not None
+    ]
 
 
 def _places(lines: Sequence[str], text: str) -> dict[str, Point]:

@@ -23,7 +23,7 @@ from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.worlds.by_name import hosted_of
-from beliefnest.worlds.protocol import Body, ProgramPast, Sense, World
+from beliefnest.worlds.protocol import Body, ProgramPast, SenseSource, World
 
 __all__ = ["Bodies"]
 
@@ -197,7 +197,9 @@ class Bodies:
             with self.acting(path) as body:
                 body.step(0)
 
-    def sense_of(self, path: BeliefPath, agent: str, past: ProgramPast | None = None) -> Sense:
+    def sense_of(
+        self, path: BeliefPath, agent: str, past: ProgramPast | None = None
+    ) -> SenseSource:
         """Return the percepts and memories of an agent, for its program with `senses: percepts`.
 
         They are computed from what has been recorded so far. The agent's belief here follows this

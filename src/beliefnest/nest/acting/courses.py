@@ -15,8 +15,8 @@ import numpy as np
 
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import InputError, WorldError
-from beliefnest.minds.walking import Act, Changes, Draw, Open, Step, Strategy, Walker
-from beliefnest.nest.past.percepts import Deed, Percept, deed_of
+from beliefnest.minds.walking import Draw, Open, Strategy, WalkAct, WalkChanges, Walker, WalkStep
+from beliefnest.nest.past.percepts import DeedKey, Percept, deed_of
 from beliefnest.timeline.journal import Edit, Entry
 from beliefnest.world.event_kinds import AT_CONTAINERS, EventKind
 from beliefnest.world.frames import Frame, Snapshot
@@ -139,7 +139,7 @@ class Glimpse:
     blocks: Terrain
     agents: Mapping[str, AgentState]
     containers: Mapping[Position, Items]
-    deeds: tuple[Deed, ...]
+    deeds: tuple[DeedKey, ...]
     is_new: bool
 
 
@@ -182,7 +182,7 @@ class Course:
         self.start = self.world.now
         self._changed_blocks: dict[tuple[int, int, int], int] = {}
         self._moved: dict[tuple[Position, str], int] = {}
-        self._changes = Changes()
+        self._changes = WalkChanges()
         self._latest: Frame | None = None
         self.is_fixed = all(each.is_fixed for each in candidates.values())
         self._ended_draws = 0
@@ -336,7 +336,7 @@ class Course:
         action = walker.choose(self.chance(walker.name), self._changes)
         world, name = self.world, walker.name
         state = world.agent(name)
-        if isinstance(action, Step):
+        if isinstance(action, WalkStep):
             if action.cell != walker.cell:
                 feet = self._ground.feet(action.cell)
                 yaw = _yaw(state.position, feet)
@@ -344,10 +344,10 @@ class Course:
                 state = world.agent(name)
         elif isinstance(action, Open):
             world.open(name, action.place)
-        elif isinstance(action, Act) and action.item is not None:
+        elif isinstance(action, WalkAct) and action.item is not None:
             self._take_item(walker, action.item)
         if not walker.is_over:
-            cell = action.cell if isinstance(action, Step) else walker.cell
+            cell = action.cell if isinstance(action, WalkStep) else walker.cell
             walker.arrive((state.position, state.yaw, state.pitch), cell)
 
     def _take_item(self, walker: Walker, item: str) -> None:
@@ -467,14 +467,14 @@ class Course:
         self._moved[place, item] = self._moved.get((place, item), 0) + count
 
     def _note_changes(self) -> None:
-        self._changes = Changes(
+        self._changes = WalkChanges(
             tuple(sorted(self._changed_blocks.items())),
             tuple(sorted((*key, count) for key, count in self._moved.items() if count)),
         )
 
     def _glimpse(self) -> Glimpse:
         world, frame = self.world, self._latest
-        deeds: tuple[Deed, ...] = ()
+        deeds: tuple[DeedKey, ...] = ()
         if frame is not None and frame.events:
             found = [
                 deed_of(event.kind, event.actor, event.detail)

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Event, EventKind
@@ -20,7 +20,7 @@ class Earshot:
         world: The world that people have joined.
     """
 
-    def __init__(self, history: History, people: Collection[str], world: HostedWorld) -> None:
+    def __init__(self, history: StateHistory, people: Collection[str], world: HostedWorld) -> None:
         self._history = history
         self._people = sorted(people)
         self._world = world

@@ -5,14 +5,14 @@ from collections.abc import Callable, Iterator
 from beliefnest.nest.acting.earshot import Earshot
 from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.hearsay import Hearsay, has_unread
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import EventKind
 
 __all__ = ["ChatListener", "FrameRecorder"]
 
-Utterance = tuple[int, str, str]
+SpokenLine = tuple[int, str, str]
 """Tick, speaker, text."""
 
 ChatListener = Callable[[int, str, str], None]
@@ -42,7 +42,7 @@ class FrameRecorder:
     def __init__(
         self,
         journal: Journal,
-        history: History,
+        history: StateHistory,
         key: TimelineKey,
         hearsay: Hearsay | None = None,
         on_chat: ChatListener | None = None,
@@ -53,7 +53,7 @@ class FrameRecorder:
         self.earshot = earshot
         self._follower = follower
         self._on_chat = on_chat
-        self._said: list[Utterance] = []
+        self._said: list[SpokenLine] = []
         self.batched = False
         self._journal = journal
         self._history = history
@@ -106,7 +106,7 @@ class FrameRecorder:
         self._frames, self._tick, self._said = [], None, []
 
 
-def _said_in(frame: Frame) -> Iterator[Utterance]:
+def _said_in(frame: Frame) -> Iterator[SpokenLine]:
     for event in frame.events:
         if event.kind is EventKind.CHAT and event.actor is not None:
             yield frame.tick, event.actor, event.detail["text"]

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from beliefnest.belief.node_view import NodeView
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.claims import Claim, with_claims
@@ -40,7 +40,7 @@ class ClaimReader(Protocol):
 class Hearsay:
     """Completion of frames: adds the claims that a reader finds in utterances."""
 
-    def __init__(self, reader: ClaimReader, setting: Setting, history: History) -> None:
+    def __init__(self, reader: ClaimReader, setting: Setting, history: StateHistory) -> None:
         self._reader = reader
         self._setting = setting
         self._history = history
@@ -100,7 +100,7 @@ def _bare(event: Event) -> tuple[object, ...]:
     return event.kind, event.actor, detail["text"], detail.get("to")
 
 
-def _nameable(setting: Setting, history: History, seen: NodeView) -> Nameable:
+def _nameable(setting: Setting, history: StateHistory, seen: NodeView) -> Nameable:
     start, registry = setting.snapshot, history.context.registry
     known = {cell: registry.text(state) for cell, state in _fittings(history, seen).items()}
     containers = {
@@ -123,7 +123,7 @@ def _nameable(setting: Setting, history: History, seen: NodeView) -> Nameable:
     )
 
 
-def _fittings(history: History, seen: NodeView) -> dict[Position, int]:
+def _fittings(history: StateHistory, seen: NodeView) -> dict[Position, int]:
     """Return the containers, doors and switches of a simulator, as block states."""
     registry, box = history.context.registry, history.context.box
     states = []

@@ -27,7 +27,7 @@ from beliefnest.skills.calls import Call
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import AIR, Registry
-from beliefnest.world.terrain import States, Terrain
+from beliefnest.world.terrain import BlockStates, Terrain
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position, block_at
 from beliefnest.worlds.protocol import ProgramResult, RunRules
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
@@ -492,7 +492,7 @@ class Imagination:
         return forest
 
 
-def _where_unknown(blocks: States, believed: States) -> States:
+def _where_unknown(blocks: BlockStates, believed: BlockStates) -> BlockStates:
     """Return the blocks of a world, -1 where the believer knows none and the world has air."""
     return np.where((believed < 0) & (blocks == AIR), np.int32(-1), blocks)
 

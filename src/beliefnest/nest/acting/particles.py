@@ -14,7 +14,7 @@ from beliefnest.minds.walking import Draw
 from beliefnest.nest.acting.course_agreement import Agreement
 from beliefnest.nest.acting.courses import Candidate, Course, CoursePlan, Glimpse, Seeds
 
-__all__ = ["Drawing", "Drawn", "Lost", "Particle", "spread"]
+__all__ = ["Drawn", "HistoryDraws", "Lost", "Particle", "spread"]
 
 OnTick = Callable[[int, int], None]
 
@@ -62,7 +62,7 @@ class Lost:
 
 
 @dataclass(eq=False)
-class Drawing:
+class HistoryDraws:
     """Histories being drawn.
 
     Args:

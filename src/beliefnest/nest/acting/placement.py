@@ -18,9 +18,9 @@ from beliefnest.world.registry import BoxBounds, Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import HALF_WIDTH, AgentState, Box, Point, Position, block_at
 
-__all__ = ["FARTHEST", "BodySpace", "Placed", "moved_agents", "placed", "unknown_floors"]
+__all__ = ["FARTHEST", "BodySpace", "PlacedBodies", "moved_agents", "placed", "unknown_floors"]
 
-Placed = Mapping[str, tuple[Point, Point]]
+PlacedBodies = Mapping[str, tuple[Point, Point]]
 """Believed place and first place in the body, by agent."""
 
 FARTHEST = 3.0
@@ -130,7 +130,7 @@ def placed(
     agents: Mapping[str, AgentState],
     seen_at: Mapping[str, int | None],
     seen_now: Collection[str] = (),
-) -> Placed:
+) -> PlacedBodies:
     """Return the agents that cannot be where they are believed to be, with their new places.
 
     The new place is the nearest one within 3 blocks where the agent can stand. Places from which it
@@ -165,7 +165,7 @@ def placed(
     return dict(sorted(moved.items()))
 
 
-def moved_agents(agents: Mapping[str, AgentState], moves: Placed) -> dict[str, AgentState]:
+def moved_agents(agents: Mapping[str, AgentState], moves: PlacedBodies) -> dict[str, AgentState]:
     """Return the states of the moved agents at their new places."""
     return {
         name: replace(agents[name], position=to, on_ground=True) for name, (_, to) in moves.items()

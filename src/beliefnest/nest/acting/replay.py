@@ -10,7 +10,7 @@ from beliefnest.nest.acting.hearsay import recalled
 from beliefnest.nest.acting.sensing import Sensing
 from beliefnest.nest.acting.starting import start_of
 from beliefnest.nest.past.body_state import internal_state_at
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.placing import placing_frame
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import EntryDifference, first_difference
@@ -18,7 +18,7 @@ from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, Timelin
 from beliefnest.timeline.run_records import ProgramRecord, Senses
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import path_text
-from beliefnest.worlds.protocol import Body, ProgramPast, RunRules, Sense, World
+from beliefnest.worlds.protocol import Body, ProgramPast, RunRules, SenseSource, World
 
 __all__ = ["ReplayedTimeline", "replay"]
 
@@ -60,7 +60,7 @@ class _RecordedTimeline:
     """Timeline as it was recorded."""
 
     journal: Journal
-    history: History
+    history: StateHistory
     info: TimelineInfo
 
     def after(self, entries: int, tick: int, world: World) -> Snapshot:
@@ -69,7 +69,7 @@ class _RecordedTimeline:
         path, physics = self.info.key.path, world.has_physics
         return start_of(self.journal, self.history, path, moment, has_physics=physics).snapshot
 
-    def senses(self, call: _RecordedCall, body: Body) -> Mapping[str, Sense]:
+    def senses(self, call: _RecordedCall, body: Body) -> Mapping[str, SenseSource]:
         """Return the recorded percepts of the agents of a call.
 
         Recorded percepts serve as well as new ones: if an earlier frame differs, that is reported
@@ -79,7 +79,7 @@ class _RecordedTimeline:
             return {}
         return {agent: self._sense(call, body, agent) for agent in call.programs}
 
-    def _sense(self, call: _RecordedCall, body: Body, agent: str) -> Sense:
+    def _sense(self, call: _RecordedCall, body: Body, agent: str) -> SenseSource:
         key = self.info.key
 
         def entries() -> int:
@@ -125,7 +125,7 @@ def replay(
     Raises:
         BodyError: The process behind the world ended.
     """
-    history = History(journal, setting)
+    history = StateHistory(journal, setting)
     rules = RunRules(setting.perception.speech_ticks)
     for info in journal.timelines():
         mine = [

@@ -9,13 +9,13 @@ from beliefnest.timeline.journal import Journal, TimelineKey, lineage
 from beliefnest.timeline.run_records import ProgramRecord
 from beliefnest.worlds.protocol import ProgramResult
 
-__all__ = ["Progress", "play_script", "steps_played"]
+__all__ = ["OnProgress", "play_script", "steps_played"]
 
-Progress = Callable[[str, int, int], None]
+OnProgress = Callable[[str, int, int], None]
 """Function of a description of the present step, the number of steps done, and of all steps."""
 
 
-def play_script(engine: Engine, on_progress: Progress | None = None) -> None:
+def play_script(engine: Engine, on_progress: OnProgress | None = None) -> None:
     """Play the script in the real world, from the first step that was not played.
 
     Raises:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.embodiable import chest_places, with_chests_at
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
@@ -36,7 +36,7 @@ class Sensing:
 
     def __init__(
         self,
-        history: History,
+        history: StateHistory,
         key: TimelineKey,
         agent: str,
         entries: Callable[[], int],

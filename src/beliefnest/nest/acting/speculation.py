@@ -15,7 +15,15 @@ from threading import Event
 from beliefnest.errors import BeliefNestError, BodyError, BodyLostError, WorldError
 from beliefnest.nest.acting.lives import Lives
 from beliefnest.world.frames import Frame, Snapshot
-from beliefnest.worlds.protocol import AS_USUAL, Body, ProgramResult, RunRules, Sense, Sink, World
+from beliefnest.worlds.protocol import (
+    AS_USUAL,
+    Body,
+    ProgramResult,
+    RunRules,
+    SenseSource,
+    Sink,
+    World,
+)
 
 __all__ = ["SpeculatedBody", "Speculation", "SpeculationStart", "speculate"]
 
@@ -82,7 +90,7 @@ class SpeculatedBody:
         self,
         programs: Mapping[str, str],
         timeout_ticks: int,
-        senses: Mapping[str, Sense] | None = None,
+        senses: Mapping[str, SenseSource] | None = None,
         rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
         """Hand the frames of the programs to the sink, and return or raise their outcome."""

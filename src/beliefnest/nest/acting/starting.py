@@ -8,7 +8,7 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.acting.placement import BodySpace, moved_agents, placed, unknown_floors
 from beliefnest.nest.past.body_state import internal_state_at
 from beliefnest.nest.past.embodiable import embodiable, with_chests
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.placing import fork_of_belief
 from beliefnest.timeline.journal import ForkPoint, Journal
 from beliefnest.world.frames import Frame, Snapshot
@@ -37,7 +37,12 @@ class BodyStart:
 
 
 def start_of(
-    journal: Journal, history: History, path: BeliefPath, moment: ForkPoint, *, has_physics: bool
+    journal: Journal,
+    history: StateHistory,
+    path: BeliefPath,
+    moment: ForkPoint,
+    *,
+    has_physics: bool,
 ) -> BodyStart:
     """Return the initial state of a body of a node (semantics, section 7).
 
@@ -73,7 +78,7 @@ def start_of(
     return BodyStart(_floored(snapshot, blocks, unknown_floors(space, begun), history))
 
 
-def _filled(reading: NodeView, history: History) -> tuple[Snapshot, Terrain]:
+def _filled(reading: NodeView, history: StateHistory) -> tuple[Snapshot, Terrain]:
     """Return the snapshot with which a body can be filled, and its blocks, -1 unknown."""
     snapshot, blocks = reading.snapshot(), reading.terrain
     if not reading.path:
@@ -83,7 +88,9 @@ def _filled(reading: NodeView, history: History) -> tuple[Snapshot, Terrain]:
     return embodiable(registry, snapshot, known), known
 
 
-def _begun(snapshot: Snapshot, blocks: Terrain, believed: NodeView, history: History) -> BodyStart:
+def _begun(
+    snapshot: Snapshot, blocks: Terrain, believed: NodeView, history: StateHistory
+) -> BodyStart:
     """Return the start of a body of a belief, with agents moved and unknown floors made solid."""
     space = BodySpace(history.context.registry, snapshot.box, blocks)
     seen_at = {}
@@ -100,7 +107,7 @@ def _begun(snapshot: Snapshot, blocks: Terrain, believed: NodeView, history: His
 
 
 def _floored(
-    snapshot: Snapshot, known: Terrain, floors: Iterable[Position], history: History
+    snapshot: Snapshot, known: Terrain, floors: Iterable[Position], history: StateHistory
 ) -> Snapshot:
     cells = [snapshot.box.index(floor) for floor in floors]
     cells = [cell for cell in cells if known[cell] < 0]

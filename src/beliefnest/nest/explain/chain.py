@@ -16,8 +16,8 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.priors import merged_belief
 from beliefnest.errors import InputError, PathError
 from beliefnest.nest.explain.element_history import (
+    ExplainedSpan,
     LogStep,
-    Span,
     cells_of,
     is_current,
     last_change,
@@ -27,19 +27,19 @@ from beliefnest.nest.explain.element_history import (
     value_in,
 )
 from beliefnest.nest.explain.explanation import Explanation
-from beliefnest.nest.explain.ground_chain import Grounds, mattering
+from beliefnest.nest.explain.ground_chain import ElementGrounds, mattering
 from beliefnest.nest.explain.parts import (
     Absence,
+    BaseFact,
     Contents,
     Element,
-    Fact,
-    Ground,
     HeardClaim,
     Level,
     Missed,
     Reason,
     Sighting,
     Value,
+    ValueGround,
 )
 from beliefnest.nest.explain.sightings import sighting_of_agent, sighting_of_block
 from beliefnest.nest.past.recording import Recording
@@ -170,7 +170,7 @@ class _Finding:
 
     path: BeliefPath
     held: _HeldNow
-    grounds: Grounds
+    grounds: ElementGrounds
     since: int | None = None
     stood: Point | None = None
     parent: Value = None
@@ -189,7 +189,7 @@ class _Inquiry:
 
     moment: ForkPoint
     element: Element
-    fact: Fact
+    fact: BaseFact
     traces: list[_Finding]
 
 
@@ -237,10 +237,10 @@ def _ground_of(
     return basis, cell in current
 
 
-def _fact(recording: Recording, moment: ForkPoint, held: _HeldNow, element: Element) -> Fact:
+def _fact(recording: Recording, moment: ForkPoint, held: _HeldNow, element: Element) -> BaseFact:
     change = last_change(recording.history, recording.journal, moment, element)
     base = recording.journal.info(moment.timeline).base
-    return Fact(
+    return BaseFact(
         path=moment.timeline.path,
         branch=moment.timeline.branch,
         value=held.value,
@@ -261,7 +261,7 @@ def _follow(recording: Recording, path: BeliefPath, inquiries: Sequence[_Inquiry
         inquiries: Inquiries about one timeline.
     """
     spans = {
-        number: Span(each.moment, min(_begin(recording, trace) for trace in each.traces))
+        number: ExplainedSpan(each.moment, min(_begin(recording, trace) for trace in each.traces))
         for number, each in enumerate(inquiries)
         if each.traces
     }
@@ -385,7 +385,7 @@ def _acts(
 
 def _grounds(
     recording: Recording, path: BeliefPath, held: Mapping[BeliefPath, _HeldNow], element: Element
-) -> Grounds:
+) -> ElementGrounds:
     """Return the grounds of a node at the beginning of everything: its prior beliefs."""
     seen = []
     for node in (path[:depth] for depth in range(len(path), 0, -1) if path[:depth] in held):
@@ -394,7 +394,7 @@ def _grounds(
             if touches(element, event):
                 acts[event.tick] = (*acts.get(event.tick, ()), event)
         seen.append(acts)
-    grounds = Grounds(path, element, seen)
+    grounds = ElementGrounds(path, element, seen)
     setting = recording.setting
     basis = Basis(setting.snapshot.tick, Source.PRIOR)
     priors = merged_belief(setting.initial_beliefs, path).containers
@@ -402,7 +402,7 @@ def _grounds(
         if place == element.where:
             grounds.content = Content(dict(items), complete, basis)
             found = Contents(dict(items), complete)
-            grounds.chain.append(Ground(basis, basis.observed_at, None, found=found))
+            grounds.chain.append(ValueGround(basis, basis.observed_at, None, found=found))
     return grounds
 
 
@@ -449,7 +449,7 @@ def _reasons(trace: _Finding, since: int | None, element: Element) -> tuple[Reas
     chain, basis, value = trace.grounds.chain, trace.held.basis, trace.held.value
     if isinstance(value, Contents) and not isinstance(element.where, str) and basis and chain:
         *before, last = mattering(chain, value, element.where)
-        if isinstance(last, Ground) and trace.held.current:
+        if isinstance(last, ValueGround) and trace.held.current:
             last = replace(last, basis=basis)
         return (*before, last)
     if basis is None or since is None:

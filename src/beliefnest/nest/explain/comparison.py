@@ -15,7 +15,7 @@ from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.words import html_lines, html_table, where_words
 from beliefnest.world.paths import BeliefPath, path_text
-from beliefnest.world.terrain import Counts, States
+from beliefnest.world.terrain import BlockStates, Counts
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import contents_words, point_words
 
@@ -225,11 +225,11 @@ def are_false(real: Contents | None, belief: Contents) -> bool:
     return too_much or (belief.complete and dict(claimed) != dict(true))
 
 
-def _both_known(a: States, b: States) -> npt.NDArray[np.bool_]:
+def _both_known(a: BlockStates, b: BlockStates) -> npt.NDArray[np.bool_]:
     return (a >= 0) & (b >= 0)
 
 
-def _second_known(a: States, b: States) -> npt.NDArray[np.bool_]:
+def _second_known(a: BlockStates, b: BlockStates) -> npt.NDArray[np.bool_]:
     return b >= 0
 
 

@@ -9,7 +9,7 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.nest.explain.parts import Contents, Element, Value
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
 from beliefnest.world.double_chests import holds_items
 from beliefnest.world.paths import BeliefPath
@@ -18,8 +18,8 @@ from beliefnest.world.signs import block_words, plain_state
 from beliefnest.world.values import Box
 
 __all__ = [
+    "ExplainedSpan",
     "LogStep",
-    "Span",
     "cells_of",
     "is_current",
     "last_change",
@@ -45,7 +45,7 @@ class LogStep:
     entry: Entry | None
 
 
-class Span(NamedTuple):
+class ExplainedSpan(NamedTuple):
     """Part of a log that explains a belief: from just before a tick to a moment."""
 
     moment: ForkPoint
@@ -60,10 +60,10 @@ def cells_of(element: Element, box: Box) -> Sequence[int]:
 
 
 def steps_since(
-    history: History,
+    history: StateHistory,
     journal: Journal,
     path: BeliefPath,
-    spans: Mapping[int, Span],
+    spans: Mapping[int, ExplainedSpan],
     cells: Sequence[int],
 ) -> Iterator[tuple[int, LogStep]]:
     """Yield the forests of a node that belong to spans of a log, which is folded only once.
@@ -83,7 +83,7 @@ def steps_since(
     info = journal.info(timeline)
     older = {number: span for number, span in spans.items() if span.tick <= info.start}
     if info.base is not None and older:
-        earlier = {number: Span(info.base, span.tick) for number, span in older.items()}
+        earlier = {number: ExplainedSpan(info.base, span.tick) for number, span in older.items()}
         yield from steps_since(history, journal, path, earlier, cells)
     firsts = {
         number: min(journal.entries_until(timeline, span.tick - 1), span.moment.entries)
@@ -143,7 +143,7 @@ def touches(element: Element, event: PerceivedEvent) -> bool:
 
 
 def last_change(
-    history: History, journal: Journal, moment: ForkPoint, element: Element
+    history: StateHistory, journal: Journal, moment: ForkPoint, element: Element
 ) -> Entry | None:
     """Return the last entry of a timeline that changed an element in its own world."""
     path = moment.timeline.path

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from beliefnest.nest.explain.parts import Element, Fact, Level
+from beliefnest.nest.explain.parts import BaseFact, Element, Level
 from beliefnest.nest.explain.wording import explanation_lines
 from beliefnest.pictures.words import html_lines
 
@@ -24,7 +24,7 @@ class Explanation:
 
     element: Element
     tick: int
-    fact: Fact
+    fact: BaseFact
     levels: tuple[Level, ...]
     before: "Explanation | None" = None
 

@@ -17,10 +17,10 @@ from beliefnest.nest.explain.element_history import LogStep
 from beliefnest.nest.explain.parts import (
     Contents,
     Element,
-    Ground,
     HeardClaim,
     Reason,
     SeenElsewhere,
+    ValueGround,
 )
 from beliefnest.timeline.journal import Edit
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
@@ -28,14 +28,14 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import EventKind, Items, Point, Position
 
-__all__ = ["Acts", "Grounds", "mattering"]
+__all__ = ["Acts", "ElementGrounds", "mattering"]
 
 Acts = Mapping[int, tuple[PerceivedEvent, ...]]
 """Perceived acts on an element by tick."""
 
 
 @dataclass
-class Grounds:
+class ElementGrounds:
     """Grounds of one node's value of an element.
 
     Attributes:
@@ -97,7 +97,7 @@ class Grounds:
             return
         if old is not None and old.in_sight and basis == old.at(basis.observed_at).basis:
             *self.chain, last = self.chain
-            if isinstance(last, Ground) and not new.in_sight:
+            if isinstance(last, ValueGround) and not new.in_sight:
                 # The owner lost sight of it: the same ground, with the last tick at which it held.
                 self.chain.append(replace(last, basis=basis, since=basis.observed_at))
                 return
@@ -107,12 +107,12 @@ class Grounds:
         ground = replace(ground, is_change=is_change, found=found)
         self.chain = [*(self.chain if is_change else ()), ground]
 
-    def ground(self, basis: Basis, since: int, stood: Point | None) -> Ground:
+    def ground(self, basis: Basis, since: int, stood: Point | None) -> ValueGround:
         """Return the ground of a basis that the node took up at a tick."""
         handed_on = since > basis.observed_at or basis.source is Source.HEARD
         seen = self.seen if handed_on else self.seen[:1]
         acts = next((acts[basis.observed_at] for acts in seen if basis.observed_at in acts), ())
-        return Ground(basis, since, stood, handed_on, acts=acts)
+        return ValueGround(basis, since, stood, handed_on, acts=acts)
 
     def _told(self, step: LogStep, had: Items) -> Iterator[HeardClaim]:
         """Yield the claims of one entry about the element that the node believed.
@@ -209,7 +209,7 @@ def mattering(chain: Sequence[Reason], value: Contents, here: Position) -> tuple
     need, removed = Counter(value.items), set[str]()
     kept: list[Reason] = []
     for each in reversed(chain):
-        if isinstance(each, Ground) and not each.is_change:
+        if isinstance(each, ValueGround) and not each.is_change:
             if not kept or (each.tells_contents and (value.complete or need.total() > 0)):
                 kept.append(each)
             break
@@ -220,7 +220,7 @@ def mattering(chain: Sequence[Reason], value: Contents, here: Position) -> tuple
             continue
         kept.append(each)
         for item, count in change.items():
-            if need[item] or not isinstance(each, Ground):
+            if need[item] or not isinstance(each, ValueGround):
                 need[item] = max(0, need[item] - count)
     return tuple(reversed(kept))
 
@@ -228,7 +228,7 @@ def mattering(chain: Sequence[Reason], value: Contents, here: Position) -> tuple
 def _change(each: Reason, here: Position) -> Mapping[str, int]:
     """Return by how much a ground or claim changed the count of items; 0: it said the same."""
     match each:
-        case Ground(acts=acts):
+        case ValueGround(acts=acts):
             change = Counter[str]()
             for act in acts:
                 for item, count in act.detail.get("items", {}).items():

@@ -12,10 +12,9 @@ from beliefnest.world.values import Point, Position
 
 __all__ = [
     "Absence",
+    "BaseFact",
     "Contents",
     "Element",
-    "Fact",
-    "Ground",
     "HeardClaim",
     "Level",
     "Missed",
@@ -23,6 +22,7 @@ __all__ = [
     "SeenElsewhere",
     "Sighting",
     "Value",
+    "ValueGround",
     "View",
 ]
 
@@ -177,7 +177,7 @@ class SeenElsewhere:
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
+class ValueGround:
     """Perception, prior belief or edit by hand on which a value rests, apart from claims.
 
     Attributes:
@@ -208,12 +208,12 @@ class Ground:
         return self.found is None or self.found.complete or bool(self.found.items)
 
 
-Reason = Ground | HeardClaim | SeenElsewhere
+Reason = ValueGround | HeardClaim | SeenElsewhere
 """Reason for a value: a perception, a prior, an edit or a claim."""
 
 
 @dataclass(frozen=True, slots=True)
-class Fact:
+class BaseFact:
     """Element in the world of the timeline from which all beliefs follow.
 
     Attributes:

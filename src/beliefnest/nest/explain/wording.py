@@ -4,10 +4,9 @@ from collections.abc import Iterable, Sequence
 
 from beliefnest.belief.grounds import PerceivedEvent, Source
 from beliefnest.nest.explain.parts import (
+    BaseFact,
     Contents,
     Element,
-    Fact,
-    Ground,
     HeardClaim,
     Level,
     Missed,
@@ -15,6 +14,7 @@ from beliefnest.nest.explain.parts import (
     SeenElsewhere,
     Sighting,
     Value,
+    ValueGround,
     View,
 )
 from beliefnest.world.event_words import did, kind_words
@@ -37,7 +37,7 @@ _HANDED_ON = {
 """Words for a value that was not current when the holder perceived it, by its source."""
 
 
-def explanation_lines(element: Element, fact: Fact, levels: Iterable[Level]) -> list[str]:
+def explanation_lines(element: Element, fact: BaseFact, levels: Iterable[Level]) -> list[str]:
     """Return the fact, then each belief along the path with its reason, line by line."""
     lines = [_fact_text(fact, element)]
     for level in levels:
@@ -47,7 +47,7 @@ def explanation_lines(element: Element, fact: Fact, levels: Iterable[Level]) -> 
     return lines
 
 
-def _fact_text(fact: Fact, element: Element) -> str:
+def _fact_text(fact: BaseFact, element: Element) -> str:
     where = f"In {path_text(fact.path)}" if fact.path else "In reality"
     if fact.forked_at is not None:
         where += f", on branch {fact.branch!r} since tick {fact.forked_at}"
@@ -87,7 +87,7 @@ def _given_up(level: Level, element: Element) -> str:
 def _reasons_text(level: Level, name: str) -> str:
     """Return in words what a belief rests on, in the order in which it came."""
     first, *later = level.reasons
-    is_percept = not isinstance(first, Ground) or first.basis.source not in _GIVEN
+    is_percept = not isinstance(first, ValueGround) or first.basis.source not in _GIVEN
     text = f"{_knows(level) if is_percept else ''}{_reason_text(level, first, name)}"
     if later:
         view = "" if is_percept or len(level.path) == 1 else f", {_knows(level)[:-2]},"
@@ -101,7 +101,7 @@ def _reasons_text(level: Level, name: str) -> str:
 
 def _reason_text(level: Level, reason: Reason, name: str) -> str:
     match reason:
-        case Ground():
+        case ValueGround():
             return _ground_text(level, reason, name)
         case HeardClaim():
             return _told_text(level, reason)
@@ -109,7 +109,7 @@ def _reason_text(level: Level, reason: Reason, name: str) -> str:
             return _elsewhere_text(level, reason)
 
 
-def _ground_text(level: Level, ground: Ground, name: str) -> str:
+def _ground_text(level: Level, ground: ValueGround, name: str) -> str:
     """Return a perception, a prior belief or an edit in words."""
     tick, source, holder = ground.basis.observed_at, ground.basis.source, level.holder
     acts = _acts_text(ground.acts) or kind_words(ground.basis.event)
@@ -161,7 +161,7 @@ def _elsewhere_text(level: Level, seen: SeenElsewhere) -> str:
     return f"{begin} the only {seen.item} at {_point(seen.where)}"
 
 
-def _missed_text(missed: Missed, level: Level, fact: Fact, element: Element) -> str:
+def _missed_text(missed: Missed, level: Level, fact: BaseFact, element: Element) -> str:
     """Return in words why a change did not reach a belief."""
     never = level.basis is None
     name, holder = _named(element, level.block or fact.block), level.holder

@@ -10,9 +10,9 @@ from beliefnest.errors import BranchError, InputError, PathError, StoreError
 from beliefnest.facts.kinds import GoalCondition, Heard
 from beliefnest.facts.states import Facts, StateFacts
 from beliefnest.nest.acting.courses import Course
-from beliefnest.nest.acting.particles import Drawing, Lost, Particle
+from beliefnest.nest.acting.particles import HistoryDraws, Lost, Particle
 from beliefnest.nest.face.given import check_branch_name, tick_of, whole
-from beliefnest.nest.face.history_starts import Starts
+from beliefnest.nest.face.history_starts import HistoryStarts
 from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
 from beliefnest.nest.past.recording import Recording
 from beliefnest.owned import Barred
@@ -187,8 +187,8 @@ class Imagined(Barred):
         recording: Recording,
         path: BeliefPath,
         base: ForkPoint,
-        drawing: Drawing,
-        starts: Starts,
+        drawing: HistoryDraws,
+        starts: HistoryStarts,
         until: int,
         side: Recording,
         faces: Faces,

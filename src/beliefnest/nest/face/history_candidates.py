@@ -10,14 +10,14 @@ from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.walking import Strategy
 from beliefnest.nest.acting.courses import Candidate, Course, PolicyProgram
 from beliefnest.nest.face.histories import Faces
-from beliefnest.nest.face.history_starts import Doubt, Starts
+from beliefnest.nest.face.history_starts import Doubt, HistoryStarts
 from beliefnest.nest.inferring.node_inference import ModelStart, start_of_model
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised
 from beliefnest.world.values import block_at
 
-__all__ = ["Candidates", "Policies"]
+__all__ = ["Candidates", "HistoryPolicies"]
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class Candidates:
     path: BeliefPath
     base: ForkPoint
     end: ForkPoint
-    starts: Starts
-    policies: "Policies"
+    starts: HistoryStarts
+    policies: "HistoryPolicies"
     is_alone: bool
 
     def of(self, agent: str, name: str, given: object) -> Candidate:
@@ -70,7 +70,9 @@ class Candidates:
         )
 
 
-def _strategy(recording: Recording, start: ModelStart, starts: Starts, name: str) -> Strategy:
+def _strategy(
+    recording: Recording, start: ModelStart, starts: HistoryStarts, name: str
+) -> Strategy:
     context = recording.context
     strategy = Strategy(
         start.model,
@@ -98,11 +100,11 @@ def _strategy(recording: Recording, start: ModelStart, starts: Starts, name: str
 
 
 @dataclass(eq=False)
-class Policies:
+class HistoryPolicies:
     """Policies as programs: shows each policy the course so far."""
 
     side: Recording
-    starts: Starts
+    starts: HistoryStarts
     path: BeliefPath
     faces: Faces
     _keys: dict[Course, tuple[TimelineKey, int]] = field(default_factory=dict)

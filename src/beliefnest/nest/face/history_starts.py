@@ -14,7 +14,7 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state
 from beliefnest.world.values import AgentState, Block, Items, Position
 
-__all__ = ["Doubt", "Starts"]
+__all__ = ["Doubt", "HistoryStarts"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +26,7 @@ class Doubt:
 
 
 @dataclass(eq=False)
-class Starts:
+class HistoryStarts:
     """Beginnings of histories, by the alternatives drawn."""
 
     recording: Recording

@@ -9,12 +9,12 @@ from beliefnest.belief.columns import cell_of
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.course_agreement import Agreement, Tolerance, Witness
 from beliefnest.nest.acting.courses import Candidate, CoursePlan
-from beliefnest.nest.acting.particles import Drawing, Drawn, spread
-from beliefnest.nest.acting.script import Progress
+from beliefnest.nest.acting.particles import Drawn, HistoryDraws, spread
+from beliefnest.nest.acting.script import OnProgress
 from beliefnest.nest.acting.starting import start_of
 from beliefnest.nest.face.histories import Faces, Imagined, weigh
-from beliefnest.nest.face.history_candidates import Candidates, Policies
-from beliefnest.nest.face.history_starts import Starts
+from beliefnest.nest.face.history_candidates import Candidates, HistoryPolicies
+from beliefnest.nest.face.history_starts import HistoryStarts
 from beliefnest.nest.face.imagine_arguments import Asked, Checked
 from beliefnest.nest.past.percepts import Percept, percepts_of
 from beliefnest.nest.past.recording import Recording
@@ -41,7 +41,7 @@ def imagine_in(
     path: BeliefPath,
     arguments: tuple[Any, ...],
     simulators: tuple[Callable[..., Any], Callable[..., Any]],
-    on_progress: Progress | None,
+    on_progress: OnProgress | None,
 ) -> Imagined:
     """Draw histories; see `ShownSimulator.imagine`.
 
@@ -61,13 +61,13 @@ def imagine_in(
     believed = percepts[0][1]
     filled = _filled(recording, believed, percepts)
     snapshot = start_of(journal, history, path, base, has_physics=False).snapshot
-    starts = Starts(recording, path, base, snapshot, filled, {})
+    starts = HistoryStarts(recording, path, base, snapshot, filled, {})
     side = Recording(
         recording.setting, SideJournal(journal), recording.seed, recording.renderer, "scripted"
     )
     side.selected = dict(recording.selected)
     side.records.set_run(recording.records.run())
-    policies = Policies(side, starts, path, faces)
+    policies = HistoryPolicies(side, starts, path, faces)
     candidates = Candidates(recording, path, base, end, starts, policies, len(asked.actors) == 1)
     starts.candidates = {
         agent: {name: candidates.of(agent, name, given) for name, given in named.items()}
@@ -90,7 +90,7 @@ def imagine_in(
     if checked.evidence is None:
         witness = _witness(recording, path, base, starts, plan, owner, checked.tolerance)
         agreement = Agreement(witness)
-    drawing = Drawing(plan, _drawn(starts, checked, asked.seed), agreement, asked.seed)
+    drawing = HistoryDraws(plan, _drawn(starts, checked, asked.seed), agreement, asked.seed)
     tell = on_progress or _say_nothing
     drawing.run(end.tick, lambda done, total: tell("imagining histories", done, total))
     imagined = Imagined(recording, path, base, drawing, starts, end.tick, side, faces)
@@ -120,7 +120,7 @@ def _witness(
     recording: Recording,
     path: BeliefPath,
     base: ForkPoint,
-    starts: Starts,
+    starts: HistoryStarts,
     plan: CoursePlan,
     owner: str | None,
     tolerance: Tolerance,
@@ -155,7 +155,7 @@ def _witness(
     )
 
 
-def _drawn(starts: Starts, checked: Checked, seed: int) -> list[Drawn]:
+def _drawn(starts: HistoryStarts, checked: Checked, seed: int) -> list[Drawn]:
     """Draw candidates, alternatives and hypotheses of all histories."""
     chosen: dict[str, list[Candidate]] = {}
     for agent, named in starts.candidates.items():

@@ -17,10 +17,10 @@ from beliefnest.world.event_words import EVENT_WORDS, did_to_block
 from beliefnest.world.values import Items, Point, Position
 from beliefnest.world.words import contents_words, point_words, told_apart, with_the
 
-__all__ = ["BlockAt", "Carried", "Contained", "Course", "Matter", "Owned", "Whereabouts"]
+__all__ = ["AgentPlace", "BlockAt", "Carried", "Contained", "Matter", "OwnedCount", "ValueCourse"]
 
 V = TypeVar("V")
-Course = list[tuple[int, V | None]]
+ValueCourse = list[tuple[int, V | None]]
 """Believed values, each with the tick at which the belief began; None: nothing was known."""
 
 Held = tuple[tuple[Position | str, int], ...]
@@ -43,7 +43,7 @@ class Matter(Protocol[V]):
     def value(self, held: NodeView) -> V | None:
         """Return the value that a simulator believes; None: nothing is known."""
 
-    def words(self, course: Course[V]) -> list[str]:
+    def words(self, course: ValueCourse[V]) -> list[str]:
         """Return each value of a course in words; an empty text if nothing is known."""
 
     def is_false(self, real: V | None, held: V) -> bool:
@@ -63,7 +63,7 @@ class _Amounts:
 
     item: str | None
 
-    def words(self, course: Course[Contents]) -> list[str]:
+    def words(self, course: ValueCourse[Contents]) -> list[str]:
         """Return the contents in words."""
         return [_contents_words(held, self.item) for _, held in course]
 
@@ -139,7 +139,7 @@ class Carried:
         found = tuple((where, items[self.item]) for where, items in places if self.item in items)
         return found or None
 
-    def words(self, course: Course[Held]) -> list[str]:
+    def words(self, course: ValueCourse[Held]) -> list[str]:
         """Return the containers by their names, and the agents that have the item."""
         return [", ".join(self._at(*each) for each in held or ()) for _, held in course]
 
@@ -187,7 +187,7 @@ class BlockAt:
         """Return the block."""
         return self.text(int(held.numbers[self.index]))
 
-    def words(self, course: Course[str]) -> list[str]:
+    def words(self, course: ValueCourse[str]) -> list[str]:
         """Return each block, with the properties in which the blocks of the course differ."""
         known = list(dict.fromkeys(text for _, text in course if text is not None))
         words = dict(zip(known, told_apart(known), strict=True))
@@ -209,7 +209,7 @@ class BlockAt:
 
 
 @dataclass(frozen=True, slots=True)
-class Owned(_Amounts):
+class OwnedCount(_Amounts):
     """Number of an item that an agent has.
 
     Attributes:
@@ -241,7 +241,7 @@ class Owned(_Amounts):
 
 
 @dataclass(frozen=True, slots=True)
-class Whereabouts:
+class AgentPlace:
     """Position of an agent.
 
     Attributes:
@@ -261,7 +261,7 @@ class Whereabouts:
         """Return the agent's feet position."""
         return held.agents[self.agent].position
 
-    def words(self, course: Course[Point]) -> list[str]:
+    def words(self, course: ValueCourse[Point]) -> list[str]:
         """Return places by the names of near things. An agent that walks is "on the way"."""
         runs = [list(run) for _, run in groupby(_stays(course), key=lambda stay: stay[1])]
         words: list[str] = []
@@ -309,9 +309,9 @@ class Whereabouts:
         return claim.kind is ClaimKind.POSITION and claim.agent == self.agent
 
 
-def _stays(course: Course[Point]) -> Course[Point]:
+def _stays(course: ValueCourse[Point]) -> ValueCourse[Point]:
     """Return a course in which a movement that is no real change of place is left out."""
-    stays: Course[Point] = []
+    stays: ValueCourse[Point] = []
     for tick, place in course:
         last = stays[-1][1] if stays else None
         stayed = (

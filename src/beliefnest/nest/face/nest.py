@@ -11,7 +11,7 @@ from beliefnest.belief.view import State
 from beliefnest.errors import InputError, UnknownNameError, WorldError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.acting.frame_recorder import ChatListener
-from beliefnest.nest.acting.script import Progress, play_script
+from beliefnest.nest.acting.script import OnProgress, play_script
 from beliefnest.nest.face.base import NestBase
 from beliefnest.nest.face.exploration import Attempt, Exploration, ScoreFunction, programs_by_name
 from beliefnest.nest.face.given import tick_of
@@ -39,7 +39,7 @@ from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest.worlds.servers.realtime import RealtimeWorld
 
-__all__ = ["HasSetting", "Nest", "Past", "Progress"]
+__all__ = ["HasSetting", "Nest", "OnProgress", "Past"]
 
 _PATIENCE_S = 600.0
 _LONGEST_S = 24 * 60 * 60
@@ -320,7 +320,7 @@ class Nest(NestBase):
             for tick, states in each_tick(self._recording, wanted, after, until):
                 yield tick, {path: states[names] for path, names in parsed.items()}
 
-    def play(self, on_progress: Progress | None = None) -> None:
+    def play(self, on_progress: OnProgress | None = None) -> None:
         """Play the scenario's script in the real world, from the first step that was not played.
 
         Wait for the people of the scenario first, as `wait_for_people` does.
@@ -401,7 +401,7 @@ class Nest(NestBase):
         return frozenset() if host is None or not host.invited else host.here()
 
     def wait_for_people(
-        self, timeout_s: float = _PATIENCE_S, on_progress: Progress | None = None
+        self, timeout_s: float = _PATIENCE_S, on_progress: OnProgress | None = None
     ) -> None:
         """Wait until all people of the scenario have joined. Time passes meanwhile.
 

@@ -9,13 +9,13 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError
 from beliefnest.nest.explain.made_claims import claims_made
 from beliefnest.nest.face.matters import (
+    AgentPlace,
     BlockAt,
     Carried,
     Contained,
-    Course,
     Matter,
-    Owned,
-    Whereabouts,
+    OwnedCount,
+    ValueCourse,
 )
 from beliefnest.nest.past.recording import Recording
 from beliefnest.pictures.figure import Figure
@@ -58,7 +58,7 @@ def matter_of(
         return BlockAt(block, context.box.index(block), context.block_text)
     if agent is not None:
         parse_path(path_text((agent,)), recording.agents)
-        return Whereabouts(agent, _names(recording)) if item is None else Owned(agent, item)
+        return AgentPlace(agent, _names(recording)) if item is None else OwnedCount(agent, item)
     assert item is not None
     return Carried(item, _stores(recording))
 
@@ -99,7 +99,9 @@ def plot_of(
     return belief_plot(rows, sorted(acts, key=lambda act: act.tick), matter.title)
 
 
-def _check_held(recording: Recording, container: Position, courses: Sequence[Course[Any]]) -> None:
+def _check_held(
+    recording: Recording, container: Position, courses: Sequence[ValueCourse[Any]]
+) -> None:
     """Raise InputError unless a container was ever at a position, in any of the courses."""
     if any(value is not None for course in courses for _, value in course):
         return
@@ -150,9 +152,9 @@ def _heard(
     )
 
 
-def _course(recording: Recording, path: BeliefPath, matter: Matter[V]) -> Course[V]:
+def _course(recording: Recording, path: BeliefPath, matter: Matter[V]) -> ValueCourse[V]:
     """Return the course of a simulator's values, on its timeline and those it was forked from."""
-    course: Course[V] = []
+    course: ValueCourse[V] = []
     for stretch in recording.stretches(recording.moment(path)):
         for tick, held in _held(recording, path, stretch):
             value = matter.value(held)
@@ -176,7 +178,9 @@ def _held(
         yield tick, NodeView(forest, path)
 
 
-def _bands(matter: Matter[V], course: Course[V], real: Course[V], end: int) -> tuple[Band, ...]:
+def _bands(
+    matter: Matter[V], course: ValueCourse[V], real: ValueCourse[V], end: int
+) -> tuple[Band, ...]:
     """Return the bands of a course. A new one begins where the value or its truth changes."""
     starts = sorted({tick for tick, _ in (*course, *real) if course[0][0] <= tick < end})
     starts = starts or [min(course[0][0], end)]
@@ -193,7 +197,7 @@ def _bands(matter: Matter[V], course: Course[V], real: Course[V], end: int) -> t
     return tuple(bands)
 
 
-def _number(course: Course[V], tick: int) -> int:
+def _number(course: ValueCourse[V], tick: int) -> int:
     """Return the index of a course's value at a tick; that of the first value before its start."""
     return max(0, bisect_right([start for start, _ in course], tick) - 1)
 

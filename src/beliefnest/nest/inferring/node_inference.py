@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from beliefnest.errors import InputError, TickError, TooLargeError
-from beliefnest.minds.evidence import Moment
+from beliefnest.minds.evidence import EvidenceMoment
 from beliefnest.minds.hypotheses import Hypotheses
 from beliefnest.minds.inference import Inference, reported_credence
 from beliefnest.minds.mind_model import MindModel
 from beliefnest.minds.planner import count_doubtful, count_values
-from beliefnest.minds.surroundings import Scene
+from beliefnest.minds.surroundings import Surroundings
 from beliefnest.minds.tracking import Tracker
 from beliefnest.minds.transitions import known_after
-from beliefnest.nest.inferring.perceived_course import Question, Reading
+from beliefnest.nest.inferring.perceived_course import CourseQuestion, CourseReading
 from beliefnest.nest.past.recording import Recording
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.paths import BeliefPath, path_text
@@ -75,10 +75,10 @@ class ModelStart:
     """
 
     model: MindModel
-    scene: Scene
+    scene: Surroundings
     agrees: int
     step_ticks: int
-    scenes: Sequence[Scene]
+    scenes: Sequence[Surroundings]
 
     def check_goals(self, cell: Position) -> None:
         """Raise InputError if no goal can be reached from a cell in any scene."""
@@ -106,7 +106,7 @@ class _Work:
     An inference at a later tick continues with them.
     """
 
-    reading: Reading
+    reading: CourseReading
     generation: int
     filters: dict[bytes, tuple[int, list[Tracker]]] = field(default_factory=dict)
 
@@ -145,7 +145,7 @@ def _work_on(
     if isinstance(known, _Work) and known.goes_on(recording, moment.tick):
         work = known
     else:
-        work = _Work(Reading(recording, question), recording.history.generation)
+        work = _Work(CourseReading(recording, question), recording.history.generation)
     work.reading.read(until)
     work.generation = recording.history.generation
     if not isinstance(known, _Work) or work is known or work.reading.latest >= known.reading.latest:
@@ -158,12 +158,14 @@ def _work_on(
     return work
 
 
-def _question(recording: Recording, path: BeliefPath, model: MindModel, since: int) -> Question:
+def _question(
+    recording: Recording, path: BeliefPath, model: MindModel, since: int
+) -> CourseQuestion:
     first = recording.stretches(recording.moment(path))[0]
     begin = recording.journal.info(first.timeline).start
     if since != 0 and since < begin:
         raise TickError(f"since is {since}, before the start, which is tick {begin}")
-    return Question(
+    return CourseQuestion(
         path,
         model.agent,
         dict(model.goal_values),
@@ -174,14 +176,14 @@ def _question(recording: Recording, path: BeliefPath, model: MindModel, since: i
     )
 
 
-def _check_goals(model: MindModel, moments: Sequence[Moment]) -> None:
+def _check_goals(model: MindModel, moments: Sequence[EvidenceMoment]) -> None:
     """Raise InputError if no goal can be reached in any alternative."""
     _check_reach(
         model, [(moment.scene, moment.cell) for moment in moments if moment.cell is not None]
     )
 
 
-def _check_reach(model: MindModel, places: Sequence[tuple[Scene, Position]]) -> None:
+def _check_reach(model: MindModel, places: Sequence[tuple[Surroundings, Position]]) -> None:
     if not places or any(scene.stage(cell).acts.any() for scene, cell in places):
         return
     raise InputError(
@@ -201,7 +203,7 @@ def _digest(model: MindModel, step_ticks: int) -> bytes:
 
 
 def _trackers(
-    model: MindModel, moments: Sequence[Moment], step_ticks: int, *, keeps: bool = False
+    model: MindModel, moments: Sequence[EvidenceMoment], step_ticks: int, *, keeps: bool = False
 ) -> list[Tracker]:
     """Return filters at their start, one for each chunk of utilities."""
     trackers = []
@@ -214,7 +216,7 @@ def _trackers(
 
 def _told(
     model: MindModel,
-    moments: Sequence[Moment],
+    moments: Sequence[EvidenceMoment],
     since: int,
     until: int,
     step_ticks: int,
@@ -239,7 +241,7 @@ def _told(
     return Inference(model, since, until, finished, rerun, kept, smooth=smooth)
 
 
-def _chunks(model: MindModel, moments: Sequence[Moment]) -> list[slice]:
+def _chunks(model: MindModel, moments: Sequence[EvidenceMoment]) -> list[slice]:
     """Return chunks of the utilities whose values fit into memory.
 
     Raises:

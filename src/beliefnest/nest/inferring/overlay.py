@@ -13,7 +13,7 @@ from beliefnest.belief.grounds import AgentBelief, ContainerBelief, PerceivedEve
 from beliefnest.belief.holdings import changed_items
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError
-from beliefnest.minds.alternatives import Pose, World
+from beliefnest.minds.alternatives import AgentPose, AlternativeWorld
 from beliefnest.minds.mind_model import Alternative
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.registry import Registry, parse_state
@@ -32,7 +32,7 @@ class _Held:
 
     blocks: Mapping[Position, int]
     contents: Mapping[Position, ContainerBelief | None]
-    poses: Mapping[str, tuple[Pose | None, bool]]
+    poses: Mapping[str, tuple[AgentPose | None, bool]]
 
 
 class Overlay:
@@ -163,7 +163,7 @@ class Overlay:
                     agrees[a] &= math.dist(feet, pose[0]) < _NEAR
         return sum(1 << a for a, does in enumerate(agrees) if does)
 
-    def worlds(self, view: NodeView) -> list[World]:
+    def worlds(self, view: NodeView) -> list[AlternativeWorld]:
         """Return the state of the node with the edits of each alternative."""
         count = len(self._names)
         contents: dict[Position, Items] = {
@@ -171,7 +171,7 @@ class Overlay:
             for place, held in view.containers.items()
             if held.items or held.complete
         }
-        poses: dict[str, Pose] = {
+        poses: dict[str, AgentPose] = {
             name: (agent.position, agent.yaw, agent.pitch)
             for name, agent in view.agents.items()
             if agent.position is not None and name != self._agent
@@ -187,7 +187,7 @@ class Overlay:
                 made[key] = draft.terrain()
             mine = {place: items[a] for place, items in self._contents.items()}
             feet = {name: (known[a], 0.0, 0.0) for name, known in self._feet.items()}
-            found.append(World(made[key], {**contents, **mine}, {**poses, **feet}))
+            found.append(AlternativeWorld(made[key], {**contents, **mine}, {**poses, **feet}))
         return found
 
     def digest(self, view: NodeView) -> bytes:
@@ -237,5 +237,5 @@ def _fits(items: Items, held: ContainerBelief) -> bool:
     return all(items.get(name, 0) >= count for name, count in held.items.items())
 
 
-def pose_of(agent: AgentBelief) -> Pose | None:
+def pose_of(agent: AgentBelief) -> AgentPose | None:
     return None if agent.position is None else (agent.position, agent.yaw, agent.pitch)

@@ -7,10 +7,10 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import InputError, PathError
-from beliefnest.minds.alternatives import Pose, Worlds
-from beliefnest.minds.evidence import Moment
-from beliefnest.minds.mind_model import Alternative, Goal
-from beliefnest.minds.surroundings import Scene
+from beliefnest.minds.alternatives import AgentPose, AlternativeWorlds
+from beliefnest.minds.evidence import EvidenceMoment
+from beliefnest.minds.mind_model import Alternative, PossibleGoal
+from beliefnest.minds.surroundings import Surroundings
 from beliefnest.nest.inferring.overlay import Overlay, pose_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, Entry, TimelineKey
@@ -19,11 +19,11 @@ from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.paths import BeliefPath, normalised, path_text
 from beliefnest.world.values import EventKind, Position, block_at
 
-__all__ = ["Question", "Reading"]
+__all__ = ["CourseQuestion", "CourseReading"]
 
 
 @dataclass(frozen=True, eq=False)
-class Question:
+class CourseQuestion:
     """Request to read one agent's course from one node.
 
     Attributes:
@@ -38,7 +38,7 @@ class Question:
 
     path: BeliefPath
     agent: str
-    goals: "dict[str, Goal]"
+    goals: "dict[str, PossibleGoal]"
     alternatives: tuple[Alternative, ...]
     ignores: bool
     diagonal: bool
@@ -46,7 +46,7 @@ class Question:
 
 
 @dataclass
-class Reading:
+class CourseReading:
     """Moments read from one timeline; `read` continues it.
 
     Attributes:
@@ -55,8 +55,8 @@ class Reading:
     """
 
     recording: Recording
-    question: Question
-    moments: list[Moment] = field(default_factory=list)
+    question: CourseQuestion
+    moments: list[EvidenceMoment] = field(default_factory=list)
     latest: int = -1
     _overlay: Overlay | None = None
     _agrees: int = -1
@@ -64,7 +64,7 @@ class Reading:
     _key: TimelineKey | None = None
     _position: int = 0
     _events: int = 0
-    _scene: tuple[bytes, Scene] | None = None
+    _scene: tuple[bytes, Surroundings] | None = None
 
     def read(self, until: int | None) -> None:
         """Continue to read up to a tick; None: the latest.
@@ -135,7 +135,7 @@ class Reading:
         """Drop what was read of the first tick: a branch begins there, and was edited there.
 
         Returns:
-            The claims that the agent took up in that tick before the edit, as in `Moment`.
+            The claims that the agent took up in that tick before the edit, as in `EvidenceMoment`.
         """
         told = tuple(mask for moment in self.moments for mask in moment.claims)
         question, context = self.question, self.recording.context
@@ -218,7 +218,9 @@ class Reading:
         watch = None if watching is None or not watching.current else pose_of(watching)
         opened, act, deed = self._done(events)
         self.moments.append(
-            Moment(tick, scene, cell, alike, truths, learnt, opened, act, deed, self._agrees, watch)
+            EvidenceMoment(
+                tick, scene, cell, alike, truths, learnt, opened, act, deed, self._agrees, watch
+            )
         )
 
     def _learnt(self, events: Sequence[PerceivedEvent]) -> tuple[tuple[int, ...], ...]:
@@ -260,13 +262,13 @@ class Reading:
             deed = True
         return opened, act, deed
 
-    def _scene_of(self, view: NodeView) -> Scene:
+    def _scene_of(self, view: NodeView) -> Surroundings:
         overlay, question, context = self._overlay, self.question, self.recording.context
         assert overlay is not None
         digest = overlay.digest(view)
         if self._scene is not None and self._scene[0] == digest:
             return self._scene[1]
-        worlds = Worlds(
+        worlds = AlternativeWorlds(
             context.sight,
             context.box,
             overlay.worlds(view),
@@ -286,7 +288,7 @@ class Reading:
                 question.diagonal,
             )
         )
-        scene = Scene(
+        scene = Surroundings(
             context.registry,
             worlds,
             question.goals,
@@ -297,7 +299,7 @@ class Reading:
         self._scene = (digest, scene)
         return scene
 
-    def _cell(self, scene: Scene, pose: Pose, *, on_ground: bool) -> Position:
+    def _cell(self, scene: Surroundings, pose: AgentPose, *, on_ground: bool) -> Position:
         """Return the cell of an agent; during a jump or over an edge, its previous cell."""
         x, y, z = block_at(pose[0])
         # Feet on a low block are in its place, below the cell in which the agent stands.

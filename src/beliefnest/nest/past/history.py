@@ -1,10 +1,11 @@
 """History of a nest: any node, at any entry of any timeline, computed from the journal alone.
 
-Follow-mode beliefs are pure functions of the control timelines (semantics, section 6). `History`
-keeps one forest at the head of every timeline, with the nodes that somebody has asked for; of many
-timelines, those used last. Every few thousand entries it saves this forest as a checkpoint. Forests
-of the past are folded from the last checkpoint before the wanted entry, or from the beginning of
-the timeline. All of these are caches: an answer does not depend on the forest that it comes from.
+Follow-mode beliefs are pure functions of the control timelines (semantics, section 6).
+`StateHistory` keeps one forest at the head of every timeline, with the nodes that somebody has
+asked for; of many timelines, those used last. Every few thousand entries it saves this forest as a
+checkpoint. Forests of the past are folded from the last checkpoint before the wanted entry, or from
+the beginning of the timeline. All of these are caches: an answer does not depend
+on the forest that it comes from.
 """
 
 import functools
@@ -33,7 +34,7 @@ from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import EventKind, Sign
 
-__all__ = ["History", "context_of"]
+__all__ = ["StateHistory", "context_of"]
 
 _PASTS = 4
 """Number of forests of the past that are kept."""
@@ -102,7 +103,7 @@ class _Stretch:
         forest.advance(stop)
 
 
-class History:
+class StateHistory:
     """States of any node, at any entry of any timeline of a journal.
 
     Args:

@@ -25,9 +25,9 @@ from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, EventKind, Items, Point, Position, block_at
 
-__all__ = ["Deed", "Percept", "deed_of", "percepts_of"]
+__all__ = ["DeedKey", "Percept", "deed_of", "percepts_of"]
 
-Deed = tuple[str, str, Position, tuple[tuple[str, int], ...]]
+DeedKey = tuple[str, str, Position, tuple[tuple[str, int], ...]]
 """Kind, actor, container, and the items that were seen being moved."""
 
 
@@ -57,7 +57,7 @@ class Percept:
     contents: Mapping[Position, Items]
     agents: Mapping[str, tuple[Point, float, float]]
     items: Mapping[tuple[str, Position], int]
-    deeds: tuple[Deed, ...]
+    deeds: tuple[DeedKey, ...]
     events: tuple[PerceivedEvent, ...]
     edits: tuple[Edit, ...] = ()
 
@@ -85,7 +85,7 @@ class Percept:
         )
 
 
-def deed_of(kind: EventKind, actor: str, detail: Mapping[str, Any]) -> Deed:
+def deed_of(kind: EventKind, actor: str, detail: Mapping[str, Any]) -> DeedKey:
     """Return the visible part of an action at a container."""
     items: Mapping[str, int] = detail.get("items", {})
     return (str(kind), actor, detail["position"], tuple(sorted(items.items())))

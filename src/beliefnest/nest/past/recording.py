@@ -11,7 +11,7 @@ from typing import Self
 
 from beliefnest.belief.context import BeliefContext
 from beliefnest.errors import BranchError, StoreError, TickError
-from beliefnest.nest.past.history import History
+from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
 from beliefnest.nest.past.timeline_state import TimelineState
@@ -64,7 +64,7 @@ class Recording(Barred):
         self.seed = seed
         self.renderer = Renderer() if renderer is None else renderer
         self.turn = Turn()
-        self.history = History(journal, setting, self.turn)
+        self.history = StateHistory(journal, setting, self.turn)
         self.selected: dict[BeliefPath, TimelineKey] = {(): TimelineKey((), MAIN)}
         self._latest: tuple[TimelineInfo, ForkPoint] | None = None
 

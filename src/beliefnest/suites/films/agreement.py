@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from beliefnest.suites.films.film import JudgedPart
 from beliefnest.suites.films.film_inference import Judgment
+from beliefnest.world.array_types import Floats
 
 __all__ = ["PUBLISHED", "JudgesAgreement", "agreement", "interval"]
 
@@ -22,8 +23,6 @@ _SHARE = 0.95
 _RESAMPLES = 10_000
 _CHUNK = 1_000
 _FEWEST = 3
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -8,15 +8,12 @@ import numpy.typing as npt
 from beliefnest.belief.chunk_pool import ChunkPool
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.viewer.page.runs import Runs, grid_runs, joined
+from beliefnest.world.array_types import Cells, States
 from beliefnest.world.terrain import SIDE, VOLUME
 
-__all__ = ["Cells", "GridChanges", "States"]
-
-Cells = npt.NDArray[np.int64]
-"""Flat cells of the box, rising."""
-
-States = npt.NDArray[np.int16]
-"""Numbers of blocks, -1 unknown."""
+__all__ = [
+    "GridChanges",
+]
 
 
 class GridChanges:

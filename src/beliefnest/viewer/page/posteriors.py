@@ -3,7 +3,7 @@
 from typing import Any
 
 from beliefnest.minds.charts import heat_of, panels_of
-from beliefnest.minds.findings import Change
+from beliefnest.minds.findings import EvidenceEffect
 from beliefnest.minds.inference import Inference
 from beliefnest.pictures.plan import LEAST_HEAT
 from beliefnest.pictures.posterior import PosteriorPanel
@@ -54,7 +54,7 @@ def _told_panel(panel: PosteriorPanel) -> dict[str, Any]:
     }
 
 
-def _told_change(change: Change) -> list[Any]:
+def _told_change(change: EvidenceEffect) -> list[Any]:
     factors = [[name, round(b, 2)] for name, b in change.bits.items() if b >= _LEAST_BITS]
     return [change.tick, change.text, sorted(factors, key=lambda pair: -pair[1])]
 

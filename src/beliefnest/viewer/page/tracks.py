@@ -21,10 +21,11 @@ from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.claims import claims_at, kind_of
-from beliefnest.viewer.page.grid_changes import Cells, GridChanges
+from beliefnest.viewer.page.grid_changes import GridChanges
 from beliefnest.viewer.page.pose_history import PoseBook, PoseRow
 from beliefnest.viewer.page.runs import grid_text, runs_text
 from beliefnest.viewer.page.wrong import WrongThings
+from beliefnest.world.array_types import Cells
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath, normalised
 

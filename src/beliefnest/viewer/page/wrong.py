@@ -8,11 +8,12 @@ import numpy as np
 from beliefnest.belief.forest import Forest
 from beliefnest.nest.explain.comparison import are_elsewhere, are_false
 from beliefnest.nest.explain.parts import Contents
-from beliefnest.viewer.page.grid_changes import Cells, GridChanges
+from beliefnest.viewer.page.grid_changes import GridChanges
+from beliefnest.world.array_types import Cells
 
 __all__ = ["WrongThings"]
 
-Things = tuple[str, ...]
+WrongElements = tuple[str, ...]
 """`agent-1`: its pose; `inventory-1`: its inventory; `container-7`, `block-7`: those of cell 7."""
 
 
@@ -40,11 +41,11 @@ class WrongThings:
         self._wrong_cells = [set(cells.tolist()) for cells in false]
         self._block_things = [_things_at(cells) for cells in self._wrong_cells]
         self._held: list[Any] = [None for _ in numbers]
-        self._content_things: list[Things] = [() for _ in numbers]
+        self._content_things: list[WrongElements] = [() for _ in numbers]
         self._owned: dict[int, Any] = {}
-        self._owner_things: list[Things] = [() for _ in numbers]
+        self._owner_things: list[WrongElements] = [() for _ in numbers]
 
-    def found(self, owned_changed: set[int], cells: Mapping[int, Cells]) -> list[Things]:
+    def found(self, owned_changed: set[int], cells: Mapping[int, Cells]) -> list[WrongElements]:
         """Return the false things in each node after the forest's present entry.
 
         Args:
@@ -90,7 +91,7 @@ class WrongThings:
                 if are_false(_contents(real, cell), _contents(held, cell) or _NONE)
             )
 
-    def _poses(self) -> list[Things]:
+    def _poses(self) -> list[WrongElements]:
         table, poses = self._forest.table, self._forest.poses
         pose_id, feet = table.nodes().pose, poses.arrays().feet
         known = pose_id >= 0
@@ -103,7 +104,7 @@ class WrongThings:
             found[at].append(f"agent-{agent}")
         return [tuple(things) for things in found]
 
-    def _inventories(self, number: int) -> Things:
+    def _inventories(self, number: int) -> WrongElements:
         forest = self._forest
         things = []
         for agent in range(len(forest.context.agents)):
@@ -113,7 +114,7 @@ class WrongThings:
         return tuple(things)
 
 
-def _things_at(cells: set[int]) -> Things:
+def _things_at(cells: set[int]) -> WrongElements:
     return tuple(f"block-{cell}" for cell in sorted(cells))
 
 

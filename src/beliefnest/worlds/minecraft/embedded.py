@@ -15,7 +15,7 @@ from beliefnest.worlds.minecraft import node_messages
 from beliefnest.worlds.minecraft.channel import Channel
 from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.process_limits import ProcessLimits
-from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
+from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, SenseSource, Sink
 
 __all__ = ["EmbeddedBody", "EmbeddedWorld", "NodeWorld"]
 
@@ -23,7 +23,7 @@ __all__ = ["EmbeddedBody", "EmbeddedWorld", "NodeWorld"]
 class _Telling:
     """Messages to Node about an agent's knowledge: first all of it, then the changes."""
 
-    def __init__(self, sense: Sense, box: Box) -> None:
+    def __init__(self, sense: SenseSource, box: Box) -> None:
         self._sense, self._box = sense, box
         self._told = sense()
 
@@ -100,7 +100,7 @@ class EmbeddedBody:
         self,
         programs: Mapping[str, str],
         timeout_ticks: int,
-        senses: Mapping[str, Sense] | None = None,
+        senses: Mapping[str, SenseSource] | None = None,
         rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended."""

@@ -25,7 +25,7 @@ _GAP_CHUNKS = 64
 """Distance between exhibits: more than twice the largest view distance, 32 chunks."""
 _LONGEST_NAME = 16
 
-Contents = tuple[Items, bool]
+ExhibitContents = tuple[Items, bool]
 """Known items of a container, and whether they are all."""
 
 
@@ -41,7 +41,7 @@ class Shown:
     """
 
     blocks: Terrain
-    containers: Mapping[Position, Contents]
+    containers: Mapping[Position, ExhibitContents]
     signs: Mapping[Position, str]
     agents: Mapping[str, AgentState]
 
@@ -179,5 +179,5 @@ def _shortened(name: str, length: int) -> str:
     return name[: length - end] + name[-end:]
 
 
-def _rows(containers: Iterable[tuple[Position, Contents]]) -> list[list[Any]]:
+def _rows(containers: Iterable[tuple[Position, ExhibitContents]]) -> list[list[Any]]:
     return [[*place, dict(items), complete] for place, (items, complete) in sorted(containers)]

@@ -6,10 +6,10 @@ from typing import Any
 
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import AgentState, Position, block_at
-from beliefnest.worlds.protocol import Sense, Sensed
+from beliefnest.worlds.protocol import Sensed, SenseSource
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
-__all__ = ["Body", "BotReads", "Window", "state_of"]
+__all__ = ["BotBody", "BotReads", "OpenWindow", "state_of"]
 
 _EPOCH_MS = 1_704_067_200_000
 """Start of the worlds' time, as in Minecraft's: 2024-01-01, in UTC."""
@@ -20,7 +20,7 @@ _TRUTH = {"true": True, "false": False}
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class BotBody:
     """Agent's body, as a program holds it.
 
     Attributes:
@@ -31,7 +31,7 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class OpenWindow:
     """Contents of a container, or of the bot's inventory.
 
     Attributes:
@@ -54,7 +54,7 @@ class BotReads:
         sense: What it may know of the world.
     """
 
-    def __init__(self, world: ScriptedWorld, name: str, sense: Sense) -> None:
+    def __init__(self, world: ScriptedWorld, name: str, sense: SenseSource) -> None:
         self._world, self.name, self._sense = world, name, sense
         self._sensed: tuple[int, Sensed] | None = None
         self._last: dict[str, AgentState] = {}
@@ -110,7 +110,7 @@ class BotReads:
             self._sensed = self._world.now, self._sense()
         return self._sensed[1]
 
-    def member(self, body: Body, name: str) -> Any:
+    def member(self, body: BotBody, name: str) -> Any:
         """Return a property of an agent's body for the program; None if there is no such one."""
         at = self.pose(body.name)
         values: dict[str, Any] = {

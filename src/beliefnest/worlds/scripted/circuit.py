@@ -12,13 +12,13 @@ from beliefnest.world.values import Position
 
 __all__ = ["FACES", "Circuit", "may_be_of_power"]
 
-Step = tuple[int, int, int]
+Offset = tuple[int, int, int]
 
-FACES: Sequence[Step] = ((0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0), (1, 0, 0))
+FACES: Sequence[Offset] = ((0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0), (1, 0, 0))
 """Steps to the neighbours of a block: down, up, north, south, west, east."""
 
 _DOWN, _UP = FACES[:2]
-_SIDES: Mapping[str, Step] = dict(zip(("north", "south", "west", "east"), FACES[2:], strict=True))
+_SIDES: Mapping[str, Offset] = dict(zip(("north", "south", "west", "east"), FACES[2:], strict=True))
 _OPPOSITE = {"north": "south", "south": "north", "west": "east", "east": "west"}
 _WIRE = "redstone_wire"
 _NEAR = tuple(
@@ -234,7 +234,7 @@ def _level(place: Position) -> list[Position]:
     return [_plus(place, step) for step in _SIDES.values()]
 
 
-def _plus(place: Position, step: Step) -> Position:
+def _plus(place: Position, step: Offset) -> Position:
     return (place[0] + step[0], place[1] + step[1], place[2] + step[2])
 
 

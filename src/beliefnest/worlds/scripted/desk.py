@@ -13,7 +13,7 @@ from beliefnest.worlds.scripted.interpreter import GuestError, Interpreter
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.wasm_machine import TrapError
 
-__all__ = ["Desk", "Facts", "Prepared", "TooIntricateError"]
+__all__ = ["Desk", "DeskFacts", "Prepared", "TooIntricateError"]
 
 _FUEL = 1_000_000_000
 """Fuel of one request; reading the longest usual program takes a twentieth."""
@@ -43,7 +43,7 @@ class Prepared:
 
 
 @dataclass(frozen=True, slots=True)
-class Facts:
+class DeskFacts:
     """Facts of a world that checks of arguments need.
 
     Attributes:
@@ -96,13 +96,13 @@ class Desk:
         told: int | None = self._ask("lineOf", program.code, parts().scope, statement)
         return told
 
-    def admit_skill(self, name: str, wires: Sequence[Any], facts: Facts) -> dict[str, Any]:
+    def admit_skill(self, name: str, wires: Sequence[Any], facts: DeskFacts) -> dict[str, Any]:
         """Check a call of a skill; see `admitSkill` in desk.js."""
         told: dict[str, Any] = self._remembered("admitSkill", name, wires, facts.plain)
         return told
 
     def admit_call(
-        self, kind: str, name: str, wires: Sequence[Any], facts: Facts
+        self, kind: str, name: str, wires: Sequence[Any], facts: DeskFacts
     ) -> dict[str, Any]:
         """Check a call of a method of a game object; see `admitCall` in desk.js."""
         told: dict[str, Any] = self._ask("admitCall", kind, name, wires, facts.plain)

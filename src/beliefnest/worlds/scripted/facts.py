@@ -24,7 +24,7 @@ from beliefnest.world.values import (
 
 __all__ = [
     "Pending",
-    "WorldFacts",
+    "ScriptedFacts",
     "checked_box",
     "checked_equipment",
     "checked_name",
@@ -37,7 +37,7 @@ __all__ = [
 
 
 @dataclass
-class WorldFacts:
+class ScriptedFacts:
     """State of a scripted world; it is copied before each tick, to undo a failed one."""
 
     blocks: Draft
@@ -51,9 +51,9 @@ class WorldFacts:
     plates: frozenset[Position] = frozenset()
     """Pressure plates."""
 
-    def copied(self) -> "WorldFacts":
+    def copied(self) -> "ScriptedFacts":
         """Return a copy; it shares the draft of blocks."""
-        return WorldFacts(
+        return ScriptedFacts(
             self.blocks,
             dict(self.containers),
             dict(self.agents),
@@ -90,7 +90,7 @@ class Pending:
         is_late: True at the end of the tick, when all agents have acted.
     """
 
-    def __init__(self, facts: WorldFacts) -> None:
+    def __init__(self, facts: ScriptedFacts) -> None:
         self.saved = facts.copied()
         self.replaced: list[tuple[tuple[int, int, int], int]] = []
         self.is_late = False

@@ -12,16 +12,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.geometry.bodies import ALONG_X, ALONG_Z, FLOOR, FULL, OPENS, ROOM, Codes, body_codes
+from beliefnest.geometry.bodies import (
+    ALONG_X,
+    ALONG_Z,
+    FLOOR,
+    FULL,
+    OPENS,
+    ROOM,
+    BodyCodes,
+    body_codes,
+)
 from beliefnest.world.doors import is_doorway
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Index, Terrain
 from beliefnest.world.values import Box, Position
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
-    from beliefnest.worlds.scripted.footpath_kernels import Cells
+    from beliefnest.worlds.scripted.footpath_kernels import PathCells
 
-__all__ = ["Footing", "Window"]
+__all__ = ["Footing", "WalkWindow"]
 
 _MARGIN = (1, 2, 1)
 """Cells around the box, so that every neighbour of a cell has an index."""
@@ -36,7 +45,7 @@ _STACKED = 512
 
 
 @dataclass(frozen=True, eq=False)
-class Window:
+class WalkWindow:
     """Part of a box and its margin, prepared for searches of paths.
 
     An index of it is a flat index into its cells; x is slowest, z is fastest.
@@ -48,7 +57,7 @@ class Window:
     """
 
     low: Position
-    codes: Codes
+    codes: BodyCodes
     ends: tuple[tuple[bool, bool], ...]
 
     @cached_property
@@ -74,11 +83,11 @@ class Window:
         return int(np.count_nonzero(self.codes & (ROOM | ALONG_X | ALONG_Z)))
 
     @cached_property
-    def cells(self) -> "Cells":
+    def cells(self) -> "PathCells":
         """The cells in the form of the kernels."""
-        from beliefnest.worlds.scripted.footpath_kernels import Cells
+        from beliefnest.worlds.scripted.footpath_kernels import PathCells
 
-        return Cells(self.codes.ravel(), self.shape, *self.inner)
+        return PathCells(self.codes.ravel(), self.shape, *self.inner)
 
     def index(self, cell: Position) -> int | None:
         """Return the index of a cell; None: it is outside the window."""
@@ -127,9 +136,9 @@ class Footing:
         self.has_doorways = bool((self._codes[states + 1] & (ALONG_X | ALONG_Z)).any())
         by_hand = body_codes(registry, opens=True, guesses=True)[states + 1] & OPENS
         self.has_shut_doors = not opens and bool(by_hand.any())
-        self._windows: list[Window] = []
+        self._windows: list[WalkWindow] = []
 
-    def window(self, cell: Position) -> Window | None:
+    def window(self, cell: Position) -> WalkWindow | None:
         """Return a window for walks from a cell; None: it is outside the box and its margin."""
         if self.is_whole:
             return self._whole if self._whole.index(cell) is not None else None
@@ -144,7 +153,7 @@ class Footing:
         high = [min(a + _HALF + 1, size) for a, size in zip(at, sizes, strict=True)]
         return self._keep(self._made(_index(low), _index(high)))
 
-    def wider(self, window: Window, index: int) -> Window:
+    def wider(self, window: WalkWindow, index: int) -> WalkWindow:
         """Return a wider window that replaces one, with room for steps from a cell.
 
         Args:
@@ -180,7 +189,7 @@ class Footing:
         code = self._code(place)
         return bool(code & FLOOR) and not code & (ROOM | ALONG_X | ALONG_Z)
 
-    def _near(self, cell: Position) -> tuple[Codes, Index, int, int, int]:
+    def _near(self, cell: Position) -> tuple[BodyCodes, Index, int, int, int]:
         """Return the codes of a grid that holds a cell and those above and below, and its index."""
         if self.is_whole:
             x, y, z = (a - b for a, b in zip(cell, self._whole.low, strict=True))
@@ -196,12 +205,12 @@ class Footing:
         # Above the box is air.
         return ROOM if y == self._box.high[1] + 1 and (x, y - 1, z) in self._box else 0
 
-    def _keep(self, window: Window) -> Window:
+    def _keep(self, window: WalkWindow) -> WalkWindow:
         self._windows = [window, *self._windows[: _MOST_WINDOWS - 1]]
         return window
 
     @cached_property
-    def _whole(self) -> Window:
+    def _whole(self) -> WalkWindow:
         return self._made((0, 0, 0), self._sizes)
 
     @property
@@ -212,7 +221,7 @@ class Footing:
         )
         return (x, y, z)
 
-    def _made(self, low: Index, high: Index) -> Window:
+    def _made(self, low: Index, high: Index) -> WalkWindow:
         """Return the window of the cells from index `low` to before `high`, margins included."""
         shape = (high[0] - low[0], high[1] - low[1], high[2] - low[2])
         codes = np.zeros(shape, dtype=np.uint32)
@@ -224,7 +233,7 @@ class Footing:
             codes[cut[0], above, cut[2]] = ROOM
         ends = tuple((a == 0, b == size) for a, b, size in zip(low, high, self._sizes, strict=True))
         corner = [a + b - m for a, b, m in zip(low, self._box.low, _MARGIN, strict=True)]
-        return Window((corner[0], corner[1], corner[2]), codes, ends)
+        return WalkWindow((corner[0], corner[1], corner[2]), codes, ends)
 
     def _cut(
         self, begin: Index, shape: tuple[int, int, int]

@@ -20,6 +20,7 @@ from beliefnest.geometry.steps import (
     step_cost,
 )
 from beliefnest.perception.compiling import compiled, inlined, merged
+from beliefnest.world.array_types import Ints
 from beliefnest.world.values import EYE_HEIGHT
 
 __all__ = [
@@ -28,16 +29,15 @@ __all__ = [
     "NOWHERE",
     "SCRATCH",
     "WIDER",
-    "Aim",
-    "Cells",
+    "PathAim",
+    "PathCells",
     "Queue",
     "Trail",
     "find",
     "holds_target",
 ]
 
-Flags = npt.NDArray[np.uint8]
-Ints = npt.NDArray[np.int32]
+ByteFlags = npt.NDArray[np.uint8]
 
 _DONE, AVOIDED = 1, 2
 """Marks of cells."""
@@ -49,7 +49,7 @@ WIDER = -2
 """Result of a search that needs a wider grid."""
 
 
-class Cells(NamedTuple):
+class PathCells(NamedTuple):
     """Cells of a ground, or of a part of it.
 
     Attributes:
@@ -64,7 +64,7 @@ class Cells(NamedTuple):
     last: tuple[int, int, int]
 
 
-class Aim(NamedTuple):
+class PathAim(NamedTuple):
     """Goal of a path.
 
     Attributes:
@@ -83,7 +83,7 @@ class Aim(NamedTuple):
     beside: bool
 
 
-NOWHERE = Aim(0, 0, 0, -1.0, False, False)
+NOWHERE = PathAim(0, 0, 0, -1.0, False, False)
 """Aim that no cell meets; a search for it finds the whole area."""
 
 
@@ -98,7 +98,7 @@ class Trail(NamedTuple):
 
     came: Ints
     costs: npt.NDArray[np.float64]
-    marks: Flags
+    marks: ByteFlags
 
 
 class Queue(NamedTuple):
@@ -119,7 +119,7 @@ class Queue(NamedTuple):
 
 
 @merged
-def _write_steps(cells: Cells, cell: int, found: Ints) -> int:
+def _write_steps(cells: PathCells, cell: int, found: Ints) -> int:
     """Write the cells that one step or jump leads to; return their number.
 
     `geometry.steps` has the rules. The last part of `found` is scratch memory.
@@ -162,7 +162,7 @@ def _far(x: float, y: float, z: float) -> float:
 
 
 @inlined
-def _is_met(cells: Cells, aim: Aim, x: int, y: int, z: int) -> bool:
+def _is_met(cells: PathCells, aim: PathAim, x: int, y: int, z: int) -> bool:
     """Return True if a cell meets an aim; free lines are not considered.
 
     Feet on a low block are in the place of that block, below the cell; either place counts.
@@ -178,7 +178,7 @@ def _is_met(cells: Cells, aim: Aim, x: int, y: int, z: int) -> bool:
 
 
 @compiled
-def find(cells: Cells, aim: Aim, trail: Trail, queue: Queue, found: Ints, most: int) -> int:
+def find(cells: PathCells, aim: PathAim, trail: Trail, queue: Queue, found: Ints, most: int) -> int:
     """Continue A* to the next cell that meets an aim.
 
     Args:
@@ -268,7 +268,7 @@ def _pop(queue: Queue) -> int:
 
 
 @compiled
-def holds_target(cells: Cells, aim: Aim, area: npt.NDArray[np.bool_]) -> bool:
+def holds_target(cells: PathCells, aim: PathAim, area: npt.NDArray[np.bool_]) -> bool:
     """Return True if a cell of an area meets an aim; `area` is True in it."""
     sizes, far = cells.sizes, int(min(aim.within, 1e6)) + 2
     for x in range(max(0, aim.x - far), min(sizes[0], aim.x + far + 1)):

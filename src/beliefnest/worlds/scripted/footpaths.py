@@ -15,13 +15,13 @@ from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, block_at, feet_in
-from beliefnest.worlds.scripted.footing import Footing, Window
+from beliefnest.worlds.scripted.footing import Footing, WalkWindow
 from beliefnest.worlds.scripted.free_lines import can_touch, can_use
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
-    from beliefnest.worlds.scripted.footpath_kernels import Aim, Trail
+    from beliefnest.worlds.scripted.footpath_kernels import PathAim, Trail
 
-__all__ = ["Goal", "Ground", "InReach", "Near"]
+__all__ = ["Ground", "InReach", "Near", "WalkGoal"]
 
 _MOST_CELLS = 100_000
 _TOUCH = 1e-3
@@ -79,7 +79,7 @@ def eye_in(cell: Position) -> Point:
     return (x, y + EYE_HEIGHT, z)
 
 
-Goal = Near | InReach
+WalkGoal = Near | InReach
 """Goal of a path."""
 
 
@@ -111,10 +111,10 @@ class Ground:
         self.has_doors = self._footing.has_doors
         self.has_doorways = self._footing.has_doorways
         self._lines: dict[tuple[Position, Position], bool] = {}
-        self._ways: dict[tuple[Position, Goal], tuple[Position, ...] | None] = {}
+        self._ways: dict[tuple[Position, WalkGoal], tuple[Position, ...] | None] = {}
         self._areas: list[_Area] = []
-        self._met: dict[tuple[int, Goal], bool] = {}
-        self._leads: dict[tuple[Position, Goal], bool] = {}
+        self._met: dict[tuple[int, WalkGoal], bool] = {}
+        self._leads: dict[tuple[Position, WalkGoal], bool] = {}
 
     def stands(self, cell: Position) -> bool:
         """Return True if an agent can stand in a cell."""
@@ -151,7 +151,7 @@ class Ground:
         return Ground(self._registry, self._box, self._blocks, opens=True)
 
     def way(
-        self, start: Position, goal: Goal, avoiding: AbstractSet[Position] = frozenset()
+        self, start: Position, goal: WalkGoal, avoiding: AbstractSet[Position] = frozenset()
     ) -> tuple[Position, ...] | None:
         """Return the shortest path on foot; among several always the same one.
 
@@ -181,7 +181,7 @@ class Ground:
                     self._add_area(start)
         return self._ways[wanted]
 
-    def may_lead(self, start: Position, goal: Goal) -> bool:
+    def may_lead(self, start: Position, goal: WalkGoal) -> bool:
         """Return True if a path to a goal may exist; False if none does.
 
         An area is the set of all cells that can be reached from one cell. A path exists only if
@@ -195,7 +195,7 @@ class Ground:
             known = self._leads[asked] = self._leads_there(start, goal)
         return known
 
-    def _leads_there(self, start: Position, goal: Goal) -> bool:
+    def _leads_there(self, start: Position, goal: WalkGoal) -> bool:
         from beliefnest.worlds.scripted.footpath_kernels import holds_target
 
         if self._footing.window(start) is None:
@@ -213,7 +213,7 @@ class Ground:
         return self._met[asked]
 
     def _found_way(
-        self, start: Position, goal: Goal, avoiding: Iterable[Position] = ()
+        self, start: Position, goal: WalkGoal, avoiding: Iterable[Position] = ()
     ) -> tuple[Position, ...] | None:
         """Search for a path; see `way`."""
         window = self._footing.window(start)
@@ -225,7 +225,7 @@ class Ground:
                 return search.way(end)
         return None
 
-    def meets(self, goal: Goal, cell: Position) -> bool:
+    def meets(self, goal: WalkGoal, cell: Position) -> bool:
         """Return True if a cell meets a goal; a hand also needs a free line to its block."""
         return goal.is_met(cell) and (isinstance(goal, Near) or self._has_line(cell, goal.block))
 
@@ -270,7 +270,7 @@ class _Area:
         is_complete: False if there may be more.
     """
 
-    window: Window
+    window: WalkWindow
     cells: npt.NDArray[np.bool_]
     is_complete: bool
 
@@ -289,7 +289,11 @@ class _Search:
     """
 
     def __init__(
-        self, footing: Footing, window: Window, start: Position, avoiding: Iterable[Position] = ()
+        self,
+        footing: Footing,
+        window: WalkWindow,
+        start: Position,
+        avoiding: Iterable[Position] = (),
     ) -> None:
         from beliefnest.worlds.scripted.footpath_kernels import MOST_STEPS, SCRATCH, Queue
 
@@ -319,7 +323,7 @@ class _Search:
         """True if no further cell can be found: the search did not end for its length."""
         return bool(self._queue.counts[2] < _MOST_CELLS)
 
-    def next(self, goal: Goal | None) -> int | None:
+    def next(self, goal: WalkGoal | None) -> int | None:
         """Return the index of the next cell that meets a goal; None: there is none.
 
         Args:
@@ -343,7 +347,7 @@ class _Search:
             at = before - 1
         return tuple(way[::-1])
 
-    def _emptied(self, window: Window) -> "Trail":
+    def _emptied(self, window: WalkWindow) -> "Trail":
         """Return a trail without found cells, with the cells to avoid."""
         from beliefnest.worlds.scripted.footpath_kernels import AVOIDED, Trail
 
@@ -380,10 +384,10 @@ class _Search:
         self.window, self._trail = after, new
 
 
-def _aim(goal: Goal, window: Window) -> "Aim":
-    from beliefnest.worlds.scripted.footpath_kernels import Aim
+def _aim(goal: WalkGoal, window: WalkWindow) -> "PathAim":
+    from beliefnest.worlds.scripted.footpath_kernels import PathAim
 
     x, y, z = (a - b for a, b in zip(goal.block, window.low, strict=True))
     if isinstance(goal, Near):
-        return Aim(x, y, z, float(goal.within), False, False)
-    return Aim(x, y, z, float(goal.reach), True, goal.beside)
+        return PathAim(x, y, z, float(goal.within), False, False)
+    return PathAim(x, y, z, float(goal.reach), True, goal.beside)

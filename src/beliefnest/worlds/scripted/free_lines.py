@@ -8,15 +8,14 @@ import itertools
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from beliefnest.world.array_types import Floats
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Point, Position
 
 __all__ = ["can_touch", "can_use"]
 
-Floats = npt.NDArray[np.float64]
 
 _TOUCH = 1e-9
 """Length of a line inside a box that still counts as touching, not as entering."""

@@ -17,7 +17,7 @@ from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.texts import MOST_UTTERANCES
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position, block_at, feet_in
 from beliefnest.worlds.protocol import NO_WAY
-from beliefnest.worlds.scripted.footpaths import Goal, Ground, InReach, Near
+from beliefnest.worlds.scripted.footpaths import Ground, InReach, Near, WalkGoal
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
 __all__ = [
@@ -156,7 +156,7 @@ class Hand:
         feet = self.feet
         return block_at(feet) if feet[1] == math.floor(feet[1]) else self.ground().cell_of(feet)
 
-    def has_reached(self, goal: Goal) -> bool:
+    def has_reached(self, goal: WalkGoal) -> bool:
         """Return True if the agent meets a goal; see `footpath_kernels` for feet on low blocks."""
         if self.known().meets(goal, self.cell):
             return True
@@ -199,7 +199,7 @@ def doors_in(value: Any) -> Doors:
 
 
 def _way(
-    hand: Hand, goal: Goal, doors: Doors, bumped: AbstractSet[Position]
+    hand: Hand, goal: WalkGoal, doors: Doors, bumped: AbstractSet[Position]
 ) -> tuple[Position, ...] | None:
     """Return a path that opens no door, or else one that does; avoid cells bumped into."""
     known = hand.known()
@@ -225,7 +225,7 @@ def _bring(hand: Hand, cell: Position, *, opens: bool) -> Doing:
             world.use_door(hand.name, cell, open=opens)
 
 
-def walk(hand: Hand, target: Point, goal: Goal, what: str, doors: Doors = _ANY_DOOR) -> Doing:
+def walk(hand: Hand, target: Point, goal: WalkGoal, what: str, doors: Doors = _ANY_DOOR) -> Doing:
     """Walk until the goal is met, one cell a tick; return True if the agent walked."""
     moved = False
     bumped: set[Position] = set()

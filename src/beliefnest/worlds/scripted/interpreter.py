@@ -7,7 +7,7 @@ every machine, whatever native code it runs. Each program has a memory of its ow
 from collections.abc import Callable, Sequence
 
 from beliefnest.worlds.scripted.compiled_module import compiled
-from beliefnest.worlds.scripted.sandbox_parts import INTERPRETER, State, bundled, parts
+from beliefnest.worlds.scripted.sandbox_parts import INTERPRETER, MachineState, bundled, parts
 from beliefnest.worlds.scripted.wasm_machine import Machine
 
 __all__ = ["GuestError", "Interpreter"]
@@ -96,7 +96,7 @@ class Interpreter:
     def depth(self, size: int) -> None:
         self._machine.set_number("depth", size)
 
-    def restore(self, state: State) -> None:
+    def restore(self, state: MachineState) -> None:
         """Set a state; this interpreter must be new."""
         end = max(place + len(held) for place, held in state.pieces)
         more = -(-end // _PAGE) - self._machine.size // _PAGE

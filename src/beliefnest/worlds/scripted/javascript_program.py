@@ -8,8 +8,8 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 from beliefnest.worlds.protocol import Fault, Unfinished
-from beliefnest.worlds.scripted.bot_reads import Body, BotReads, Window, state_of
-from beliefnest.worlds.scripted.desk import Desk, Facts, Prepared, TooIntricateError
+from beliefnest.worlds.scripted.bot_reads import BotBody, BotReads, OpenWindow, state_of
+from beliefnest.worlds.scripted.desk import Desk, DeskFacts, Prepared, TooIntricateError
 from beliefnest.worlds.scripted.guest import Guest, GuestEndedError, parsed
 from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
 from beliefnest.worlds.scripted.sandbox_parts import parts
@@ -91,7 +91,7 @@ class JavaScriptProgram:
         self._reads, self._skills, self._code, self._desk = reads, skills, code, desk
         self._speech_lasts = speech_lasts
         self._random = Sfc32(seed)
-        self._bag = Window("bot.inventory", lambda: reads.me.inventory, "items")
+        self._bag = OpenWindow("bot.inventory", lambda: reads.me.inventory, "items")
         self._guest: Guest | None = None
         self._prepared: Prepared | None = None
         self._objects: list[object] = [None]
@@ -303,12 +303,12 @@ class JavaScriptProgram:
         return {"$": "h", "id": self._objects.index(value), "k": kind}
 
     @property
-    def _facts(self) -> Facts:
-        return Facts(self._reads.name, self._reads.agents, self._kinds)
+    def _facts(self) -> DeskFacts:
+        return DeskFacts(self._reads.name, self._reads.agents, self._kinds)
 
     def _get(self, wire: Any, name: str) -> Any:
         kind, held = self._object(wire)
-        if isinstance(held, Body):
+        if isinstance(held, BotBody):
             value = self._reads.member(held, name)
             if value is not None:
                 return value
@@ -321,7 +321,7 @@ class JavaScriptProgram:
 
     def _call(self, wire: Any, name: str, wires: list[Any]) -> Any:
         kind, held = self._object(wire)
-        if isinstance(held, Window):
+        if isinstance(held, OpenWindow):
             if name == held.gives:
                 return [_item(*each) for each in held.items().items()]
             if name == "close":
@@ -431,8 +431,8 @@ class JavaScriptProgram:
         raise RefusedError(f"the scripted world has no mcData.{table}; {_ELSEWHERE}")
 
     def _lacks(self, kind: str, held: object, name: str) -> RefusedError:
-        what = held.what if isinstance(held, Window) else kind
-        has = (held.gives, "close") if isinstance(held, Window) else _HAS.get(kind, ())
+        what = held.what if isinstance(held, OpenWindow) else kind
+        has = (held.gives, "close") if isinstance(held, OpenWindow) else _HAS.get(kind, ())
         there = f", only {', '.join(has)}" if has else ""
         return RefusedError(f"the scripted world has no {what}.{name}{there}; {_ELSEWHERE}")
 
@@ -441,7 +441,7 @@ class JavaScriptProgram:
         if value is None:
             return _NOTHING.get(name, _UNDEFINED)
         if name == "bot.openContainer":
-            window = Window("the window of a container", lambda: value, "containerItems")
+            window = OpenWindow("the window of a container", lambda: value, "containerItems")
             return self._handle("window", window)
         return _plain(value)
 
@@ -452,7 +452,7 @@ class JavaScriptProgram:
         )
 
     def _body(self, name: str) -> Any:
-        return self._handle("entity", Body(name)) if self._reads.is_there(name) else None
+        return self._handle("entity", BotBody(name)) if self._reads.is_there(name) else None
 
     @property
     def _entities(self) -> Any:

@@ -13,7 +13,7 @@ from typing import Any
 
 from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotReads
-from beliefnest.worlds.scripted.desk import Desk, Facts
+from beliefnest.worlds.scripted.desk import Desk, DeskFacts
 from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
 
 __all__ = ["LiteralCall", "LiteralProgram", "literal_calls"]
@@ -161,7 +161,7 @@ class LiteralProgram:
             self._under_way, self.ended = None, True
             return
         call = self._under_way = self._calls.popleft()
-        facts = Facts(self._reads.name, self._reads.agents, ("bot",))
+        facts = DeskFacts(self._reads.name, self._reads.agents, ("bot",))
         told = self._desk.admit_skill(call.name, call.wires, facts)
         if "error" in told and not told.get("later"):
             self._end(told["error"])

@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 from beliefnest.errors import WorldError
 from beliefnest.world.frames import Snapshot
-from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, Sense, Sink
+from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, SenseSource, Sink
 from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.world import ScriptedWorld
@@ -51,7 +51,7 @@ class ScriptedBody:
         self,
         programs: Mapping[str, str],
         timeout_ticks: int,
-        senses: Mapping[str, Sense] | None = None,
+        senses: Mapping[str, SenseSource] | None = None,
         rules: RunRules = AS_USUAL,
     ) -> Mapping[str, ProgramResult]:
         """Run programs by agent, together, until the last has ended; see docs/scripted-world.md."""

@@ -16,8 +16,8 @@ from beliefnest.worlds.protocol import (
     Fault,
     ProgramResult,
     RunRules,
-    Sense,
     Sensed,
+    SenseSource,
 )
 from beliefnest.worlds.scripted.bot_reads import BotReads
 from beliefnest.worlds.scripted.desk import Desk
@@ -44,7 +44,7 @@ class _Run:
 
     hand: Hand
     program: JavaScriptProgram | LiteralProgram
-    sense: Sense
+    sense: SenseSource
     doing: dict[int, tuple[str, Doing]] = field(default_factory=dict)
     memory: Memory = field(default_factory=Memory)
     read: Sensed | None = None
@@ -59,7 +59,7 @@ def run_programs(
     world: ScriptedWorld,
     programs: Mapping[str, str],
     timeout_ticks: int,
-    senses: Mapping[str, Sense],
+    senses: Mapping[str, SenseSource],
     rules: RunRules,
     seed: str,
     grounds: Grounds,
@@ -105,7 +105,7 @@ class RunningPrograms:
         self,
         world: ScriptedWorld,
         programs: Mapping[str, str],
-        senses: Mapping[str, Sense],
+        senses: Mapping[str, SenseSource],
         rules: RunRules,
         seed: str,
         grounds: Grounds,
@@ -176,7 +176,7 @@ class RunningPrograms:
             for run in self._runs
         }
 
-    def _begun(self, agent: str, code: str, senses: Mapping[str, Sense], seed: str) -> _Run:
+    def _begun(self, agent: str, code: str, senses: Mapping[str, SenseSource], seed: str) -> _Run:
         world, rules, grounds, latest = self._world, self._rules, self._grounds, self._latest
 
         def all_of_it() -> Sensed:
@@ -225,7 +225,7 @@ def _begin_of(rules: RunRules, agent: str, now: int) -> int:
     return now if past is None else past.tick
 
 
-def _known(box: Box, sense: Sense, grounds: Grounds) -> Callable[[], Ground]:
+def _known(box: Box, sense: SenseSource, grounds: Grounds) -> Callable[[], Ground]:
     return lambda: grounds.of(box, sense().blocks)
 
 

@@ -10,13 +10,22 @@ from pathlib import Path
 
 import msgspec
 
-__all__ = ["INTERPRETER", "Kind", "Limits", "Meter", "Parts", "State", "bundled", "parts"]
+__all__ = [
+    "INTERPRETER",
+    "Limits",
+    "MachineState",
+    "Meter",
+    "ObjectKind",
+    "Parts",
+    "bundled",
+    "parts",
+]
 
 INTERPRETER = "quickjs.wasm"
 _FILE = "sandbox.msgpack.gz"
 
 
-class State(msgspec.Struct, frozen=True):
+class MachineState(msgspec.Struct, frozen=True):
     """Whole state of an interpreter in which no code runs.
 
     Attributes:
@@ -94,7 +103,7 @@ class Cost(msgspec.Struct, frozen=True):
     answered: int
 
 
-class Kind(msgspec.Struct, frozen=True):
+class ObjectKind(msgspec.Struct, frozen=True):
     """Members of a kind of game object, in Minecraft.
 
     Attributes:
@@ -127,13 +136,13 @@ class Parts(msgspec.Struct, frozen=True):
     exports: dict[str, str]
     imports: dict[str, str]
     scope: tuple[str, ...]
-    kinds: dict[str, Kind]
+    kinds: dict[str, ObjectKind]
     events: tuple[str, ...]
     limits: Limits
     meter: Meter
     cost: Cost
-    guest: State
-    desk: State
+    guest: MachineState
+    desk: MachineState
 
 
 def bundled(name: str) -> Path:

@@ -28,7 +28,7 @@ from beliefnest.world.values import (
 )
 from beliefnest.worlds.scripted.facts import (
     Pending,
-    WorldFacts,
+    ScriptedFacts,
     checked_box,
     sum_of,
     whole_position,
@@ -53,7 +53,7 @@ class ScriptedState(Barred):
         self._registry = Registry.load()
         self._plates = Circuits.load().plates
         self._box = checked_box(box)
-        self._facts = WorldFacts(Terrain.full(self._box.shape, AIR).draft(), {}, {}, {})
+        self._facts = ScriptedFacts(Terrain.full(self._box.shape, AIR).draft(), {}, {}, {})
 
     @property
     def box(self) -> Box:

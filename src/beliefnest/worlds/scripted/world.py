@@ -40,7 +40,7 @@ from beliefnest.world.values import (
 )
 from beliefnest.worlds.scripted.facts import (
     Pending,
-    WorldFacts,
+    ScriptedFacts,
     checked_equipment,
     checked_name,
     checked_utterance,
@@ -176,7 +176,7 @@ class ScriptedWorld(PoweredState):
         if snapshot.box != self._box:
             raise WorldError(f"a snapshot of {snapshot.box} does not fit into {self._box}")
         self._tick = snapshot.tick
-        self._facts = WorldFacts(
+        self._facts = ScriptedFacts(
             snapshot.blocks.draft(),
             {place: dict(items) for place, items in snapshot.containers.items()},
             dict(snapshot.agents),
