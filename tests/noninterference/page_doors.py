@@ -12,7 +12,7 @@ from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.cells import Cell, CellKey
 from beliefnest.studies.participants.folder import experiment
-from beliefnest.studies.participants.items import Item, Question
+from beliefnest.studies.participants.items import Item, ItemQuestion
 from beliefnest.studies.participants.playing import view_of
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.viewer.page.reasons import look_of, sight_of
@@ -54,5 +54,5 @@ def participants(world: Played, path: str) -> object:
     probe = Probe(path=path, acts_in=path, agent="ann", task="", expect=(asked,))
     key = CellKey("pair", "", None, {}, "people", "", 1, {})
     cell = Cell(key, Scenario(world.nest.setting, probes=(probe,)))
-    item = Item("item", cell, (Question("1.1", 0, asked),))
+    item = Item("item", cell, (ItemQuestion("1.1", 0, asked),))
     return experiment([(item, [view_of(world.nest, path, 0, "both")])], "both", 0)

@@ -23,7 +23,7 @@ __all__ = [
     "UNKNOWN",
     "Bases",
     "Changes",
-    "Facts",
+    "EntryFacts",
     "Grids",
     "Looks",
     "Nodes",
@@ -85,7 +85,7 @@ class Poses(NamedTuple):
     angles: Floats
 
 
-class Facts(NamedTuple):
+class EntryFacts(NamedTuple):
     """Entries of a timeline in columns; `x_at[e]` to `x_at[e + 1] - 1` are entry e's rows.
 
     Attributes:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beliefnest.belief.arrays import NOBODY, UNKNOWN, Facts
+from beliefnest.belief.arrays import NOBODY, UNKNOWN, EntryFacts
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.poses import Growing, PoseTable
 from beliefnest.world.claims import ClaimKind, claims_of, claims_written
@@ -87,8 +87,8 @@ class Columns:
         self.frames: dict[int, Frame] = {}
         self.events: list[Event] = []
         self.acts: dict[int, list[int]] = {}
-        # One column for each field of `Facts`, of the same name.
-        self._columns = {name: Growing(np.int32) for name in Facts._fields}
+        # One column for each field of `EntryFacts`, of the same name.
+        self._columns = {name: Growing(np.int32) for name in EntryFacts._fields}
         self._tick, self._event_at = self._columns["tick"], self._columns["event_at"]
         self._pose_at, self._block_at = self._columns["pose_at"], self._columns["block_at"]
         self._count_of_poses = self._count_of_blocks = 0
@@ -164,12 +164,12 @@ class Columns:
         number = bisect_left(self.claim_entries, entry)
         return self.claim_entries[number : number + 1] == [entry]
 
-    def facts(self) -> Facts:
+    def facts(self) -> EntryFacts:
         """Return the columns for the kernel.
 
         The kernel counts entries and events from the first of the stretch.
         """
-        return Facts(*(column.view() for column in self._columns.values()))
+        return EntryFacts(*(column.view() for column in self._columns.values()))
 
     def _add_event(self, entry: int, event: Event) -> None:
         context, columns = self._context, self._columns

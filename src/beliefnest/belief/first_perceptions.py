@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import Changes, Facts, Nodes, Poses, Space, Span, Weighing
+from beliefnest.belief.arrays import Changes, EntryFacts, Nodes, Poses, Space, Span, Weighing
 
 __all__ = ["FirstPerceptions"]
 
@@ -56,7 +56,7 @@ class FirstPerceptions:
         self,
         space: Space,
         poses: Poses,
-        facts: Facts,
+        facts: EntryFacts,
         nodes: Nodes,
         weighing: Weighing | None,
         changes: Changes,

@@ -13,7 +13,7 @@ from weakref import ref
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.arrays import Changes, Facts, Span
+from beliefnest.belief.arrays import Changes, EntryFacts, Span
 from beliefnest.belief.columns import Columns, place_of
 from beliefnest.belief.context import BeliefContext, SavedWriting
 from beliefnest.belief.grounds import Basis, PerceivedEvent
@@ -398,7 +398,7 @@ class Forest:
         )
 
     def _pass(
-        self, facts: Facts, changes: Changes, span: Span, which: npt.NDArray[np.bool_]
+        self, facts: EntryFacts, changes: Changes, span: Span, which: npt.NDArray[np.bool_]
     ) -> int:
         """Run the kernel, with room for new chunks as often as it needs it; see `kernel.fold`."""
         from beliefnest.belief import kernel
@@ -489,7 +489,7 @@ class Forest:
         """Let the nodes that `below` marks perceive the present state, with nothing happening."""
         context = self.context
         nothing, at = np.zeros(0, dtype=np.int32), np.zeros(2, dtype=np.int32)
-        facts = Facts(
+        facts = EntryFacts(
             np.array([self.tick], dtype=np.int32),
             *(at, nothing, nothing),
             *(at, nothing, nothing),

@@ -34,7 +34,7 @@ from beliefnest.belief.arrays import (
     UNKNOWN,
     Bases,
     Changes,
-    Facts,
+    EntryFacts,
     Grids,
     Looks,
     Nodes,
@@ -245,7 +245,7 @@ def put_all(
 @merged
 def _apply_entry(
     space: Space,
-    facts: Facts,
+    facts: EntryFacts,
     looks: Looks,
     grids: Grids,
     bases: Bases,
@@ -481,7 +481,7 @@ def _observe_chunks(
 
 
 @inlined
-def _is_common_ground(senses: SenseLimits, facts: Facts, event: int, me: int) -> bool:
+def _is_common_ground(senses: SenseLimits, facts: EntryFacts, event: int, me: int) -> bool:
     """Return True if everybody who perceives an utterance credits agent `me` with hearing it.
 
     Presence does not matter then (section 5.5).
@@ -516,7 +516,7 @@ def _hears(senses: SenseLimits, poses: Poses, looks: Looks, node: int, speaker: 
 def _perceive_events(
     space: Space,
     poses: Poses,
-    facts: Facts,
+    facts: EntryFacts,
     looks: Looks,
     grids: Grids,
     changes: Changes,
@@ -555,7 +555,7 @@ def _perceive_events(
 @merged
 def _update_absent(
     senses: SenseLimits,
-    facts: Facts,
+    facts: EntryFacts,
     looks: Looks,
     bases: Bases,
     changes: Changes,
@@ -648,7 +648,7 @@ def _observe_meetings(
 
 @inner
 def _note_watched_places(
-    facts: Facts,
+    facts: EntryFacts,
     bases: Bases,
     weighing: Weighing,
     changes: Changes,
@@ -674,7 +674,7 @@ def _note_watched_places(
 @merged
 def _begin(
     space: Space,
-    facts: Facts,
+    facts: EntryFacts,
     looks: Looks,
     grids: Grids,
     bases: Bases,
@@ -728,7 +728,7 @@ def _lacks_room(chunks: ChunkCounts | None, grids: Grids) -> bool:
 def fold(
     space: Space,
     poses: Poses,
-    facts: Facts,
+    facts: EntryFacts,
     nodes: Nodes,
     weighing: Weighing | None,
     changes: Changes,
