@@ -156,7 +156,7 @@ def test_a_list_of_exclusions_is_counted_wherever_it_comes_from(
     out = tmp_path / "out"
     result, notes = study.read_participants(out, [answers], exclude=excluded, pseudonyms=True)
     assert {row["participant"] for row in result.rows} == {"p1"}
-    told = "2 participants by a list (1 for 'said that she guessed', 1 for 'failed the check')"
+    told = "2 participants by a list (1 for 'failed the check', 1 for 'said that she guessed')"
     assert notes == (f"excluded: {told}",)
     methods = result.methods()
     assert "Of 1 participant who began" in methods

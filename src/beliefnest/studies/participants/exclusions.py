@@ -53,5 +53,5 @@ def read_exclusions(file: Path, answers: Sequence[PersonAnswer]) -> dict[str, st
 
 def excluded_words(reasons: Mapping[str, int]) -> str:
     """Return how many participants were excluded for which reasons, in words."""
-    told = [f"{count} for {reason!r}" for reason, count in reasons.items()]
+    told = [f"{count} for {reason!r}" for reason, count in sorted(reasons.items())]
     return f"{counted(sum(reasons.values()), 'participant')} by a list ({', '.join(told)})"
