@@ -41,8 +41,6 @@ __all__ = [
     "ItemsWith",
     "LeversHeld",
     "Named",
-    "NothingIn",
-    "NothingWith",
     "Pursuit",
     "SignSays",
     "agrees",
@@ -226,19 +224,36 @@ class Fact(ABC):
         return ()
 
 
-class _ItemsFact(Fact):
-    """Fact about the items of a container or an agent.
+@dataclass(frozen=True, slots=True)
+class _Items(Fact):
+    """Fact about the items of a container or an agent; without items: it has nothing.
 
     As a condition it holds if there are at least the items. As an expectation it must name exactly
     the known items.
+
+    Attributes:
+        owner: Position of the container, or name of the agent.
+        wanted: Names and counts of the items.
     """
 
-    __slots__ = ()
+    owner: Any
+    wanted: tuple[tuple[str, int], ...] = ()
+
+    @classmethod
+    def read(cls, entry: FactEntry) -> "Fact":
+        return cls(getattr(entry, cls.keys[0]), tuple((entry.items or {}).items()))
+
+    def written(self) -> dict[str, Any]:
+        return {**Fact.written(self), "items": self.counts}
 
     @property
-    @abstractmethod
-    def counts(self) -> Items:
+    def counts(self) -> dict[str, int]:
         """Return the items by name."""
+        return dict(self.wanted)
+
+    @property
+    def parts(self) -> Sequence[Fact]:
+        return [type(self)(self.owner, (each,)) for each in self.wanted] or [self]
 
     @abstractmethod
     def known(self, facts: Facts) -> Items:
@@ -246,128 +261,80 @@ class _ItemsFact(Fact):
 
     @property
     @abstractmethod
-    def words(self) -> str:
+    def has(self) -> str:
         """Return the container or agent with a verb, such as `ann has`."""
 
     def holds(self, facts: Facts) -> bool:
         known = self.known(facts)
-        return all(known.get(item, 0) >= count for item, count in self.counts.items())
+        return all(known.get(item, 0) >= count for item, count in self.wanted)
 
     def instead(self, facts: Facts) -> str | None:
         known = dict(self.known(facts))
         if known == self.counts:
             return None
-        found, wanted = (items_words(each, ids=True) or "nothing" for each in (known, self.counts))
-        return f"{self.words} {found}, not {wanted}"
-
-    def written(self) -> dict[str, Any]:
-        (key, _), value = self.keys, astuple(self)[0]  # type: ignore[call-overload]
-        return {key: list(value) if isinstance(value, tuple) else value, "items": dict(self.counts)}
+        found, wanted = (_named(each) for each in (known, self.counts))
+        return f"{self.has} {found}, not {wanted}"
 
     @property
     def items(self) -> tuple[str, ...]:
         return tuple(self.counts)
 
 
-class _InContainer(_ItemsFact):
-    """Fact about the items of a container."""
-
-    __slots__ = ()
-    keys = ("container", "items")
-    place: Position
-
-    @property
-    def words(self) -> str:
-        return f"{point_words(self.place)} holds"
-
-    def known(self, facts: Facts) -> Items:
-        return facts.items_in(self.place)
-
-    @property
-    def store(self) -> Position | None:
-        return self.place
-
-
 @dataclass(frozen=True, slots=True)
-class ItemsIn(_InContainer):
+class ItemsIn(_Items):
     """Fact: a container holds items.
 
-    Attributes:
-        place: Position of the container.
-        wanted: Names and counts of the items.
+    Contents that are not known completely do not count as nothing.
     """
 
-    place: Position
-    wanted: tuple[tuple[str, int], ...]
-
-    @classmethod
-    def read(cls, entry: FactEntry) -> "ItemsIn | None":
-        if entry.container is None or not entry.items:
-            return None
-        return cls(entry.container, tuple(entry.items.items()))
-
-    @property
-    def counts(self) -> Items:
-        return dict(self.wanted)
-
-    @property
-    def parts(self) -> Sequence[Fact]:
-        return [ItemsIn(self.place, (each,)) for each in self.wanted]
+    keys = ("container", "items")
 
     def __str__(self) -> str:
-        return f"{items_words(self.counts, ids=True)} in the container at {self.place}"
+        return f"{_named(self.counts)} in the container at {self.owner}"
+
+    @property
+    def has(self) -> str:
+        return f"{point_words(self.owner)} holds"
+
+    def known(self, facts: Facts) -> Items:
+        return facts.items_in(self.owner)
+
+    def holds(self, facts: Facts) -> bool:
+        return _Items.holds(self, facts) and bool(self.wanted or facts.is_empty(self.owner))
 
     def found(self, facts: StateFacts, named: Named) -> tuple[str, str]:
+        if not self.wanted:
+            return named(self.owner), _named(self.known(facts))
         places = [named(place) for place in facts.containers_with(self.counts)]
         return ", ".join(self.counts), " and ".join(places) or "nowhere"
 
     def effort(self, facts: PlanFacts) -> float:
         known = self.known(facts)
+        if not self.wanted:
+            return float(max(1, sum(known.values())))
         return sum(
-            max(0, count - known.get(item, 0)) * to_container(facts, self.place, item)
+            max(0, count - known.get(item, 0)) * to_container(facts, self.owner, item)
             for item, count in self.wanted
         )
 
     def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
-        deposits = _acts_at(self.place, events, EventKind.DEPOSIT_ITEM_INTO_CHEST)
+        if not self.wanted:
+            takings = _acts_at(self.owner, events, EventKind.GET_ITEM_FROM_CHEST)
+            return {each.actor for each in takings}
+        deposits = _acts_at(self.owner, events, EventKind.DEPOSIT_ITEM_INTO_CHEST)
         return {each.actor for each in deposits if self.counts.keys() & each.detail["items"].keys()}
 
     def pursuit(self, agent: str, mine: Items) -> Pursuit:
         has_some = any(mine.get(item, 0) for item in self.counts)
-        return Pursuit(near=[self.place]) if has_some else Pursuit(items=self.items)
-
-
-@dataclass(frozen=True, slots=True)
-class NothingIn(_InContainer):
-    """Fact: a container holds nothing; contents that are not known completely do not count."""
-
-    place: Position
-
-    @classmethod
-    def read(cls, entry: FactEntry) -> "NothingIn | None":
-        return None if entry.container is None or entry.items != {} else cls(entry.container)
-
-    @property
-    def counts(self) -> Items:
-        return {}
-
-    def __str__(self) -> str:
-        return f"nothing in the container at {self.place}"
-
-    def holds(self, facts: Facts) -> bool:
-        return facts.is_empty(self.place)
-
-    def found(self, facts: StateFacts, named: Named) -> tuple[str, str]:
-        return named(self.place), items_words(self.known(facts), ids=True) or "nothing"
-
-    def effort(self, facts: PlanFacts) -> float:
-        return float(max(1, sum(self.known(facts).values())))
-
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
-        return {each.actor for each in _acts_at(self.place, events, EventKind.GET_ITEM_FROM_CHEST)}
+        return Pursuit(near=[self.owner]) if has_some else Pursuit(items=self.items)
 
     def removed(self, agent: str, facts: Facts) -> Iterable[str]:
-        return self.known(facts)
+        return () if self.wanted else self.known(facts)
+
+    @property
+    def store(self) -> Position | None:
+        place: Position = self.owner
+        return place
 
 
 @dataclass(frozen=True, slots=True)
@@ -491,97 +458,55 @@ class LeversHeld(Fact):
         return is_off, far
 
 
-class _OfAgent(_ItemsFact):
-    """Fact about the items of an agent."""
+@dataclass(frozen=True, slots=True)
+class ItemsWith(_Items):
+    """Fact: an agent has items."""
 
-    __slots__ = ()
     keys = ("agent", "items")
-    agent: str
+
+    def __str__(self) -> str:
+        return f"{self.has} {_named(self.counts)}"
 
     @property
-    def words(self) -> str:
-        return f"{self.agent} has"
+    def has(self) -> str:
+        return f"{self.owner} has"
 
     def known(self, facts: Facts) -> Items:
-        return facts.items_of(self.agent)
+        return facts.items_of(self.owner)
+
+    def holds(self, facts: Facts) -> bool:
+        return _Items.holds(self, facts) and bool(self.wanted or not self.known(facts))
 
     def found(self, facts: StateFacts, named: Named) -> tuple[str, str]:
-        return f"items of {self.agent}", items_words(self.known(facts), ids=True) or "nothing"
+        return f"items of {self.owner}", _named(self.known(facts))
+
+    def effort(self, facts: PlanFacts) -> float:
+        if not self.wanted:
+            return float(sum(self.known(facts).values()))
+        return sum(to_agent(facts, self.owner, item) for item in self.items)
+
+    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+        return {self.owner}
+
+    def pursuit(self, agent: str, mine: Items) -> Pursuit:
+        return Pursuit(items=self.items) if agent == self.owner else Pursuit()
+
+    def task(self, agent: str) -> str | None:
+        if not self.wanted:
+            return None
+        return (
+            f"Get {_named(self.counts)} from a chest."
+            if self.owner == agent
+            else f"Help {self.owner}."
+        )
+
+    def removed(self, agent: str, facts: Facts) -> Iterable[str]:
+        return () if self.wanted or agent != self.owner else self.known(facts)
 
     @property
     def holder(self) -> str | None:
-        return self.agent
-
-    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
-        return {self.agent}
-
-
-@dataclass(frozen=True, slots=True)
-class ItemsWith(_OfAgent):
-    """Fact: an agent has items.
-
-    Attributes:
-        agent: Name of the agent.
-        wanted: Names and counts of the items.
-    """
-
-    agent: str
-    wanted: tuple[tuple[str, int], ...]
-
-    @classmethod
-    def read(cls, entry: FactEntry) -> "ItemsWith | None":
-        if entry.agent is None or not entry.items:
-            return None
-        return cls(entry.agent, tuple(entry.items.items()))
-
-    @property
-    def counts(self) -> Items:
-        return dict(self.wanted)
-
-    @property
-    def parts(self) -> Sequence[Fact]:
-        return [ItemsWith(self.agent, (each,)) for each in self.wanted]
-
-    def __str__(self) -> str:
-        return f"{self.words} {items_words(self.counts, ids=True)}"
-
-    def effort(self, facts: PlanFacts) -> float:
-        return sum(to_agent(facts, self.agent, item) for item in self.items)
-
-    def pursuit(self, agent: str, mine: Items) -> Pursuit:
-        return Pursuit(items=self.items) if agent == self.agent else Pursuit()
-
-    def task(self, agent: str) -> str | None:
-        if self.agent != agent:
-            return f"Help {self.agent}."
-        return f"Get {items_words(self.counts, ids=True)} from a chest."
-
-
-@dataclass(frozen=True, slots=True)
-class NothingWith(_OfAgent):
-    """Fact: an agent has no items."""
-
-    agent: str
-
-    @classmethod
-    def read(cls, entry: FactEntry) -> "NothingWith | None":
-        return None if entry.agent is None or entry.items != {} else cls(entry.agent)
-
-    @property
-    def counts(self) -> Items:
-        return {}
-
-    def __str__(self) -> str:
-        return f"{self.words} nothing"
-
-    def holds(self, facts: Facts) -> bool:
-        return not self.known(facts)
-
-    def effort(self, facts: PlanFacts) -> float:
-        return float(sum(self.known(facts).values()))
-
-    def removed(self, agent: str, facts: Facts) -> Iterable[str]:
-        return self.known(facts) if agent == self.agent else ()
+        name: str = self.owner
+        return name
 
 
 class _BlockFact(Fact):
@@ -778,11 +703,9 @@ class _NotHeard(Heard):
 
 KINDS: tuple[type[Fact], ...] = (
     ItemsIn,
-    NothingIn,
     AgentAt,
     LeversHeld,
     ItemsWith,
-    NothingWith,
     BlockIs,
     BlocksAlike,
     SignSays,
@@ -822,6 +745,11 @@ class GoalCondition:
 
     def __str__(self) -> str:
         return f"{path_text(self.path)}: {self.fact}" if self.path else str(self.fact)
+
+
+def _named(items: Items) -> str:
+    """Return items with their names in the game; `nothing` if there are none."""
+    return items_words(items, ids=True) or "nothing"
 
 
 @cache
