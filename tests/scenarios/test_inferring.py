@@ -39,8 +39,8 @@ probes:
       goals: {left: {block: gold_block}, right: {block: emerald_block}}
       utilities: {left: [0, 20, 40], right: {range: [0, 40], step: 20}}
       doubt:
-        here: {blocks: [{at: [6, 0, 1], block: emerald_block}]}
-        gone: {blocks: [{at: [6, 0, 1], block: stone}]}
+        here: [{block: [6, 0, 1], state: emerald_block}]
+        gone: [{block: [6, 0, 1], state: stone}]
       credences: {grid: 2}
     expect:
       inferred:
@@ -134,8 +134,8 @@ FAULTS = [
     ("step: 20", "step: 1.0e-4", 18, "probes[0].infer", "hypotheses"),
     ("[0, 20, 40], right", "x, right", 21, ".utilities.left", "expected"),
     ("right: {range: [0, 40], step: 20}", "middle: 3", 18, "probes[0].infer", "middle"),
-    ("gone: {blocks: [{at: [6, 0, 1]", "gone: {blocks: [{at: [5, 0, 1]", 18, ".infer", "same elem"),
-    ("gone: {blocks: [{at: [6, 0, 1]", "gone: {blocks: [{at: [7, 0, 1]", 24, "[0].at", "outside"),
+    ("gone: [{block: [6, 0, 1]", "gone: [{block: [5, 0, 1]", 18, ".infer", "same elem"),
+    ("gone: [{block: [6, 0, 1]", "gone: [{block: [7, 0, 1]", 24, "[0].block", "outside"),
     ("credences: {grid: 2}", "credences: [[0.5, 0.6]]", 18, "probes[0].infer", "sums to 1.1"),
     ("credences: {grid: 2}", "actual: away", 18, "probes[0].infer", "here, gone"),
     ("credences: {grid: 2}", "since: 4\n      until: 3", 26, ".infer.until", "before since"),

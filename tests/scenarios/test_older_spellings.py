@@ -1,5 +1,6 @@
 """Older spellings of facts in scenario files: read, with one line that says what to write."""
 
+import copy
 from typing import Any
 
 import pytest
@@ -70,6 +71,83 @@ NEW = {
         }
     },
 }
+
+
+OLD_INFERENCE = {
+    **ROOM,
+    "signs": [
+        {
+            "at": [1, 1, 1],
+            "text": "over there",
+            "claims": [
+                {"kind": "located", "item": "apple", "place": [4, 1, 4]},
+                {"kind": "absent", "item": "stick", "place": [4, 1, 4]},
+                {"kind": "position", "agent": "bob", "place": [1.5, 1, 1.5]},
+                {"kind": "block", "state": "stone", "place": [2, 1, 2]},
+            ],
+        }
+    ],
+    "probes": [
+        {
+            "path": "/ann",
+            "infer": {
+                "agent": "bob",
+                "goals": {"there": {"at": [1, 1, 4]}},
+                "utilities": {"there": 1},
+                "doubt": {
+                    "full": {
+                        "blocks": [{"at": [0, 0, 0], "block": "stone"}],
+                        "containers": [{"at": [4, 1, 4], "items": {"apple": 1}}],
+                        "agents": {"ann": [2.5, 1, 4.5]},
+                    },
+                    "empty": {
+                        "blocks": [{"at": [0, 0, 0], "block": "dirt"}],
+                        "containers": [{"at": [4, 1, 4]}],
+                        "agents": {"ann": [3.5, 1, 4.5]},
+                    },
+                },
+            },
+        }
+    ],
+}
+CLAIMED = [
+    {"container": [4, 1, 4], "items": {"apple": 1}},
+    {"container": [4, 1, 4], "lacks": "stick"},
+    {"agent": "bob", "at": [1.5, 1, 1.5]},
+    {"block": [2, 1, 2], "state": "stone"},
+]
+DOUBT = {
+    "full": [
+        {"block": [0, 0, 0], "state": "stone"},
+        {"container": [4, 1, 4], "items": {"apple": 1}},
+        {"agent": "ann", "at": [2.5, 1, 4.5]},
+    ],
+    "empty": [
+        {"block": [0, 0, 0], "state": "dirt"},
+        {"container": [4, 1, 4], "items": {}},
+        {"agent": "ann", "at": [3.5, 1, 4.5]},
+    ],
+}
+
+
+def test_older_claims_and_doubts_are_facts() -> None:
+    new = copy.deepcopy(OLD_INFERENCE)
+    new["signs"][0]["claims"] = CLAIMED
+    new["probes"][0]["infer"]["doubt"] = DOUBT
+    one, other = (bn.Scenario.from_mapping(each) for each in (OLD_INFERENCE, new))
+    assert one.setting.snapshot.sign_claims == other.setting.snapshot.sign_claims
+    models = [scenario.probes[0].infer.model for scenario in (one, other)]
+    doubts = [[vars_of(each) for each in model.alternatives] for model in models]
+    assert doubts[0] == doubts[1]
+    assert not other.warnings
+    (told,) = one.warnings
+    assert "claims as facts" in str(told)
+    in_code = bn.MindModel("bob", {"there": {"at": (1, 1, 4)}}, {"there": 1}, DOUBT)
+    assert [vars_of(each) for each in in_code.alternatives] == doubts[0]
+
+
+def vars_of(alternative: Any) -> tuple[Any, ...]:
+    return alternative.name, alternative.blocks, alternative.containers, alternative.agents
 
 
 @pytest.mark.parametrize("condition", [None, 1])

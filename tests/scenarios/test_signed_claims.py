@@ -22,7 +22,7 @@ signs:
   - at: [3, 1, 1]
     text: east
     claims:
-      - {kind: located, item: diamond, place: [8, 1, 4]}
+      - {container: [8, 1, 4], items: {diamond: 1}}
   - {at: [2, 1, 5]}
 agents:
   ann: {position: [1.5, 1, 1.5]}
@@ -61,10 +61,13 @@ def test_signs_are_read_in_every_world(tmp_path: Path, world: str) -> None:
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
-        (("item: diamond", "item: diamnd"), r":13: signs\[0\].claims\[0\].*diamnd"),
-        (("item: diamond,", ""), r":13: .*lacks 'item'"),
-        (("place: [8, 1, 4]", "place: [80, 1, 4]"), r":13: .*outside the box"),
-        (("kind: located", "kind: here"), r":13: .*here"),
+        (
+            ("{diamond: 1}}\n  - {at: [2", "{diamnd: 1}}\n  - {at: [2"),
+            r":13: signs\[0\].claims\[0\].*diamnd",
+        ),
+        ((", items: {diamond: 1}}\n  - {at: [2", "}\n  - {at: [2"), r":13: .*makes no sense"),
+        (("container: [8, 1, 4]", "container: [80, 1, 4]"), r":13: .*outside the box"),
+        (("container: [8, 1, 4], items: {diamond: 1}", "heard: east"), r":13: .*cannot be claimed"),
         (("    text: east\n", ""), r":12: .*is for signs with a text"),
     ],
 )

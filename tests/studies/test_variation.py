@@ -19,7 +19,6 @@ from beliefnest.scenarios.format import (
     AgentEntry,
     BelievedSignEntry,
     ContainerEntry,
-    DoubtEntry,
     InferEntry,
     InitialBeliefEntry,
     ProbeEntry,
@@ -183,9 +182,9 @@ signs:
     block: oak_sign[rotation=4]
     text: it is in the other one
     claims:
-      - {kind: located, item: diamond, place: [8, 1, 2]}
-      - {kind: position, agent: cid, place: [7, 1, 3]}
-      - {kind: block, place: [6, 1, 4], state: "oak_stairs[facing=east]"}
+      - {container: [8, 1, 2], items: {diamond: 1}}
+      - {agent: cid, at: [7.5, 1, 3.5]}
+      - {block: [6, 1, 4], state: "oak_stairs[facing=east]"}
 unique: [diamond]
 perception: {max_visible_distance: 6, testimony: accept}
 initial_beliefs: [{path: /bob, containers: [{at: [1, 1, 2], items: {diamond: 1}}]}]
@@ -208,7 +207,7 @@ def test_unique_items_and_what_signs_claim_move_with_the_scene(tmp_path, symmetr
         assert {at: dict(held.items) for at, held in belief.containers.items() if held.items} == {
             place: {"diamond": 1}
         }
-        assert belief.agents["cid"].position == placing.point((7, 1, 3))
+        assert belief.agents["cid"].position == placing.point((7.5, 1, 3.5))
         stairs = belief.blocks[placing.block((6, 1, 4))]
         assert f"facing={symmetry.direction('east')}" in stairs
         sign = placing.block((4, 1, 9))
@@ -224,7 +223,7 @@ def test_unique_items_and_what_signs_claim_are_renamed(tmp_path):
         assert nest["/ed"].state.containers[8, 1, 2].items == {"apple": 1}
         assert nest["/ed"].state.containers[1, 1, 2].items == {}
         told = [str(claim.claim) for claim in nest.claims()]
-        assert told[:2] == ["apple is in (8, 1, 2)", "flo is at (7, 1, 3)"]
+        assert told[:2] == ["apple is in (8, 1, 2)", "flo is at (7.5, 1, 3.5)"]
 
 
 def test_two_agents_cannot_get_one_name():
@@ -375,7 +374,6 @@ def test_every_key_of_a_scenario_is_known_in_another_scene():
         # The values that a function judges are unknown.
         ExpectEntry: {*_SHAPE["probes"].shape["expect"], "function"},
         InferEntry: _SHAPE["probes"].shape["infer"],
-        DoubtEntry: _SHAPE["probes"].shape["infer"]["doubt"].shape,
         ExpectationEntry: _SHAPE["expectations"].shape,
         FactEntry: _SHAPE["episode"]["goal"]["reach"].shape,
         EpisodeEntry: _SHAPE["episode"],

@@ -19,6 +19,7 @@ from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.facts.effort import FAR, PER_BLOCK, to_agent, to_block, to_container
 from beliefnest.facts.states import Facts, Look, PlanFacts, StateFacts
 from beliefnest.world import forms
+from beliefnest.world.claims import Claim
 from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.forms import note
 from beliefnest.world.paths import BeliefPath, path_text
@@ -39,6 +40,7 @@ __all__ = [
     "Heard",
     "ItemsIn",
     "ItemsWith",
+    "Lacks",
     "LeversHeld",
     "Named",
     "Pursuit",
@@ -82,6 +84,7 @@ class FactEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_de
         str | msgspec.UnsetType | None,
         note("name or name[property=value,...]; null: unknown.", "wanted"),
     ] = msgspec.UNSET
+    lacks: Annotated[str | None, note("An item that a container does not hold.", "item")] = None
     like: Annotated[forms.Position | None, note("A block that it must equal.", "block")] = None
     property: Annotated[str, note("Property to compare with `like`; empty: the state.", "keep")] = (
         ""
@@ -165,6 +168,16 @@ class Fact(ABC):
     def found(self, facts: StateFacts, named: Named) -> tuple[str, str]:
         """Return what was looked for, and what a state holds, for a table."""
         return str(self), "yes" if self.holds(facts) else "no"
+
+    @property
+    def claims(self) -> Sequence[Claim]:
+        """Return the claims that state the fact; none if it cannot be claimed."""
+        return ()
+
+    @property
+    def edit(self) -> tuple[str, Any, Any] | None:
+        """Return an argument of `edit` with key and value that make it so; None: none does."""
+        return None
 
     def effort(self, facts: PlanFacts) -> float:
         """Return the effort to bring about a fact that does not hold."""
@@ -300,7 +313,9 @@ class ItemsIn(_Items):
         return facts.items_in(self.owner)
 
     def holds(self, facts: Facts) -> bool:
-        return _Items.holds(self, facts) and bool(self.wanted or facts.is_empty(self.owner))
+        return _Items.holds(self, facts) and bool(
+            self.wanted or (facts.is_complete(self.owner) and not self.known(facts))
+        )
 
     def found(self, facts: StateFacts, named: Named) -> tuple[str, str]:
         if not self.wanted:
@@ -332,9 +347,55 @@ class ItemsIn(_Items):
         return () if self.wanted else self.known(facts)
 
     @property
+    def claims(self) -> Sequence[Claim]:
+        return [Claim.located(item, self.owner) for item in self.items]
+
+    @property
+    def edit(self) -> tuple[str, Any, Any] | None:
+        return "containers", self.owner, self.counts
+
+    @property
     def store(self) -> Position | None:
         place: Position = self.owner
         return place
+
+
+@dataclass(frozen=True, slots=True)
+class Lacks(Fact):
+    """Fact: a container does not hold an item; contents must be known completely.
+
+    Attributes:
+        place: Position of the container.
+        item: Name of the item.
+    """
+
+    keys = ("container", "lacks")
+    place: Position
+    item: str
+
+    def __str__(self) -> str:
+        return f"no {self.item} in the container at {self.place}"
+
+    def holds(self, facts: Facts) -> bool:
+        return facts.is_complete(self.place) and not facts.items_in(self.place).get(self.item, 0)
+
+    def effort(self, facts: PlanFacts) -> float:
+        return float(max(1, facts.items_in(self.place).get(self.item, 0)))
+
+    def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
+        takings = _acts_at(self.place, events, EventKind.GET_ITEM_FROM_CHEST)
+        return {each.actor for each in takings if self.item in each.detail["items"]}
+
+    def removed(self, agent: str, facts: Facts) -> Iterable[str]:
+        return (self.item,)
+
+    @property
+    def claims(self) -> Sequence[Claim]:
+        return [Claim.absent(self.item, self.place)]
+
+    @property
+    def store(self) -> Position | None:
+        return self.place
 
 
 @dataclass(frozen=True, slots=True)
@@ -365,6 +426,14 @@ class AgentAt(Fact):
         if self.place is None:
             return f"{self.agent} at an unknown place"
         return f"{self.agent} within {self.within:g} of {self.place}"
+
+    @property
+    def claims(self) -> Sequence[Claim]:
+        return () if self.place is None else [Claim.position(self.agent, middle_of(self.place))]
+
+    @property
+    def edit(self) -> tuple[str, Any, Any] | None:
+        return None if self.place is None else ("agents", self.agent, middle_of(self.place))
 
     @property
     def placed(self) -> str | None:
@@ -568,6 +637,14 @@ class BlockIs(_BlockFact):
         return self.state
 
     @property
+    def claims(self) -> Sequence[Claim]:
+        return () if self.state is None else [Claim.block(self.place, self.state)]
+
+    @property
+    def edit(self) -> tuple[str, Any, Any] | None:
+        return None if self.state is None else ("blocks", self.place, self.state)
+
+    @property
     def blocks(self) -> tuple[Position, ...]:
         return (self.place,)
 
@@ -703,6 +780,7 @@ class _NotHeard(Heard):
 
 KINDS: tuple[type[Fact], ...] = (
     ItemsIn,
+    Lacks,
     AgentAt,
     LeversHeld,
     ItemsWith,

@@ -1,6 +1,6 @@
 """Reading of facts: their entries, checked against the world that they are about."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -13,7 +13,16 @@ from beliefnest.world.paths import BeliefPath, parse_path
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Items, Position, block_at
 
-__all__ = ["PlainScene", "Scene", "check_entry", "conditions_of", "fact_entry", "fact_in"]
+__all__ = [
+    "PlainScene",
+    "Scene",
+    "check_entry",
+    "conditions_of",
+    "edits_of",
+    "fact_entry",
+    "fact_in",
+    "plain_entry",
+]
 
 _SCENE_KINDS = scene_kinds(FactEntry)
 
@@ -102,16 +111,33 @@ class PlainScene:
         return Registry.load().state_id(text)
 
 
-def fact_entry(given: object, scene: PlainScene) -> FactEntry:
-    """Return a fact that was given as a mapping, checked.
+def edits_of(entries: Iterable[FactEntry]) -> dict[str, dict[Any, Any]]:
+    """Return facts as the arguments of `Simulator.edit` that make them so.
 
     Raises:
-        InputError: The fact is malformed, or is about a place outside the box.
-        PathError: The belief does not exist.
-        UnknownNameError: The item or block does not exist.
+        InputError: An entry is no fact, or there is no such edit.
+    """
+    found: dict[str, dict[Any, Any]] = {}
+    for entry in entries:
+        fact = fact_in(entry)
+        if fact.edit is None or entry.path != "/":
+            raise InputError(
+                f"'{fact}' cannot be set; give the items of a container, where an "
+                "agent is, or the state of a block, and no path"
+            )
+        argument, key, value = fact.edit
+        found.setdefault(argument, {})[key] = value
+    return found
+
+
+def plain_entry(given: object) -> FactEntry:
+    """Return a fact that was given as a mapping; what it names is not checked.
+
+    Raises:
+        InputError: The fact is malformed.
     """
     try:
-        entry = msgspec.convert(given, FactEntry)
+        return msgspec.convert(given, FactEntry)
     except msgspec.ValidationError as fault:
         fields = FactEntry.__struct_fields__
         if isinstance(given, Mapping) and (others := [key for key in given if key not in fields]):
@@ -120,7 +146,17 @@ def fact_entry(given: object, scene: PlainScene) -> FactEntry:
                 f"{', '.join(fields)}, and it is about one tick"
             ) from None
         raise InputError(f"the fact {given!r} is malformed: {fault}") from None
-    return check_entry(entry, (), scene)
+
+
+def fact_entry(given: object, scene: PlainScene) -> FactEntry:
+    """Return a fact that was given as a mapping, checked.
+
+    Raises:
+        InputError: The fact is malformed, or is about a place outside the box.
+        PathError: The belief does not exist.
+        UnknownNameError: The item or block does not exist.
+    """
+    return check_entry(plain_entry(given), (), scene)
 
 
 def check_entry(entry: FactEntry, path: Where, scene: Scene) -> FactEntry:

@@ -17,8 +17,8 @@ class Facts(Protocol):
     def items_in(self, place: Position) -> Items:
         """Return the items known to be in a container; empty if nothing is known."""
 
-    def is_empty(self, place: Position) -> bool:
-        """Return True if a container is known to hold nothing."""
+    def is_complete(self, place: Position) -> bool:
+        """Return True if the contents of a container are known completely."""
 
     def items_of(self, agent: str) -> Items:
         """Return the items that an agent is known to have."""
@@ -81,10 +81,10 @@ class ViewFacts:
         known = self._view.containers.get(place)
         return {} if known is None else known.items
 
-    def is_empty(self, place: Position) -> bool:
-        """Return True if a container is known to hold nothing."""
+    def is_complete(self, place: Position) -> bool:
+        """Return True if the contents of a container are known completely."""
         known = self._view.containers.get(place)
-        return known is not None and known.complete and not known.items
+        return known is not None and known.complete
 
     def items_of(self, agent: str) -> Items:
         """Return items that an agent is known to have."""

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import InputError
+from beliefnest.facts.reading import edits_of, plain_entry
 from beliefnest.world.array_types import Floats
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
@@ -116,8 +117,8 @@ class MindModel:
         goals: Goals by name: `{"at": cell}`, `{"block": name}` or `{"item": name}`.
         utilities: Values to consider by goal (all combinations, the last goal fastest), or a list
             of mappings from goal to value. A value is in units of the cost of one step.
-        doubt: Alternatives by name, each a mapping of `blocks`, `containers` and `agents` to
-            edits; None: the agent knows the world.
+        doubt: Alternatives by name, each a list of facts, or the same as a mapping of `blocks`,
+            `containers` and `agents` to edits; None: the agent knows the world.
         credences: Initial credences to consider, rows over the alternatives in their order; None:
             the uniform one.
         actual: None: alternatives that agree with the observer's node; a name; `"unknown"`; or
@@ -142,7 +143,7 @@ class MindModel:
     agent: str
     goals: Mapping[str, Mapping[str, Any]]
     utilities: Mapping[str, Any] | Sequence[Mapping[str, float]]
-    doubt: Mapping[str, Mapping[str, Any]] | None = None
+    doubt: Mapping[str, Any] | None = None
     credences: npt.ArrayLike | None = None
     actual: str | Mapping[str, float] | None = None
     prior: npt.ArrayLike | None = None
@@ -246,7 +247,7 @@ class MindModel:
         self._set("rationalities", tuple(float(each) for each in listed))
 
 
-def read_doubt(doubt: Mapping[str, Mapping[str, Any]] | None) -> tuple[Alternative, ...]:
+def read_doubt(doubt: Mapping[str, Any] | None) -> tuple[Alternative, ...]:
     """Check and return the alternatives of a doubt; None: one without edits.
 
     Raises:
@@ -290,9 +291,12 @@ def _values(each: Alternative) -> tuple[object, ...]:
 def _read_alternative(name: object, edits: object) -> Alternative:
     if not isinstance(name, str) or not name:
         raise InputError(f"an alternative is called {name!r}; give it a name")
+    if isinstance(edits, list | tuple):
+        edits = edits_of(map(plain_entry, edits))
     if not isinstance(edits, Mapping) or set(edits) - {"blocks", "containers", "agents"}:
         raise InputError(
-            f"alternative {name!r} is {edits!r}; give a mapping with blocks, containers or agents"
+            f"alternative {name!r} is {edits!r}; give a list of facts, or a mapping with blocks, "
+            "containers or agents"
         )
     registry = Registry.load()
     blocks = {}

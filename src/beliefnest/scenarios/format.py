@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
+from beliefnest.facts.kinds import FactEntry
 from beliefnest.perception.options import Perception
 from beliefnest.scenarios.expected import ExpectEntry
 from beliefnest.scenarios.expected_state import ExpectationEntry
@@ -20,7 +21,6 @@ __all__ = [
     "BelievedSignEntry",
     "BlockEntry",
     "ContainerEntry",
-    "DoubtEntry",
     "EquipmentEntry",
     "FloorEntry",
     "GridEntry",
@@ -101,28 +101,13 @@ _SignText = Annotated[
 ]
 
 
-class ClaimEntry(_Entry, frozen=True):
-    """A claim that a text makes."""
-
-    kind: Annotated[
-        Literal["located", "absent", "position", "block"],
-        note("An item is in a container, or not; an agent is at a place; a block has a state."),
-    ]
-    place: Annotated[
-        Point, note("Position of the container, of the agent's feet, or of the block.")
-    ]
-    item: Annotated[str | None, note("The item of `located` and `absent`.")] = None
-    agent: Annotated[str | None, note("The agent of `position`.")] = None
-    state: Annotated[str | None, note("The block of `block`: name[property=value,...].")] = None
-
-
 class SignEntry(_Entry, frozen=True):
     """A sign with its block and its text."""
 
     at: Annotated[Position, note("Position of its block.")]
     text: _SignText = ""
     block: Annotated[str, note("A block state of a sign.")] = "oak_sign"
-    claims: Annotated[list[ClaimEntry], note("Claims of the text, for its readers.")] = []
+    claims: Annotated[list[FactEntry], note("Claims of the text, for its readers.")] = []
 
 
 class BelievedSignEntry(_Entry, frozen=True):
@@ -192,7 +177,7 @@ class LegendEntry(_AgentAttributes, frozen=True, kw_only=True):
     label: _LabelField = ""
     looks: _LooksField = ""
     sign: Annotated[_SignText | None, note("A sign with this text.")] = None
-    claims: Annotated[list[ClaimEntry], note("Claims of the sign's text, for its readers.")] = []
+    claims: Annotated[list[FactEntry], note("Claims of the sign's text, for its readers.")] = []
     agent: Annotated[str | None, note("Name of an agent that stands here.")] = None
     place: Annotated[str | None, note("Name of this place.")] = None
     floor: Annotated[str | None, note("The block below, instead of the floor of the map.")] = None
@@ -299,28 +284,6 @@ class GridEntry(_Entry, frozen=True):
     ] = 0.0
 
 
-class _DoubtedBlockEntry(_Entry, frozen=True):
-    """A block in an alternative."""
-
-    at: Annotated[Position, note("Its position.")]
-    block: Annotated[str, note("A block state: name or name[property=value,...].")]
-
-
-class _DoubtedContainerEntry(_Entry, frozen=True):
-    """The complete contents of a container in an alternative."""
-
-    at: Annotated[Position, note("Its position.")]
-    items: _ItemsField = {}
-
-
-class DoubtEntry(_Entry, frozen=True):
-    """An alternative state of the world; all alternatives set the same blocks and contents."""
-
-    blocks: Annotated[list[_DoubtedBlockEntry], note("Blocks.")] = []
-    containers: Annotated[list[_DoubtedContainerEntry], note("Contents of containers.")] = []
-    agents: Annotated[dict[str, Point], note("Middle of the feet, by agent.")] = {}
-
-
 class InferEntry(_Entry, frozen=True):
     """Inference of an agent's goals and beliefs from its motion, as known at the probe's `path`.
 
@@ -336,8 +299,11 @@ class InferEntry(_Entry, frozen=True):
         note("Values to consider by goal, all combinations; or a list of combinations."),
     ]
     doubt: Annotated[
-        dict[str, DoubtEntry] | None,
-        note("Alternatives that the agent cannot tell apart; null: it knows the world."),
+        dict[str, list[FactEntry]] | None,
+        note(
+            "Alternatives that the agent cannot tell apart: facts that all of them state of the "
+            "same things; null: it knows the world."
+        ),
     ] = None
     credences: Annotated[
         list[list[float]] | GridEntry | None,

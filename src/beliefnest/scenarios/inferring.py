@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING, Any
 from msgspec.structs import asdict
 
 from beliefnest.errors import InputError, PathError, ScenarioError, TickError
+from beliefnest.facts.reading import check_entry, edits_of
 from beliefnest.minds.mind_model import MindModel, simplex_grid
-from beliefnest.scenarios.checks import check_inside
+from beliefnest.scenarios.checks import Checks, check_inside
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import (
-    DoubtEntry,
     GridEntry,
     InferEntry,
     LevelsEntry,
 )
-from beliefnest.world.double_chests import container_at, states_in
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.values import Items, Position
 
 if TYPE_CHECKING:
     from beliefnest.minds.inference import Inference
@@ -103,6 +103,21 @@ class Inferred:
         )
 
 
+class _Supposed(Checks):
+    """Checks of alternatives, in which blocks may be containers that are none in the scene."""
+
+    __slots__ = ()
+
+    def container(self, path: KeyPath, position: Position) -> Position:
+        """Return the position of the container to which a block belongs or would belong."""
+        self.inside(path, position)
+        return self.container_at(position)
+
+    def contents(self, path: KeyPath, place: Position, items: Items) -> None:
+        """Refuse unknown items; how many fit depends on the block."""
+        self.possessions(path, items)
+
+
 def means_text(means: Mapping[str, float], factors: Sequence[str] = ()) -> str:
     """Return the means of some factors in words; without names, of all factors."""
     return ", ".join(f"{name} {means[name]:.3g}" for name in factors or means)
@@ -119,9 +134,13 @@ def build_inferring(
     _check(document, path, entry, snapshot)
     doubt = None
     if entry.doubt is not None:
+        checks = _Supposed(document, snapshot, Registry.load())
         doubt = {
-            name: _alternative(document, (*path, "doubt", name), each, snapshot)
-            for name, each in entry.doubt.items()
+            name: edits_of(
+                check_entry(each, (*path, "doubt", name, number), checks)
+                for number, each in enumerate(facts)
+            )
+            for name, facts in entry.doubt.items()
         }
     utilities = _utilities(document, (*path, "utilities"), entry)
     _check_count(document, path, entry)
@@ -211,25 +230,3 @@ def _check_count(document: Document, path: KeyPath, entry: InferEntry) -> None:
             f"has {count * alternatives:,} hypotheses, at most {MOST_HYPOTHESES:,} are possible; "
             "name fewer utilities, or a coarser grid of credences",
         )
-
-
-def _alternative(
-    document: Document, path: KeyPath, entry: DoubtEntry, snapshot: Snapshot
-) -> dict[str, Any]:
-    """Return one alternative as `MindModel` takes it."""
-    for number, block in enumerate(entry.blocks):
-        check_inside(document, (*path, "blocks", number, "at"), block.at, snapshot.box)
-    registry = Registry.load()
-    state_at = states_in(snapshot.box, snapshot.blocks, registry.air)
-    contents = {}
-    for number, container in enumerate(entry.containers):
-        check_inside(document, (*path, "containers", number, "at"), container.at, snapshot.box)
-        contents[container_at(registry, state_at, container.at)] = dict(container.items)
-    for agent in entry.agents:
-        if agent not in snapshot.agents:
-            raise document.fault((*path, "agents", agent), f"there is no agent {agent!r}")
-    return {
-        "blocks": {block.at: block.block for block in entry.blocks},
-        "containers": contents,
-        "agents": dict(entry.agents),
-    }

@@ -1,6 +1,6 @@
 """Older spellings of facts in scenario files, rewritten into today's (docs/facts.md)."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,6 +13,15 @@ _OLD_WITHIN = 2.0
 
 _UNKNOWN = {"agent": ("at", "items"), "block": ("state", "like"), "sign": ("text",)}
 """Keys of a fact by its subject. Without any of them, an expectation meant something unknown."""
+
+_PLACES = {"position": "at", "block": "block"}
+"""Keys of places in claims, by kind."""
+
+_ALTERED: tuple[tuple[str, dict[str, str], dict[Any, YamlNode]], ...] = (
+    ("blocks", {"at": "block", "block": "state"}, {}),
+    ("containers", {"at": "container"}, {"items": YamlNode({})}),
+)
+"""Lists in alternatives of a doubt: their keys with those of facts, and usual values."""
 
 _Nodes = dict[Any, YamlNode]
 
@@ -47,6 +56,8 @@ class _Spelling:
     def scene(self, content: _Nodes, base: _Nodes | None = None) -> _Nodes:
         """Return the content of a document, or the overrides of one of its conditions."""
         found = dict(content)
+        if "signs" in content:
+            found["signs"] = self._each(content["signs"], self._sign)
         for key, entry in (("expectations", self._expectation), ("probes", self._probe)):
             if key not in content:
                 continue
@@ -59,6 +70,12 @@ class _Spelling:
                     for label, node in value.items()
                 }
             found[key] = replace(content[key], value=value)
+        legend = _inner(content.get("map", YamlNode(None)), "legend")
+        if legend is not None:
+            legend = {character: self._sign(node) for character, node in legend.items()}
+            drawn = {**content["map"].value}
+            drawn["legend"] = replace(drawn["legend"], value=legend)
+            found["map"] = replace(content["map"], value=drawn)
         conditions = content.get("conditions")
         if base is None and conditions is not None and isinstance(conditions.value, dict):
             overrides = {
@@ -89,9 +106,18 @@ class _Spelling:
 
     def _probe(self, node: YamlNode, usual: Mapping[str, Any]) -> Any:
         """Return a probe; `usual` is the entry that it overrides, if it overrides one."""
+        if not isinstance(node.value, dict):
+            return node.value
+        probe = dict(node.value)
+        doubt = _inner(probe.get("infer", YamlNode(None)), "doubt")
+        if doubt is not None:
+            inner = {**probe["infer"].value}
+            alternatives = {name: self._alternative(each) for name, each in doubt.items()}
+            inner["doubt"] = replace(inner["doubt"], value=alternatives)
+            probe["infer"] = replace(probe["infer"], value=inner)
         expect = _inner(node, "expect")
         if expect is None:
-            return node.value
+            return probe
         entry = dict(expect)
         before = _inner(YamlNode(usual), "expect") or {}
         for key in ("opens", "arrives", "intends"):
@@ -102,14 +128,59 @@ class _Spelling:
             entry["within"] = YamlNode(_OLD_WITHIN)
             self._note(f"'within: {_OLD_WITHIN:g}' beside 'arrives' and 'intends'", node)
         for key, change in (("answers", self._question), ("believes", self._believes)):
-            if key not in entry:
-                continue
-            value = entry[key].value
-            changed = [change(each) for each in value] if isinstance(value, list) else None
-            entry[key] = (
-                change(entry[key]) if changed is None else replace(entry[key], value=changed)
+            if key in entry:
+                entry[key] = self._each(entry[key], change)
+        probe["expect"] = replace(probe["expect"], value=entry)
+        return probe
+
+    @staticmethod
+    def _each(node: YamlNode, change: Callable[[YamlNode], YamlNode]) -> YamlNode:
+        """Change each entry of a list, or a single entry."""
+        if isinstance(node.value, list):
+            return replace(node, value=[change(each) for each in node.value])
+        return change(node)
+
+    def _sign(self, node: YamlNode) -> YamlNode:
+        if not isinstance(node.value, dict) or "claims" not in node.value:
+            return node
+        claims = self._each(node.value["claims"], self._claim)
+        return replace(node, value={**node.value, "claims": claims})
+
+    def _claim(self, node: YamlNode) -> YamlNode:
+        """Return the fact of a claim."""
+        if not isinstance(node.value, dict) or not {"kind", "place"} <= node.value.keys():
+            return node
+        told = dict(node.value)
+        kind, place = told.pop("kind"), told.pop("place")
+        item = told.pop("item", YamlNode(None))
+        if kind.value == "located":
+            told |= {"container": place, "items": YamlNode({item.value: YamlNode(1)}, item.line)}
+        elif kind.value == "absent":
+            told |= {"container": place, "lacks": item}
+        elif kind.value in _PLACES:
+            told[_PLACES[kind.value]] = place
+        else:
+            return node
+        self._note("claims as facts, such as 'container' and 'items'", node)
+        return replace(node, value=told)
+
+    def _alternative(self, node: YamlNode) -> YamlNode:
+        """Return the facts of an alternative of a doubt."""
+        if not isinstance(node.value, dict):
+            return node
+        self._note("the alternatives of 'doubt' as lists of facts", node)
+        facts = [
+            replace(
+                each, value=usual | {keys.get(key, key): part for key, part in each.value.items()}
             )
-        return {**node.value, "expect": replace(node.value["expect"], value=entry)}
+            for kind, keys, usual in _ALTERED
+            for each in _listed(node.value.get(kind))
+        ]
+        facts += [
+            YamlNode({"agent": YamlNode(agent), "at": feet}, feet.line)
+            for agent, feet in (_inner(node, "agents") or {}).items()
+        ]
+        return replace(node, value=facts)
 
     def _believes(self, node: YamlNode) -> YamlNode:
         return replace(node, value=self._expectation(node, {}))
@@ -135,9 +206,14 @@ class _Spelling:
 
 def _labelled(node: YamlNode | None) -> dict[Any, _Nodes]:
     """Return the entries of a list by label."""
-    entries = node.value if node is not None and isinstance(node.value, list) else []
-    mappings = [entry.value for entry in entries if isinstance(entry.value, dict)]
+    mappings = [entry.value for entry in _listed(node)]
     return {each["label"].value: each for each in mappings if _is_text(each.get("label"))}
+
+
+def _listed(node: YamlNode | None) -> list[YamlNode]:
+    """Return the mappings in a list."""
+    entries = node.value if node is not None and isinstance(node.value, list) else []
+    return [each for each in entries if isinstance(each.value, dict)]
 
 
 def _is_text(node: YamlNode | None) -> bool:

@@ -3,13 +3,11 @@
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 
-import msgspec
-
+from beliefnest.facts.reading import fact_in
 from beliefnest.scenarios.checks import check_inside, check_items
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import BlockEntry, ContainerEntry, ScenarioFile
 from beliefnest.scenarios.terrain_entry import terrain_in
-from beliefnest.world.claims import claims_from_plain
 from beliefnest.world.double_chests import container_at, holds_items, states_in, whole_chests
 from beliefnest.world.frames import PlainClaims
 from beliefnest.world.limits import box_fault, slots_at
@@ -121,11 +119,19 @@ def build_sign_claims(
         for index, told in enumerate(entry.claims):
             path = ("signs", number, "claims", index)
             with document.naming(path):
-                (claim,) = claims_from_plain((msgspec.to_builtins(told),))
-                claim.check(box, file.agents)
+                claims = fact_in(told).claims
+                for claim in claims:
+                    claim.check(box, file.agents)
+            if not claims or told.path != "/":
+                raise document.fault(
+                    path,
+                    "cannot be claimed; claim items or `lacks` of a container, or where an "
+                    "agent is, or the state of a block, and no belief",
+                )
             if entry.at not in texts:
                 raise document.fault(path, "is for signs with a text; add `text`")
-            found[entry.at] = (*found.get(entry.at, ()), claim.of_whole(whole).plain())
+            plain = (claim.of_whole(whole).plain() for claim in claims)
+            found[entry.at] = (*found.get(entry.at, ()), *plain)
     return found
 
 

@@ -56,19 +56,6 @@ class _Map:
 
 
 @dataclass(frozen=True, slots=True)
-class _ByKind:
-    """Mapping whose shape depends on its value of `kind`.
-
-    Attributes:
-        shape: Shape of most kinds.
-        shapes: Shapes of the other kinds, by name.
-    """
-
-    shape: Any
-    shapes: Mapping[str, Any]
-
-
-@dataclass(frozen=True, slots=True)
 class _OrMapping:
     """Value of one shape, or a mapping of another shape."""
 
@@ -79,10 +66,6 @@ class _OrMapping:
 _ITEMS = _Map("item", "keep")
 _CORNERS = _Each("block")
 _BLOCKS = _Each({"block": "state", "at": "block", "fill": _CORNERS, "walls": _CORNERS})
-_CLAIM = {"kind": "keep", "place": "block", "item": "item", "agent": "agent", "state": "wanted"}
-# The place of an agent is a point, even if its coordinates are whole numbers.
-_CLAIMS = _Each(_ByKind(_CLAIM, {"position": {**_CLAIM, "place": "point"}}))
-_SIGNS = _Each({"at": "block", "text": "text", "block": "state", "claims": _CLAIMS})
 _EQUIPMENT = dict.fromkeys(("head", "chest", "legs", "feet", "main_hand", "off_hand"), "item")
 
 
@@ -97,6 +80,8 @@ def _shapes(form: type[msgspec.Struct]) -> dict[str, Any]:
     return {key: _shape(kind) for key, kind in scene_kinds(form).items()}
 
 
+_FACT = _shapes(FactEntry)
+_SIGNS = _Each({"at": "block", "text": "text", "block": "state", "claims": _Each(_FACT)})
 _EXPECTATION = _shapes(ExpectationEntry)
 _BELIEVED = _shapes(BelievedEntry)
 _ASKED = _shapes(AnswersEntry)
@@ -111,14 +96,7 @@ _EXPECT = {
 _INFER = {
     "agent": "agent",
     "goals": _Map("keep", {"at": "block", "block": "keep", "item": "item"}),
-    "doubt": _Map(
-        "keep",
-        {
-            "blocks": _Each({"at": "block", "block": "state"}),
-            "containers": _Each({"at": "block", "items": _ITEMS}),
-            "agents": _Map("agent", "point"),
-        },
-    ),
+    "doubt": _Map("keep", _Each(_FACT)),
     **dict.fromkeys(
         (
             *("utilities", "credences", "actual", "prior", "rationality", "discount"),
@@ -128,10 +106,9 @@ _INFER = {
         "keep",
     ),
 }
-_CONDITION = _shapes(FactEntry)
 _GOAL = {
-    "reach": _Each(_CONDITION),
-    "never": _Each(_CONDITION),
+    "reach": _Each(_FACT),
+    "never": _Each(_FACT),
     "messages": "keep",
     "ticks": "keep",
     "helps": "agent",
@@ -275,9 +252,6 @@ def _changed(
     if not isinstance(node.value, dict):
         # A value of the wrong form: the later check of the form reports it.
         return node
-    if isinstance(shape, _ByKind):
-        kind = node.value.get("kind")
-        shape = shape.shapes.get("" if kind is None else str(kind.value), shape.shape)
     inner = {}
     for key, child in node.value.items():
         if key == "conditions" and not path:

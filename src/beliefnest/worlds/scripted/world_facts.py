@@ -23,9 +23,9 @@ class WorldFacts:
         """Return the items in a container."""
         return self._world.containers.get(self._world.container_at(place), {})
 
-    def is_empty(self, place: Position) -> bool:
-        """Return True if there is a container that holds nothing."""
-        return self._world.containers.get(self._world.container_at(place)) == {}
+    def is_complete(self, place: Position) -> bool:
+        """Return True if there is a container: all is known of a world."""
+        return self._world.container_at(place) in self._world.containers
 
     def items_of(self, agent: str) -> Items:
         """Return the items that an agent has."""
