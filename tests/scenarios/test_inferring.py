@@ -46,7 +46,7 @@ probes:
       inferred:
         utility.right: {above: utility.left, below: 40}
 expectations:
-  - {path: /bob, agent: ann, position: [5.5, 1, 1.5]}
+  - {path: /bob, agent: ann, at: [5.5, 1, 1.5]}
 """
 
 

@@ -14,8 +14,8 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Items, Position, block_at
 
 __all__ = [
+    "FactScene",
     "PlainScene",
-    "Scene",
     "check_entry",
     "conditions_of",
     "edits_of",
@@ -30,7 +30,7 @@ Where = tuple[str | int, ...]
 """Keys and list indices from the top of a document to an entry or a value of it."""
 
 
-class Scene(Protocol):
+class FactScene(Protocol):
     """Protocol of checks of names and places; each raises an error that names the key."""
 
     def fault(self, path: Where, message: str) -> BeliefNestError:
@@ -159,7 +159,7 @@ def fact_entry(given: object, scene: PlainScene) -> FactEntry:
     return check_entry(plain_entry(given), (), scene)
 
 
-def check_entry(entry: FactEntry, path: Where, scene: Scene) -> FactEntry:
+def check_entry(entry: FactEntry, path: Where, scene: FactScene) -> FactEntry:
     """Return an entry with the whole container if it names half of one; check all that it names.
 
     Args:

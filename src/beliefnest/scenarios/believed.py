@@ -21,9 +21,9 @@ from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import listed, point_words
 
-__all__ = ["Believed", "BelievedEntry", "Look", "bare_words"]
+__all__ = ["Believed", "BelievedEntry", "StateOf", "bare_words"]
 
-Look = Callable[[str], State]
+StateOf = Callable[[str], State]
 """Function from a belief path to the state after the script."""
 
 _UNKNOWN = "unknown"
@@ -139,7 +139,7 @@ class Believed:
         holder = "in reality" if self.path == "/" else f"as {self.path} believes"
         return f"{self.kind} {thing.replace('_', ' ')}, {holder}"
 
-    def answers(self, look: Look, naming: Naming, options: Sequence[str]) -> tuple[str, ...]:
+    def answers(self, look: StateOf, naming: Naming, options: Sequence[str]) -> tuple[str, ...]:
         """Return the right answers: options, or texts if there are no options.
 
         An item that is believed to be in several places has several right answers.
@@ -161,7 +161,7 @@ class Believed:
         """Return texts of a right answer in words: those given, and other words for `unknown`."""
         return (*right, *_NOT_KNOWN) if _UNKNOWN in right else tuple(right)
 
-    def place(self, look: Look, naming: Naming) -> Point:
+    def place(self, look: StateOf, naming: Naming) -> Point:
         """Return the one place of an item or agent; containers have the place of their block.
 
         Raises:

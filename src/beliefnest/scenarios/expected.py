@@ -14,7 +14,7 @@ import msgspec
 
 from beliefnest.facts.kinds import WITHIN
 from beliefnest.nest.past.setting import Setting
-from beliefnest.scenarios.believed import Believed, BelievedEntry, Look
+from beliefnest.scenarios.believed import Believed, BelievedEntry, StateOf
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.scenarios.expected_state import ExpectationEntry
@@ -163,7 +163,7 @@ class Expected(ABC):
     def ground(self) -> str:
         """Return what the expectation is judged by, in words."""
 
-    def resolved(self, look: Look, naming: Naming) -> "Expected":
+    def resolved(self, look: StateOf, naming: Naming) -> "Expected":
         """Return the expectation with the values that the nest computes.
 
         Args:

@@ -10,7 +10,7 @@ from beliefnest.errors import ScenarioError
 from beliefnest.facts.kinds import WITHIN, middle_of
 from beliefnest.facts.states import StateFacts
 from beliefnest.nest.past.setting import Setting
-from beliefnest.scenarios.believed import Believed, BelievedEntry, Look
+from beliefnest.scenarios.believed import Believed, BelievedEntry, StateOf
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.scenarios.expected import (
@@ -86,7 +86,7 @@ class Awaited(Deed):
     def written(self) -> dict[str, Any]:
         return {self.key: self.believed.written()}
 
-    def resolved(self, look: Look, naming: Naming) -> "Expected":
+    def resolved(self, look: StateOf, naming: Naming) -> "Expected":
         place = self.believed.place(look, naming)
         match self.key:
             case "opens":

@@ -7,7 +7,7 @@ from typing import Any
 from beliefnest.errors import ScenarioError
 from beliefnest.llm.reading_answers import named_in_words
 from beliefnest.nest.past.setting import Setting
-from beliefnest.scenarios.believed import Believed, BelievedEntry, Look
+from beliefnest.scenarios.believed import Believed, BelievedEntry, StateOf
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.scenarios.expected import (
@@ -126,7 +126,7 @@ class Answers(Expected):
             return self.believed.written()
         return list(self.right)
 
-    def resolved(self, look: Look, naming: Naming) -> "Expected":
+    def resolved(self, look: StateOf, naming: Naming) -> "Expected":
         known = () if self.options else naming.all
         if self.believed is None or self.right:
             return replace(self, known=known)
