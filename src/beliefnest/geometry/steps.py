@@ -92,15 +92,35 @@ def _clears(code: int) -> bool:
 
 
 @inlined
-def _bears(code: int) -> bool:
-    """Return True if a block below a body holds it up."""
-    return code & (FLOOR | UNKNOWN) != 0
+def _is_layer(code: int) -> bool:
+    """Return True if a block is a thin layer. A body on it is in its cell, not in the one above."""
+    return code & ROOM != 0 and code & FLOOR != 0 and code & LADDER == 0
 
 
-@inlined
-def _rise(code: int, floor: int) -> int:
-    """Return the height from the top of the block below a body to that of one at its feet."""
-    return (code >> TOP_SHIFT) + FULL - (floor >> TOP_SHIFT)
+@inner
+def _bears(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> bool:
+    """Return True if a block holds up a body in the cell above.
+
+    A door or gate that opens by hand does so where nobody can walk through it.
+    """
+    code = code_at(codes, sizes, x, y, z)
+    if code & (FLOOR | UNKNOWN) == 0 or _is_layer(code):
+        return False
+    if code & OPENS == 0:
+        return True
+    i, k = (1, 0) if code & ALONG_X else (0, 1)
+    beside = code_at(codes, sizes, x + i, y, z + k) | code_at(codes, sizes, x - i, y, z - k)
+    return beside & ROOM == 0
+
+
+@inner
+def _rise(codes: Grid, sizes: Sizes, x: int, y: int, z: int, ahead: int) -> int:
+    """Return the height from the floor of a body in a cell to the top of a block at its feet."""
+    own = code_at(codes, sizes, x, y, z)
+    if _is_layer(own):
+        return (ahead >> TOP_SHIFT) - (own >> TOP_SHIFT)
+    floor = code_at(codes, sizes, x, y - 1, z)
+    return (ahead >> TOP_SHIFT) + FULL - (floor >> TOP_SHIFT)
 
 
 @inlined
@@ -129,13 +149,15 @@ def _has_plate(code: int, dx: int, dz: int) -> bool:
 def stands_at(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> bool:
     """Return True if a body can be in a cell: it stands on a floor, or swims."""
     own, head = code_at(codes, sizes, x, y, z), code_at(codes, sizes, x, y + 1, z)
-    if not _enters(own) or not (_clears(head) or own & head & _WAYS):
+    # Whoever opens a door opens both of its halves, but one gate of two.
+    is_doorway = own & head & _WAYS and (head & OPENS == 0 or head & UPPER)
+    if not _enters(own) or not (_clears(head) or is_doorway):
         return False
     # On a high layer the head reaches into the next cell.
     is_raised = own & ROOM and own & (LADDER | UNKNOWN) == 0 and own >> TOP_SHIFT > _LOW
     if is_raised and not _clears(code_at(codes, sizes, x, y + 2, z)):
         return False
-    return _bears(code_at(codes, sizes, x, y - 1, z)) or own & LIQUID != 0
+    return _is_layer(own) or own & LIQUID != 0 or _bears(codes, sizes, x, y - 1, z)
 
 
 @inner
@@ -160,8 +182,7 @@ def landing(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int)
     if is_ahead:
         return y if _passes_plates(codes, sizes, x, y, z, dx, dz) else -1
     head = code_at(codes, sizes, x + dx, y + 1, z + dz)
-    below = code_at(codes, sizes, x + dx, y - 1, z + dz)
-    if ahead & head & ROOM and _bears(below):
+    if ahead & head & ROOM and _bears(codes, sizes, x + dx, y - 1, z + dz):
         # There is something at the height of the head that bots take for room.
         return -1
     return _landing_off_level(codes, sizes, x, y, z, dx, dz)
@@ -182,7 +203,7 @@ def _passes_plates(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, d
     i, k = x + dx, z + dz
     own, ahead = code_at(codes, sizes, x, y, z), code_at(codes, sizes, i, y, k)
     head, next_head = code_at(codes, sizes, x, y + 1, z), code_at(codes, sizes, i, y + 1, k)
-    if _has_plate(next_head, -dx, -dz):
+    if _has_plate(next_head, -dx, -dz) or (_has_plate(head, dx, dz) and own & LADDER == 0):
         return False
     if not (_has_plate(own, dx, dz) or _has_plate(ahead, -dx, -dz) or _has_plate(head, dx, dz)):
         return True
@@ -198,7 +219,7 @@ def _landing_off_level(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: in
     is_free = own & _WAYS == 0 or _clears(code_at(codes, sizes, x, y + 1, z))
     if ahead & FLOOR and is_free and code_at(codes, sizes, i, y + 1, k) & ROOM:
         high, top = code_at(codes, sizes, x, y + 2, z), code_at(codes, sizes, i, y + 2, k)
-        is_low = _rise(ahead, code_at(codes, sizes, x, y - 1, z)) <= _JUMP
+        is_low = _bears(codes, sizes, i, y, k) and _rise(codes, sizes, x, y, z, ahead) <= _JUMP
         if is_low and _clears(high) and _clears(top):
             return y + 1
     if not _has_room(codes, sizes, i, y, k) or ahead & LIQUID:
@@ -211,11 +232,15 @@ def _landing_off_level(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: in
 @inner
 def _fall(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> int:
     """Return the height at which a body lands that drops from a cell by one at least."""
+    if _is_layer(code_at(codes, sizes, x, y - 1, z)):
+        return y - 1
     for depth in range(2, DEEPEST_DIVE + 1):
         code = code_at(codes, sizes, x, y - depth, z)
         if code & LIQUID and code & ROOM:
             return y - depth
-        if _bears(code):
+        if _is_layer(code):
+            return y - depth if depth <= DEEPEST_DROP + 1 else -1
+        if _bears(codes, sizes, x, y - depth, z):
             return y - depth + 1 if depth <= DEEPEST_DROP + 1 else -1
         if not code & ROOM:
             return -1
@@ -232,7 +257,8 @@ def climb(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> bool:
 @inner
 def descent(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> int:
     """Return the height to which a body gets straight down from a cell; -1: nowhere."""
-    if code_at(codes, sizes, x, y, z) & LIQUID or not code_at(codes, sizes, x, y - 1, z) & ROOM:
+    own = code_at(codes, sizes, x, y, z)
+    if own & LIQUID or _is_layer(own) or not code_at(codes, sizes, x, y - 1, z) & ROOM:
         return -1
     return _fall(codes, sizes, x, y, z)
 
@@ -241,13 +267,14 @@ def descent(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> int:
 def _is_edge(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int) -> bool:
     """Return True if the floor ends or is lower in a direction, with room for a body above."""
     floor, ahead = code_at(codes, sizes, x, y - 1, z), code_at(codes, sizes, x + dx, y - 1, z + dz)
-    if _bears(ahead) and ahead >> TOP_SHIFT >= floor >> TOP_SHIFT:
+    own, is_floor = code_at(codes, sizes, x, y, z), ahead & (FLOOR | UNKNOWN) != 0
+    if is_floor and (_is_layer(own) or ahead >> TOP_SHIFT >= floor >> TOP_SHIFT):
         return False
     feet, head = (
         code_at(codes, sizes, x + dx, y, z + dz),
         code_at(codes, sizes, x + dx, y + 1, z + dz),
     )
-    return code_at(codes, sizes, x, y, z) & (LIQUID | _WAYS) == 0 and feet & head & ROOM != 0
+    return own & (LIQUID | _WAYS) == 0 and feet & head & ROOM != 0
 
 
 @inner
@@ -258,27 +285,28 @@ def jumps(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int, f
     """
     if not _is_edge(codes, sizes, x, y, z, dx, dz):
         return 0
-    count, floor = 0, code_at(codes, sizes, x, y - 1, z)
+    count = 0
     is_high = (
         code_at(codes, sizes, x, y + 2, z) & code_at(codes, sizes, x + dx, y + 2, z + dz) & ROOM
     ) != 0
-    is_deep = not _bears(code_at(codes, sizes, x + dx, y - 2, z + dz))
+    is_deep = code_at(codes, sizes, x + dx, y - 2, z + dz) & (FLOOR | UNKNOWN) == 0
     for far in range(2, FARTHEST_JUMP + 1):
         i, k = x + far * dx, z + far * dz
         above, head = code_at(codes, sizes, i, y + 2, k), code_at(codes, sizes, i, y + 1, k)
         ahead, below = code_at(codes, sizes, i, y, k), code_at(codes, sizes, i, y - 1, k)
+        deep = code_at(codes, sizes, i, y - 2, k)
         is_room = head & ahead & ROOM != 0
-        if is_high and is_room and _bears(below):
-            found[2 * count], found[2 * count + 1] = far, 0
+        if is_high and is_room and (_bears(codes, sizes, i, y - 1, k) or _is_layer(below)):
+            found[2 * count], found[2 * count + 1] = far, -1 if _is_layer(below) else 0
             return count + 1
         if is_high and head & ROOM and ahead & FLOOR and above & ROOM and far < FARTHEST_JUMP:
-            if _rise(ahead, floor) <= _JUMP:
-                found[2 * count], found[2 * count + 1] = far, 1
+            if _rise(codes, sizes, x, y, z, ahead) <= _JUMP:
+                found[2 * count], found[2 * count + 1] = far, 0 if _is_layer(ahead) else 1
                 count += 1
             return count
         if (is_high or far == 2) and is_room and below & ROOM and is_deep:
-            if _bears(code_at(codes, sizes, i, y - 2, k)):
-                found[2 * count], found[2 * count + 1] = far, -1
+            if _bears(codes, sizes, i, y - 2, k) or _is_layer(deep):
+                found[2 * count], found[2 * count + 1] = far, -2 if _is_layer(deep) else -1
                 count += 1
                 is_deep = False
         elif not is_room:
@@ -293,7 +321,7 @@ def feet_above(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> int:
     own, below = code_at(codes, sizes, x, y, z), code_at(codes, sizes, x, y - 1, z)
     if own & FLOOR or (own & ROOM and own >> TOP_SHIFT):
         return 0 if own & (LADDER | _WAYS | UNKNOWN) else own >> TOP_SHIFT
-    if not below & FLOOR or below & (LADDER | _WAYS):
+    if not below & FLOOR or _is_layer(below):
         return 0
     return (below >> TOP_SHIFT) - FULL
 
@@ -358,9 +386,9 @@ def write_neighbours(
 def _steep(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int) -> int:
     """Return the height to which a diagonal step leads by one up or down; -1: nowhere."""
     i, k = x + dx, z + dz
-    ahead, below = code_at(codes, sizes, i, y, k), code_at(codes, sizes, x, y - 1, z)
-    high = code_at(codes, sizes, x, y + 2, z)
-    if ahead & FLOOR and _rise(ahead, below) <= _JUMP and _clears(high):
+    ahead, high = code_at(codes, sizes, i, y, k), code_at(codes, sizes, x, y + 2, z)
+    is_up = ahead & FLOOR and not _is_layer(ahead)
+    if is_up and _rise(codes, sizes, x, y, z, ahead) <= _JUMP and _clears(high):
         return y + 1 if stands_at(codes, sizes, i, y + 1, k) else -1
     is_down = _has_room(codes, sizes, i, y, k) and stands_at(codes, sizes, i, y - 1, k)
     return y - 1 if is_down else -1

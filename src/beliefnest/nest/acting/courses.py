@@ -328,7 +328,8 @@ class Course:
 
     @property
     def _ground(self) -> Ground:
-        return self.plan.grounds.of(self.world.box, self.world.terrain)
+        # A model's agent walks through shut doors, like its planner.
+        return self.plan.grounds.of(self.world.box, self.world.terrain).with_doors_opened
 
     def _walk(self, walker: Walker, now: int) -> None:
         if walker.is_over or (now - self.start) % walker.strategy.step_ticks:
