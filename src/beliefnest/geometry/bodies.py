@@ -10,6 +10,7 @@ are both room and floor: a body steps into a ladder or a thin layer, or onto it.
 """
 
 import itertools
+from enum import Enum
 from functools import lru_cache
 
 import numpy as np
@@ -33,10 +34,22 @@ __all__ = [
     "UNKNOWN",
     "UPPER",
     "BodyCodes",
+    "Doors",
     "body_codes",
 ]
 
 BodyCodes = npt.NDArray[np.uint32]
+
+
+class Doors(Enum):
+    """Doors and gates that count as doorways; the others are walls."""
+
+    NONE = "none"
+    """None with a leaf: bots look for another way first, since a leaf stops them easily."""
+    OPEN = "open"
+    BY_HAND = "by hand"
+    """Open ones, and shut ones that open by hand."""
+
 
 ROOM = 1
 """A body moves through the block."""
@@ -73,12 +86,12 @@ _LAYER = 0.1
 
 
 @lru_cache(maxsize=8)
-def body_codes(registry: Registry, *, opens: bool, guesses: bool) -> BodyCodes:
+def body_codes(registry: Registry, doors: Doors, *, guesses: bool) -> BodyCodes:
     """Return the codes of all states, counted from -1: unknown, then the states of the registry.
 
     Args:
         registry: Names and shapes of states.
-        opens: True if shut doors and gates that open by hand are doorways.
+        doors: The doorways.
         guesses: True if an unknown block counts as floor; False: only known blocks hold a body.
     """
     boxes = [
@@ -94,7 +107,7 @@ def body_codes(registry: Registry, *, opens: bool, guesses: bool) -> BodyCodes:
         codes[ids.start : ids.stop] |= _kind(registry, name)
         if is_doorway(name):
             for state in ids:
-                codes[state] |= _doorway(registry, state, opens=opens)
+                codes[state] |= _doorway(registry, state, doors)
         if name in _LADDERS:
             for state in ids:
                 codes[state] |= _plate(registry, state)
@@ -123,13 +136,16 @@ def _kind(registry: Registry, name: str) -> int:
     return bits | (LIQUID if name in _LIQUIDS else 0)
 
 
-def _doorway(registry: Registry, state: int, *, opens: bool) -> int:
+def _doorway(registry: Registry, state: int, doors: Doors) -> int:
+    if doors is Doors.NONE and registry.boxes(state):
+        return 0
     way = ALONG_X if passage(registry, state) == (1, 0) else ALONG_Z
     if registry.properties(state).get("half") == "upper":
         way |= UPPER
     if is_open(registry, state):
         return way
-    return way | OPENS if opens and moves_by_hand(registry.name(state)) else 0
+    by_hand = doors is Doors.BY_HAND and moves_by_hand(registry.name(state))
+    return way | OPENS if by_hand else 0
 
 
 def _plate(registry: Registry, state: int) -> int:

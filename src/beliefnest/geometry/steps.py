@@ -267,7 +267,8 @@ def descent(codes: Grid, sizes: Sizes, x: int, y: int, z: int) -> int:
 def _is_edge(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int) -> bool:
     """Return True if the floor ends or is lower in a direction, with room for a body above."""
     floor, ahead = code_at(codes, sizes, x, y - 1, z), code_at(codes, sizes, x + dx, y - 1, z + dz)
-    own, is_floor = code_at(codes, sizes, x, y, z), ahead & (FLOOR | UNKNOWN) != 0
+    own = code_at(codes, sizes, x, y, z)
+    is_floor = _is_layer(ahead) or _bears(codes, sizes, x + dx, y - 1, z + dz)
     if is_floor and (_is_layer(own) or ahead >> TOP_SHIFT >= floor >> TOP_SHIFT):
         return False
     feet, head = (
@@ -289,7 +290,8 @@ def jumps(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int, f
     is_high = (
         code_at(codes, sizes, x, y + 2, z) & code_at(codes, sizes, x + dx, y + 2, z + dz) & ROOM
     ) != 0
-    is_deep = code_at(codes, sizes, x + dx, y - 2, z + dz) & (FLOOR | UNKNOWN) == 0
+    is_deep = not _is_layer(code_at(codes, sizes, x + dx, y - 2, z + dz))
+    is_deep = is_deep and not _bears(codes, sizes, x + dx, y - 2, z + dz)
     for far in range(2, FARTHEST_JUMP + 1):
         i, k = x + far * dx, z + far * dz
         above, head = code_at(codes, sizes, i, y + 2, k), code_at(codes, sizes, i, y + 1, k)
@@ -300,7 +302,8 @@ def jumps(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: int, dz: int, f
             found[2 * count], found[2 * count + 1] = far, -1 if _is_layer(below) else 0
             return count + 1
         if is_high and head & ROOM and ahead & FLOOR and above & ROOM and far < FARTHEST_JUMP:
-            if _rise(codes, sizes, x, y, z, ahead) <= _JUMP:
+            is_held = _is_layer(ahead) or _bears(codes, sizes, i, y, k)
+            if is_held and _rise(codes, sizes, x, y, z, ahead) <= _JUMP:
                 found[2 * count], found[2 * count + 1] = far, 0 if _is_layer(ahead) else 1
                 count += 1
             return count

@@ -9,12 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.errors import TooLargeError
+from beliefnest.geometry.free_lines import can_use, eye_in
 from beliefnest.minds.alternatives import AlternativeWorlds
 from beliefnest.minds.mind_model import PossibleGoal
 from beliefnest.minds.stage import DIAGONALS, SIDES, Stage
 from beliefnest.minds.ways import Floor, Ways, bodies_in, ways_from
 from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
+from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position, feet_in
 
 __all__ = ["Surroundings"]
@@ -53,6 +55,7 @@ class Surroundings:
         self.worlds, self._registry, self._goals = worlds, registry, goals
         self._doubted, self._diagonal, self._key = tuple(doubted), diagonal, key
         self._stages: dict[Position, Stage] = {}
+        self._lines: dict[tuple[int, Position, Position], bool] = {}
 
     def with_worlds(self, worlds: AlternativeWorlds, key: bytes) -> "Surroundings":
         """Return a scene of other alternatives, with a digest of how they differ from these."""
@@ -104,6 +107,13 @@ class Surroundings:
         """Return True if an agent can stand in a cell in any alternative."""
         place = np.array([self.worlds.box.index(cell)])
         return any(bool(floor.stands(place)[0]) for floor in self._floors)
+
+    def in_reach(
+        self, alternative: int, cell: Position, places: Sequence[Position]
+    ) -> list[Position]:
+        """Return those of some places that an agent reaches from a cell in an alternative."""
+        blocks = self.worlds.worlds[alternative].blocks
+        return [place for place in places if self._reached(blocks, [cell], [place])[0]]
 
     def has_unknown_floor(self, cell: Position) -> bool:
         """Return True if the block below a cell is unknown in all alternatives."""
@@ -159,7 +169,16 @@ class Surroundings:
             np.array([goal.item is not None for goal in self._goals.values()], dtype=np.bool_),
             boxes,
             np.array(
-                [self._in_reach(ways.cells, [place]) for place in boxes], dtype=np.bool_
+                [
+                    np.logical_or.reduce(
+                        [
+                            self._reached(world.blocks, ways.cells, [place])
+                            for world in worlds.worlds
+                        ]
+                    )
+                    for place in boxes
+                ],
+                dtype=np.bool_,
             ).reshape(len(boxes), len(ways.cells)),
             np.array(content, dtype=np.int64).reshape(len(boxes), count),
         )
@@ -186,21 +205,28 @@ class Surroundings:
                 ]
                 for a, world in enumerate(worlds):
                     held = [p for p, items in world.contents.items() if items.get(goal.item or "")]
-                    acts[a, number] = self._in_reach(cells, [*held, *dropped])
+                    acts[a, number] = self._reached(world.blocks, cells, [*held, *dropped])
         return acts
 
-    def _in_reach(
-        self, cells: Sequence[Position], places: Sequence[Position]
+    def _reached(
+        self, blocks: Terrain, cells: Sequence[Position], places: Sequence[Position]
     ) -> npt.NDArray[np.bool_]:
-        """Mark the cells that are, or neighbour, one of some places."""
+        """Mark the cells that are, or neighbour, one of some places, with a free line to it."""
         reached = np.zeros(len(cells), dtype=np.bool_)
         for place in places:
             away = np.abs(np.array(cells, dtype=np.int64) - np.array(place))
             aside = (
                 np.maximum(away[:, 0], away[:, 2]) if self._diagonal else away[:, 0] + away[:, 2]
             )
-            reached |= (aside <= 1) & (away[:, 1] <= 1)
+            for number in np.flatnonzero((aside <= 1) & (away[:, 1] <= 1) & ~reached).tolist():
+                reached[number] = self._has_line(blocks, cells[number], place)
         return reached
+
+    def _has_line(self, blocks: Terrain, cell: Position, place: Position) -> bool:
+        asked = (id(blocks), cell, place)
+        if asked not in self._lines:
+            self._lines[asked] = can_use(self.worlds.box, blocks, eye_in(cell), place)
+        return self._lines[asked]
 
 
 class _Stages:

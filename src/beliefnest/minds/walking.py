@@ -1,7 +1,7 @@
 """Courses of a modelled agent, sampled action by action from the planner's policy."""
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
 
@@ -238,6 +238,10 @@ class Walker:
         self.is_over = True
         goal = list(self.strategy.model.goal_values.values())[action - 1 - steps - len(stage.boxes)]
         return WalkAct(goal.item)
+
+    def in_reach(self, places: Sequence[Position]) -> list[Position]:
+        """Return those of some places that it reaches."""
+        return self._scene.in_reach(self.draw.actual, self.cell, places)
 
     def arrive(self, pose: AgentPose, cell: Position) -> None:
         """Be in a cell, and perceive from there."""

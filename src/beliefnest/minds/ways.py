@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.geometry.bodies import ROOM, BodyCodes, body_codes
+from beliefnest.geometry.bodies import ROOM, BodyCodes, Doors, body_codes
 from beliefnest.minds.stage import DIAGONALS, SIDES
 from beliefnest.world.array_types import Cells, Flags
 from beliefnest.world.registry import Registry
@@ -25,7 +25,7 @@ __all__ = ["Floor", "Ways", "bodies_in", "ways_from"]
 
 _MARGIN = (1, 2, 1)
 """Cells around a dense box, so that every neighbour of a cell has an index."""
-_BELOW, _ABOVE = 2, 3
+_BELOW, _ABOVE, _ASIDE = 2, 3, 2
 """Greatest distances, in cells, at which a step to a neighbour looks at cells."""
 
 _AT_ONCE = 4096
@@ -34,7 +34,7 @@ _AT_ONCE = 4096
 
 def bodies_in(registry: Registry, states: npt.NDArray[np.int32]) -> BodyCodes:
     """Return what block states, -1 unknown, are to a body, as in `geometry.bodies`."""
-    codes: BodyCodes = body_codes(registry, opens=True, guesses=False)[states + 1]
+    codes: BodyCodes = body_codes(registry, Doors.BY_HAND, guesses=False)[states + 1]
     return codes
 
 
@@ -109,18 +109,17 @@ class Floor:
         if self.blocks.is_dense:
             return (*self._whole, cells + np.array(_MARGIN))
         shape = np.array(self.blocks.shape)
-        near = np.stack(
-            np.meshgrid(range(-1, 2), range(-_BELOW, _ABOVE + 1), range(-1, 2), indexing="ij"), -1
-        )
+        sides, levels = range(-_ASIDE, _ASIDE + 1), range(-_BELOW, _ABOVE + 1)
+        near = np.stack(np.meshgrid(sides, levels, sides, indexing="ij"), -1)
         places = (cells[:, None, None, None] + near).reshape(-1, 3)
         held = np.clip(places, 0, shape - 1)
         codes = bodies_in(self._registry, self.blocks.at_indices(held))
         aside = (held[:, ::2] != places[:, ::2]).any(axis=1)
         codes[aside | (places[:, 1] < 0) | (places[:, 1] > shape[1])] = 0
         codes[~aside & (places[:, 1] == shape[1])] = ROOM
-        at = np.full((len(cells), 3), (1, _BELOW, 1))
-        at[:, 0] += 3 * np.arange(len(cells))
-        return codes, (3 * len(cells), _BELOW + _ABOVE + 1, 3), at
+        at = np.full((len(cells), 3), (_ASIDE, _BELOW, _ASIDE))
+        at[:, 0] += len(sides) * np.arange(len(cells))
+        return codes, (len(sides) * len(cells), len(levels), len(sides)), at
 
 
 class Ways:

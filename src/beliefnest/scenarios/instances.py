@@ -41,7 +41,6 @@ __all__ = ["drawn_instance", "has_instances"]
 
 _KEY = "instances"
 _MOST_DRAWS = 2_000
-_STEP = 0.5
 """Height above the feet that is in the cell in which an agent stands, also on slabs."""
 _NEAR = 2
 """Cells around a line of sight whose blocks may hide something on it."""
@@ -232,8 +231,7 @@ class _Scene:
 
     def reaches(self, agent: str, cell: Position) -> bool:
         """Return True if an agent can walk to where its hand reaches a cell, opening doors."""
-        x, y, z = self._place.agents[agent].position
-        start = (math.floor(x), math.floor(y + _STEP), math.floor(z))
+        start = self._ground.cell_of(self._place.agents[agent].position)
         return self._ground.way(start, InReach(cell, REACH)) is not None
 
     def _geometry(self, eye: Point, cell: Position) -> Geometry:

@@ -65,8 +65,14 @@ class Rules:
         return self.room(cell) or self.gate(cell) is not None
 
     def bears(self, cell: Position) -> bool:
-        """Return True if a block holds up what is above it; the tops of shut gates are flat."""
-        return self.text(cell) in (STONE, UNKNOWN, SHUT)
+        """Return True if a block holds up what is above it; the tops of shut gates are flat.
+
+        A gate that opens does so only if nobody can walk through it.
+        """
+        (x, y, z), text = cell, self.text(cell)
+        if self._opens and text == SHUT:
+            return not self.room((x + 1, y, z)) and not self.room((x - 1, y, z))
+        return text in (STONE, UNKNOWN, SHUT)
 
     def top(self, cell: Position) -> float:
         """Return the height of a block; unknown ones count as full."""
@@ -77,10 +83,9 @@ class Rules:
         """Return True if an agent can stand in a cell."""
         x, y, z = cell
         head = (x, y + 1, z)
-        # In a gate at the height of the head alone nobody stands.
-        has_room = self.room(head) or (
-            self.gate(head) is not None and self.gate(head) == self.gate(cell)
-        )
+        # In a gate at the height of the head alone nobody stands, and of two gates one is opened.
+        in_gates = self.gate(head) is not None and self.gate(head) == self.gate(cell)
+        has_room = self.room(head) or (in_gates and self.text(head) != SHUT)
         return self.bears((x, y - 1, z)) and self.passes(cell) and has_room
 
     def steps(self, cell: Position) -> Iterator[Position]:
@@ -121,7 +126,8 @@ class Rules:
             return
         tall = self.top(ahead) + 1 - self.top((x, y - 1, z)) <= 1.2
         clear = self.room((x, y + 2, z)) and self.room((above[0], y + 2, above[2]))
-        hops = self.text(ahead) in (STONE, SHUT) and self.room(above) and tall and clear
+        is_floor = self.text(ahead) in (STONE, SHUT) and self.bears(ahead)
+        hops = is_floor and self.room(above) and tall and clear
         if hops and (self.gate(cell) is None or self.room((x, y + 1, z))):
             yield above
         elif self.room(ahead) and self.room(above) and self.room(below):

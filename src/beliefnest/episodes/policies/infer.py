@@ -9,6 +9,8 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from beliefnest.belief.grounds import Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.view import State
@@ -19,10 +21,13 @@ from beliefnest.episodes.policies.search import Search
 from beliefnest.episodes.policies.traces import likelihoods_of_traces
 from beliefnest.errors import InputError, TooLargeError
 from beliefnest.facts.kinds import Pursuit
+from beliefnest.geometry.free_lines import can_use, eye_in
 from beliefnest.minds.mind_model import MindModel
+from beliefnest.minds.ways import Floor
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.claims import ClaimKind
+from beliefnest.world.registry import Registry
 from beliefnest.world.values import EventKind, Position
 from beliefnest.worlds.scripted.footpaths import InReach
 from beliefnest.worlds.scripted.hand import REACH
@@ -161,9 +166,12 @@ def _in_reach(place: Position, state: State) -> list[Position]:
     """Return cells on the level of a block from which it is in reach."""
     x, y, z = place
     span = range(-math.ceil(REACH), math.ceil(REACH) + 1)
-    met = InReach(place, REACH, beside=True)
+    met, box, blocks = InReach(place, REACH, beside=True), state.box, state.blocks.terrain
     around = [(x + dx, y, z + dz) for dx in span for dz in span]
-    return [at for at in around if at in state.box and met.is_met(at) and state.blocks[at] == "air"]
+    near = [at for at in around if at in box and met.is_met(at)]
+    stands = Floor(Registry.load(), blocks).stands(np.array([box.index(at) for at in near]))
+    found = [at for at, is_standing in zip(near, stands, strict=True) if is_standing]
+    return [at for at in found if can_use(box, blocks, eye_in(at), place)]
 
 
 def _by_deeds(

@@ -354,14 +354,13 @@ class Course:
     def _take_item(self, walker: Walker, item: str) -> None:
         """Take an item out of the nearest container; dropped items stay where they are."""
         x, y, z = walker.cell
-        held = [
+        held = [place for place, items in self.world.containers.items() if items.get(item)]
+        near = [
             (abs(place[0] - x) + abs(place[2] - z), abs(place[1] - y), place)
-            for place, items in self.world.containers.items()
-            if items.get(item)
+            for place in walker.in_reach(held)
         ]
-        for aside, up, place in sorted(held)[:1]:
-            if aside <= 1 + walker.strategy.model.diagonal and up <= 1:
-                self.world.withdraw(walker.name, place, {item: 1})
+        for _, _, place in sorted(near)[:1]:
+            self.world.withdraw(walker.name, place, {item: 1})
 
     # Agents that are not in question
 

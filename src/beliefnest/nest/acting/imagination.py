@@ -28,7 +28,7 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.terrain import BlockStates, Terrain
-from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position, block_at
+from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position
 from beliefnest.worlds.protocol import ProgramResult, RunRules
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
@@ -188,17 +188,16 @@ class Imagination:
         return self._believed[index] < 0 and self.world.terrain[index] == 0
 
     def may_reach(self, agent: str, place: Position) -> bool:
-        """Return False if an agent certainly cannot get within reach of a block.
+        """Return False if an agent certainly cannot get to where its hand reaches a block.
 
-        True means that it may; the test is coarse. It is False for an agent of unknown position.
-        Doors that open by hand are no obstacle.
+        True means that it may: ways back are not tested. It is False for an agent of unknown
+        position. Doors that open by hand are no obstacle.
         """
         state = self.world.state_of(agent)
         if state is None:
             return False
-        return self._standing().with_doors_opened.may_lead(
-            block_at(state.position), _in_reach(place)
-        )
+        ground = self._standing().with_doors_opened
+        return ground.may_lead(ground.cell_of(state.position), _in_reach(place))
 
     @property
     def switches(self) -> Sequence[Position]:

@@ -17,9 +17,9 @@ from beliefnest.geometry.bodies import (
     ALONG_Z,
     FLOOR,
     FULL,
-    OPENS,
     ROOM,
     BodyCodes,
+    Doors,
     body_codes,
 )
 from beliefnest.world.doors import is_doorway
@@ -117,26 +117,26 @@ class Footing:
         registry: Shapes of blocks.
         box: The known part of space.
         blocks: Block states, -1 is unknown.
-        opens: True if doors and gates that can be opened by hand count as open.
+        doors: The doors and gates that count as doorways.
 
     Attributes:
         is_whole: True if the box is prepared as a whole.
         has_doors: True if there is a door or gate.
-        has_doorways: True if there is a door or gate that is open or counts as open.
-        has_shut_doors: True if there is a shut one that can be opened by hand.
     """
 
-    def __init__(self, registry: Registry, box: Box, blocks: Terrain, *, opens: bool) -> None:
-        self._registry, self._box, self._blocks, self._opens = registry, box, blocks, opens
+    def __init__(self, registry: Registry, box: Box, blocks: Terrain, doors: Doors) -> None:
+        self._registry, self._box, self._blocks = registry, box, blocks
         self.is_whole = blocks.is_dense
-        self._codes = body_codes(registry, opens=opens, guesses=True)
-        states = _states_of(blocks)
-        named = (registry.name(s) for s in states.tolist() if s >= 0)
+        self._codes = body_codes(registry, doors, guesses=True)
+        self._states = _states_of(blocks)
+        named = (registry.name(s) for s in self._states.tolist() if s >= 0)
         self.has_doors = any(map(is_doorway, named))
-        self.has_doorways = bool((self._codes[states + 1] & (ALONG_X | ALONG_Z)).any())
-        by_hand = body_codes(registry, opens=True, guesses=True)[states + 1] & OPENS
-        self.has_shut_doors = not opens and bool(by_hand.any())
         self._windows: list[WalkWindow] = []
+
+    def is_same(self, doors: Doors) -> bool:
+        """Return True if it makes no difference whether other doors count as doorways."""
+        codes = body_codes(self._registry, doors, guesses=True)
+        return np.array_equal(codes[self._states + 1], self._codes[self._states + 1])
 
     def window(self, cell: Position) -> WalkWindow | None:
         """Return a window for walks from a cell; None: it is outside the box and its margin."""
@@ -190,13 +190,12 @@ class Footing:
         return bool(code & FLOOR) and not code & (ROOM | ALONG_X | ALONG_Z)
 
     def _near(self, cell: Position) -> tuple[BodyCodes, Index, int, int, int]:
-        """Return the codes of a grid that holds a cell and those above and below, and its index."""
-        if self.is_whole:
-            x, y, z = (a - b for a, b in zip(cell, self._whole.low, strict=True))
-            return (self._whole.cells.codes, self._whole.shape, x, y, z)
-        x, y, z = cell
-        column = [self._code((x, y + up, z)) for up in (-1, 0, 1)]
-        return (np.array(column, dtype=np.uint32), (1, 3, 1), 0, 1, 0)
+        """Return the codes of a grid that holds a cell and those around it, and its index."""
+        window = self.window(cell)
+        if window is None:
+            return (np.zeros(1, dtype=np.uint32), (1, 1, 1), 0, 0, 0)
+        x, y, z = (a - b for a, b in zip(cell, window.low, strict=True))
+        return (window.cells.codes, window.shape, x, y, z)
 
     def _code(self, place: Position) -> int:
         if place in self._box:

@@ -34,7 +34,7 @@ __all__ = [
     "Queue",
     "Trail",
     "find",
-    "holds_target",
+    "next_target",
 ]
 
 ByteFlags = npt.NDArray[np.uint8]
@@ -268,12 +268,16 @@ def _pop(queue: Queue) -> int:
 
 
 @compiled
-def holds_target(cells: PathCells, aim: PathAim, area: npt.NDArray[np.bool_]) -> bool:
-    """Return True if a cell of an area meets an aim; `area` is True in it."""
+def next_target(cells: PathCells, aim: PathAim, area: npt.NDArray[np.bool_], after: int) -> int:
+    """Return the first cell of an area after a cell that meets an aim; -1: there is none.
+
+    `area` is True in the cells of the area.
+    """
     sizes, far = cells.sizes, int(min(aim.within, 1e6)) + 2
     for x in range(max(0, aim.x - far), min(sizes[0], aim.x + far + 1)):
         for y in range(max(0, aim.y - far), min(sizes[1], aim.y + far + 1)):
             for z in range(max(0, aim.z - far), min(sizes[2], aim.z + far + 1)):
-                if area[(x * sizes[1] + y) * sizes[2] + z] and _is_met(cells, aim, x, y, z):
-                    return True
-    return False
+                cell = (x * sizes[1] + y) * sizes[2] + z
+                if cell > after and area[cell] and _is_met(cells, aim, x, y, z):
+                    return cell
+    return -1

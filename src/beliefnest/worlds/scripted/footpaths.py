@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from beliefnest.geometry.bodies import Doors
+from beliefnest.geometry.free_lines import can_touch, can_use, eye_in
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, block_at, feet_in
+from beliefnest.world.values import Box, Point, Position, block_at, feet_in
 from beliefnest.worlds.scripted.footing import Footing, WalkWindow
-from beliefnest.worlds.scripted.free_lines import can_touch, can_use
 
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.worlds.scripted.footpath_kernels import PathAim, Trail
@@ -73,12 +74,6 @@ class InReach:
         return cell in ((x, y, z), (x, y - 1, z))
 
 
-def eye_in(cell: Position) -> Point:
-    """Return the place of the eye of an agent that stands in the middle of a cell."""
-    x, y, z = feet_in(cell)
-    return (x, y + EYE_HEIGHT, z)
-
-
 WalkGoal = Near | InReach
 """Goal of a path."""
 
@@ -93,23 +88,25 @@ class Ground:
         registry: Shapes of blocks.
         box: The known part of space.
         blocks: Block states, -1 is unknown; of a dense grid all cells are prepared.
-        opens: True if doors and gates that can be opened by hand count as open.
+        doors: The doors and gates that count as doorways.
 
     Attributes:
         has_doors: True if there is a door or gate.
-        has_doorways: True if there is a door or gate that is open or counts as open.
     """
 
     def __init__(
-        self, registry: Registry, box: Box, blocks: Terrain | BlockGrid, *, opens: bool = False
+        self,
+        registry: Registry,
+        box: Box,
+        blocks: Terrain | BlockGrid,
+        doors: Doors = Doors.OPEN,
     ) -> None:
         self._registry, self._box = registry, box
         if not isinstance(blocks, Terrain):
             blocks = Terrain.of_one(blocks)
         self._blocks = blocks
-        self._footing = Footing(registry, box, blocks, opens=opens)
+        self._footing = Footing(registry, box, blocks, doors)
         self.has_doors = self._footing.has_doors
-        self.has_doorways = self._footing.has_doorways
         self._lines: dict[tuple[Position, Position], bool] = {}
         self._ways: dict[tuple[Position, WalkGoal], tuple[Position, ...] | None] = {}
         self._areas: list[_Area] = []
@@ -146,9 +143,17 @@ class Ground:
     @cached_property
     def with_doors_opened(self) -> "Ground":
         """Return the same ground for agents that open doors and gates by hand."""
-        if not self._footing.has_shut_doors:
+        return self._with(Doors.BY_HAND)
+
+    @cached_property
+    def without_doors(self) -> "Ground":
+        """Return the same ground for agents that pass no door or gate with a leaf."""
+        return self._with(Doors.NONE)
+
+    def _with(self, doors: Doors) -> "Ground":
+        if self._footing.is_same(doors):
             return self
-        return Ground(self._registry, self._box, self._blocks, opens=True)
+        return Ground(self._registry, self._box, self._blocks, doors)
 
     def way(
         self, start: Position, goal: WalkGoal, avoiding: AbstractSet[Position] = frozenset()
@@ -185,7 +190,7 @@ class Ground:
         """Return True if a path to a goal may exist; False if none does.
 
         An area is the set of all cells that can be reached from one cell. A path exists only if
-        some cell in the area of `start` meets the goal.
+        some cell in an area with `start` meets the goal.
         """
         asked = (start, goal)
         known = self._leads.get(asked)
@@ -196,10 +201,8 @@ class Ground:
         return known
 
     def _leads_there(self, start: Position, goal: WalkGoal) -> bool:
-        from beliefnest.worlds.scripted.footpath_kernels import holds_target
-
         if self._footing.window(start) is None:
-            return goal.is_met(start)
+            return self.meets(goal, start)
         number = self._first_area(start)
         if number is None:
             number = self._add_area(start)
@@ -208,9 +211,19 @@ class Ground:
             return True
         asked = (number, goal)
         if asked not in self._met:
-            aim = _aim(goal, area.window)
-            self._met[asked] = holds_target(area.window.cells, aim, area.cells)
+            self._met[asked] = self._is_met_in(area, goal)
         return self._met[asked]
+
+    def _is_met_in(self, area: "_Area", goal: WalkGoal) -> bool:
+        """Return True if a cell of an area meets a goal; a hand also needs a free line there."""
+        from beliefnest.worlds.scripted.footpath_kernels import next_target
+
+        window, cell = area.window, -1
+        aim = _aim(goal, window)
+        while (cell := next_target(window.cells, aim, area.cells, cell)) >= 0:
+            if isinstance(goal, Near) or self._has_line(window.cell(cell), goal.block):
+                return True
+        return False
 
     def _found_way(
         self, start: Position, goal: WalkGoal, avoiding: Iterable[Position] = ()

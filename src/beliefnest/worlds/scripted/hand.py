@@ -201,11 +201,12 @@ def doors_in(value: Any) -> Doors:
 def _way(
     hand: Hand, goal: WalkGoal, doors: Doors, bumped: AbstractSet[Position]
 ) -> tuple[Position, ...] | None:
-    """Return a path that opens no door, or else one that does; avoid cells bumped into."""
+    """Return a path through no door, or else one through doors; avoid cells bumped into."""
     known = hand.known()
-    way = known.way(hand.cell, goal, bumped)
-    if way is None and doors.opens and known.with_doors_opened.has_doorways:
-        way = known.with_doors_opened.way(hand.cell, goal, bumped)
+    through = known.with_doors_opened if doors.opens else known
+    way = known.without_doors.way(hand.cell, goal, bumped)
+    if way is None and through is not known.without_doors:
+        way = through.way(hand.cell, goal, bumped)
     return way
 
 

@@ -1,5 +1,7 @@
 """Free lines for hands: whether anything solid lies between an eye and a block.
 
+All worlds and planners ask here.
+
 The rules are those of the embedded world's server (`skills/code/lib/sight.js`): the collision boxes
 of all blocks obstruct a hand, those of glass too. Unknown blocks obstruct nothing.
 """
@@ -12,9 +14,9 @@ import numpy as np
 from beliefnest.world.array_types import Floats
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import Box, Point, Position
+from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, feet_in
 
-__all__ = ["can_touch", "can_use"]
+__all__ = ["can_touch", "can_use", "eye_in"]
 
 
 _TOUCH = 1e-9
@@ -28,6 +30,12 @@ _INNER = np.array(
 """End points of lines within a block, relative to its middle."""
 _GRID = (0.01, 0.25, 0.5, 0.75, 0.99)
 """End points of lines on each face, as fractions of its edges."""
+
+
+def eye_in(cell: Position) -> Point:
+    """Return the place of the eye of an agent that stands in the middle of a cell."""
+    x, y, z = feet_in(cell)
+    return (x, y + EYE_HEIGHT, z)
 
 
 def can_use(box: Box, blocks: Terrain, eye: Point, block: Position) -> bool:

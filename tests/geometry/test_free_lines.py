@@ -7,11 +7,11 @@ from pathlib import Path
 from random import Random
 
 import beliefnest
+from beliefnest.geometry.free_lines import can_touch, can_use
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box
 from beliefnest.worlds.minecraft.node_files import node_path
-from beliefnest.worlds.scripted.free_lines import can_touch, can_use
 
 SIGHT = Path(beliefnest.__file__).parent / "skills" / "code" / "lib" / "sight.js"
 SHAPES = ("stone", "glass", "oak_fence", "stone_slab[type=bottom]", "oak_door[open=true]", "lever")
