@@ -12,10 +12,10 @@ from tests.profiles import at_night, few_by_day
 import beliefnest as bn
 from beliefnest.minds.ways import Floor, ways_from
 from beliefnest.world.doors import is_doorway
-from beliefnest.world.frames import Snapshot
+from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import AgentState, Box, Point, Position
+from beliefnest.world.values import AgentState, Box, Point, Position, block_at
 from beliefnest.worlds.by_name import open_world
 from beliefnest.worlds.protocol import World
 from beliefnest.worlds.scripted.footpaths import Ground, Near
@@ -211,6 +211,34 @@ def test_bodies_pass_alike_for_all_shapes(kind: str, scripted: World) -> None:
 def test_gaps_are_jumped_alike(embedded: World, scripted: World) -> None:
     stone = Registry.load().state_id("stone")
     check(embedded, scripted, [(kind, stone) for kind in GAPS[::3]])
+
+
+@pytest.mark.parametrize("gap", [True, False])
+@pytest.mark.parametrize("door", ["open=true", "open=false"])
+def test_doors_are_passed_alike_only_if_there_is_no_other_way(
+    door: str, *, gap: bool, embedded: World, scripted: World
+) -> None:
+    registry = Registry.load()
+    box = Box((0, 0, 0), (8, 4, 8))
+    blocks = np.zeros(box.shape, dtype=np.int32)
+    blocks[:, 0] = registry.state_id("stone")
+    blocks[4, 1:3, : 8 if gap else 9] = registry.state_id("bricks")
+    for y, half in ((1, "lower"), (2, "upper")):
+        blocks[4, y, 4] = registry.state_id(f"oak_door[facing=east,half={half},{door}]")
+    start = Snapshot(0, box, Terrain.of(blocks), {}, {"ann": AgentState((1.5, 1.0, 4.5))})
+    for world in (scripted, embedded):
+        cells: set[Position] = set()
+
+        def note(frame: Frame, cells: set[Position] = cells) -> None:
+            cells.update(block_at(each.position) for each in frame.agents.values())
+
+        body = world.open_body("/", "seed", start, note)
+        try:
+            result = body.run({"ann": "await goToPosition(bot, new Vec3(7, 1, 4), 0)"}, LIMIT)
+        finally:
+            body.close()
+        assert result["ann"].ok
+        assert ((4, 1, 4) in cells, (4, 1, 8) in cells) == (not gap, gap)
 
 
 @pytest.mark.parametrize(

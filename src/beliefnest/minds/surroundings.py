@@ -168,18 +168,7 @@ class Surroundings:
             self._acts(ways.cells),
             np.array([goal.item is not None for goal in self._goals.values()], dtype=np.bool_),
             boxes,
-            np.array(
-                [
-                    np.logical_or.reduce(
-                        [
-                            self._reached(world.blocks, ways.cells, [place])
-                            for world in worlds.worlds
-                        ]
-                    )
-                    for place in boxes
-                ],
-                dtype=np.bool_,
-            ).reshape(len(boxes), len(ways.cells)),
+            self._openings(ways.cells, boxes),
             np.array(content, dtype=np.int64).reshape(len(boxes), count),
         )
 
@@ -207,6 +196,17 @@ class Surroundings:
                     held = [p for p, items in world.contents.items() if items.get(goal.item or "")]
                     acts[a, number] = self._reached(world.blocks, cells, [*held, *dropped])
         return acts
+
+    def _openings(
+        self, cells: Sequence[Position], boxes: Sequence[Position]
+    ) -> npt.NDArray[np.bool_]:
+        """Mark the cells from which containers can be opened in an alternative, a row for each."""
+        distinct = {id(world.blocks): world.blocks for world in self.worlds.worlds}.values()
+        reach = np.zeros((len(boxes), len(cells)), dtype=np.bool_)
+        for number, place in enumerate(boxes):
+            for blocks in distinct:
+                reach[number] |= self._reached(blocks, cells, [place])
+        return reach
 
     def _reached(
         self, blocks: Terrain, cells: Sequence[Position], places: Sequence[Position]
