@@ -19,7 +19,7 @@ def hall(agents: int, wall: bool = False) -> bn.Scenario:
 
     Args:
         agents: Number of agents.
-        wall: True for a wall of glass between the agents and the barrel; two chests are in reach.
+        wall: True for a wall of glass between the agents and the barrel; two chests are on their side.
     """
     held: list[dict[str, int]] = [*({item: 1} for item in ITEMS), {"bone": 1}, {}]
     contents = [
@@ -28,7 +28,7 @@ def hall(agents: int, wall: bool = False) -> bn.Scenario:
     names = NAMES[:agents]
     blocks: list[dict[str, Any]] = [{"block": "stone", "fill": [[0, 0, 0], [20, 0, 20]]}]
     if wall:
-        blocks.append({"block": "glass", "fill": [[0, 1, 16], [20, 3, 16]]})
+        blocks.append({"block": "glass", "fill": [[0, 1, 12], [20, 3, 12]]})
     return bn.Scenario.from_mapping(
         {
             "name": "hall",
