@@ -34,14 +34,14 @@ __all__ = [
     "UNKNOWN",
     "UPPER",
     "BodyCodes",
-    "Doors",
+    "Doorways",
     "body_codes",
 ]
 
 BodyCodes = npt.NDArray[np.uint32]
 
 
-class Doors(Enum):
+class Doorways(Enum):
     """Doors and gates that count as doorways; the others are walls."""
 
     NONE = "none"
@@ -86,7 +86,7 @@ _LAYER = 0.1
 
 
 @lru_cache(maxsize=8)
-def body_codes(registry: Registry, doors: Doors, *, guesses: bool) -> BodyCodes:
+def body_codes(registry: Registry, doors: Doorways, *, guesses: bool) -> BodyCodes:
     """Return the codes of all states, counted from -1: unknown, then the states of the registry.
 
     Args:
@@ -136,15 +136,15 @@ def _kind(registry: Registry, name: str) -> int:
     return bits | (LIQUID if name in _LIQUIDS else 0)
 
 
-def _doorway(registry: Registry, state: int, doors: Doors) -> int:
-    if doors is Doors.NONE and registry.boxes(state):
+def _doorway(registry: Registry, state: int, doors: Doorways) -> int:
+    if doors is Doorways.NONE and registry.boxes(state):
         return 0
     way = ALONG_X if passage(registry, state) == (1, 0) else ALONG_Z
     if registry.properties(state).get("half") == "upper":
         way |= UPPER
     if is_open(registry, state):
         return way
-    by_hand = doors is Doors.BY_HAND and moves_by_hand(registry.name(state))
+    by_hand = doors is Doorways.BY_HAND and moves_by_hand(registry.name(state))
     return way | OPENS if by_hand else 0
 
 

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.geometry.bodies import ROOM, BodyCodes, Doors, body_codes
+from beliefnest.geometry.bodies import ROOM, BodyCodes, Doorways, body_codes
 from beliefnest.minds.stage import DIAGONALS, SIDES
 from beliefnest.world.array_types import Cells, Flags
 from beliefnest.world.registry import Registry
@@ -34,7 +34,7 @@ _AT_ONCE = 4096
 
 def bodies_in(registry: Registry, states: npt.NDArray[np.int32]) -> BodyCodes:
     """Return what block states, -1 unknown, are to a body, as in `geometry.bodies`."""
-    codes: BodyCodes = body_codes(registry, Doors.BY_HAND, guesses=False)[states + 1]
+    codes: BodyCodes = body_codes(registry, Doorways.BY_HAND, guesses=False)[states + 1]
     return codes
 
 

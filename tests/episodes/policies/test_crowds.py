@@ -19,7 +19,7 @@ def hall(agents: int, wall: bool = False) -> bn.Scenario:
 
     Args:
         agents: Number of agents.
-        wall: True for a wall of glass between the agents and the barrel; two chests are on their side.
+        wall: True for a wall of glass between the agents, with two chests, and the barrel.
     """
     held: list[dict[str, int]] = [*({item: 1} for item in ITEMS), {"bone": 1}, {}]
     contents = [

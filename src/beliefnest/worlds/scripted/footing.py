@@ -19,7 +19,7 @@ from beliefnest.geometry.bodies import (
     FULL,
     ROOM,
     BodyCodes,
-    Doors,
+    Doorways,
     body_codes,
 )
 from beliefnest.world.doors import is_doorway
@@ -124,7 +124,7 @@ class Footing:
         has_doors: True if there is a door or gate.
     """
 
-    def __init__(self, registry: Registry, box: Box, blocks: Terrain, doors: Doors) -> None:
+    def __init__(self, registry: Registry, box: Box, blocks: Terrain, doors: Doorways) -> None:
         self._registry, self._box, self._blocks = registry, box, blocks
         self.is_whole = blocks.is_dense
         self._codes = body_codes(registry, doors, guesses=True)
@@ -133,7 +133,7 @@ class Footing:
         self.has_doors = any(map(is_doorway, named))
         self._windows: list[WalkWindow] = []
 
-    def is_same(self, doors: Doors) -> bool:
+    def is_same(self, doors: Doorways) -> bool:
         """Return True if it makes no difference whether other doors count as doorways."""
         codes = body_codes(self._registry, doors, guesses=True)
         return np.array_equal(codes[self._states + 1], self._codes[self._states + 1])

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.geometry.bodies import Doors
+from beliefnest.geometry.bodies import Doorways
 from beliefnest.geometry.free_lines import can_touch, can_use, eye_in
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.registry import AIR, Registry
@@ -99,7 +99,7 @@ class Ground:
         registry: Registry,
         box: Box,
         blocks: Terrain | BlockGrid,
-        doors: Doors = Doors.OPEN,
+        doors: Doorways = Doorways.OPEN,
     ) -> None:
         self._registry, self._box = registry, box
         if not isinstance(blocks, Terrain):
@@ -143,14 +143,14 @@ class Ground:
     @cached_property
     def with_doors_opened(self) -> "Ground":
         """Return the same ground for agents that open doors and gates by hand."""
-        return self._with(Doors.BY_HAND)
+        return self._with(Doorways.BY_HAND)
 
     @cached_property
     def without_doors(self) -> "Ground":
         """Return the same ground for agents that pass no door or gate with a leaf."""
-        return self._with(Doors.NONE)
+        return self._with(Doorways.NONE)
 
-    def _with(self, doors: Doors) -> "Ground":
+    def _with(self, doors: Doorways) -> "Ground":
         if self._footing.is_same(doors):
             return self
         return Ground(self._registry, self._box, self._blocks, doors)
