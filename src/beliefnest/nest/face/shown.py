@@ -291,7 +291,7 @@ class ShownSimulator(ABC):
     def credence(
         self,
         agent: str,
-        doubt: "Mapping[str, Mapping[str, Any]]",
+        doubt: "Mapping[str, Any]",
         initial: "npt.ArrayLike | None" = None,
         tick: int | None = None,
         *,
