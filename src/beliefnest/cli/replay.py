@@ -14,6 +14,7 @@ from beliefnest.nest.acting.replay import ReplayedTimeline, replay
 from beliefnest.nest.past.recording import read_start
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.servers.address import is_server
@@ -83,10 +84,10 @@ def _row(store: Path, replayed: ReplayedTimeline) -> dict[str, object]:
 
 def _line(row: dict[str, object]) -> str:
     programs = counted(int(str(row["programs"])), "program")
-    place = f"{row['store']}: {row['path']} {row['branch']!r}, {programs}"
+    place = f"{row['store']}: {row['path']} {quoted(row['branch'])}, {programs}"
     match row["difference"]:
         case {"tick": tick, "entry": entry, "field": field, "recorded": old, "found": new}:
             where = f"tick {tick}, {field or f'entry {entry}'}"
-            return f"{place}: differs at {where}: recorded {old!r}, now {new!r}"
+            return f"{place}: differs at {where}: recorded {quoted(old)}, now {quoted(new)}"
         case _:
             return f"{place}: no difference"

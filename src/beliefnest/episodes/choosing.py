@@ -8,6 +8,7 @@ from beliefnest.episodes.policies import resolve_policy
 from beliefnest.episodes.record import Budget
 from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError
+from beliefnest.world.texts import quoted
 
 if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.resolve import Connection
@@ -32,10 +33,10 @@ def chosen(
         UnknownNameError: A policy does not exist.
     """
     if not isinstance(policies, Mapping):
-        raise InputError(f"policies is {policies!r}; give a mapping from agents to policies")
+        raise InputError(f"policies is {quoted(policies)}; give a mapping from agents to policies")
     for agent in policies:
         if agent not in task.agents:
-            raise InputError(f"{agent!r} is none of the agents: {', '.join(task.agents)}")
+            raise InputError(f"{quoted(agent)} is none of the agents: {', '.join(task.agents)}")
     connection = None
     names: dict[str, str] = {}
     chosen: dict[str, Policy] = {}
@@ -47,7 +48,8 @@ def chosen(
         given = policies.get(agent, own)
         if not isinstance(given, str) and not callable(getattr(given, "act", None)):
             raise InputError(
-                f"the policy of {agent} is {given!r}; give the name of a policy, or an object with "
+                f"the policy of {agent} is {quoted(given)}; give the name of a policy, or an "
+                "object with "
                 "act(view)"
             )
         names[agent] = name_of(given)
@@ -87,5 +89,5 @@ def check_resumable(policies: Mapping[str, "str | Policy"]) -> None:
             kind = policy.removeprefix(_OBJECT)
             raise InputError(
                 f"{agent} was played by an object of the class {kind}, which is not in the file; "
-                f"give it again: Episode.resume(store, {{{agent!r}: {kind}(...)}})"
+                f"give it again: Episode.resume(store, {{{quoted(agent)}: {kind}(...)}})"
             )

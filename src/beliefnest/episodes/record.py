@@ -7,6 +7,7 @@ import msgspec
 
 from beliefnest.episodes.decided import Decision, Ended, RoundPart, Spent
 from beliefnest.errors import BranchError, InputError, NotBegunError, StoreError
+from beliefnest.world.texts import quoted
 from beliefnest.worlds.protocol import NO_WAY, Fault, ProgramPast, ProgramResult
 
 __all__ = [
@@ -62,7 +63,9 @@ class Budget(msgspec.Struct, frozen=True, omit_defaults=True):
             ("cost", self.cost, 0),
         ):
             if value is not None and not value >= least:
-                raise InputError(f"{name} of a budget is {value!r}; give at least {least}, or None")
+                raise InputError(
+                    f"{name} of a budget is {quoted(value)}; give at least {least}, or None"
+                )
 
     def is_spent(self, ticks: int, spent: Spent) -> bool:
         """Return True if ticks or spending have reached a limit."""
@@ -211,5 +214,5 @@ def kept_in(nest: Keeps) -> tuple[EpisodeStart, dict[str, Branch]]:
 def branch_of(branches: Mapping[str, Branch], name: str) -> Branch:
     """Return a branch of an episode; raise BranchError if it does not exist."""
     if name not in branches:
-        raise BranchError(f"the episode has no branch {name!r}; it has {', '.join(branches)}")
+        raise BranchError(f"the episode has no branch {quoted(name)}; it has {', '.join(branches)}")
     return branches[name]

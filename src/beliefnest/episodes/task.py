@@ -20,6 +20,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names, read_document
 from beliefnest.scenarios.writing import content_text
 from beliefnest.version import VERSION
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Position
 
 __all__ = ["Task"]
@@ -329,7 +330,8 @@ def _written(name_or_path: str) -> Document:
     """
     if name_or_path not in builtin_names() and not FilePath(name_or_path).is_file():
         raise UnknownNameError(
-            f"no task {name_or_path!r}, and no such file; there are {', '.join(Task.names())}, "
+            f"no task {quoted(name_or_path)}, and no such file; there are "
+            f"{', '.join(Task.names())}, "
             f"and of scenarios {', '.join(builtin_names())}"
         )
     return read_document(name_or_path)

@@ -9,6 +9,7 @@ from beliefnest.errors import BeliefNestError, InputError, ModelError
 from beliefnest.importing import imported_object, is_importable, is_object_name
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
+from beliefnest.world.texts import quoted
 
 __all__ = ["MODEL_GROUP", "OwnModel", "installed_models", "names_own_model", "own_model"]
 
@@ -73,18 +74,21 @@ def own_model(name: str) -> OwnModel:
     made = imported_object(name if installed is None else installed.value, "model")
     if isinstance(made, type) or not callable(getattr(made, "answer", None)):
         if not callable(made):
-            raise InputError(f"{name!r} is no class and no function; name one that makes a model")
+            raise InputError(
+                f"{quoted(name)} is no class and no function; name one that makes a model"
+            )
         try:
             made = made()
         except BeliefNestError:
             raise
         except (Exception, SystemExit) as error:  # Code of users may raise anything.
             raise InputError(
-                f"{name!r} cannot be called without arguments: {type(error).__name__}: {error}"
+                f"{quoted(name)} cannot be called without arguments: {type(error).__name__}: "
+                f"{error}"
             ) from error
     if not callable(getattr(made, "answer", None)):
         raise InputError(
-            f"{name!r} makes no model: {type(made).__name__} has no method "
+            f"{quoted(name)} makes no model: {type(made).__name__} has no method "
             "answer(messages, sampling), which returns an Answer"
         )
     return OwnModel(name, cast(Model, made))

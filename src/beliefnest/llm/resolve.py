@@ -17,6 +17,7 @@ from beliefnest.llm.providers import PROVIDERS, endpoint
 from beliefnest.llm.recorded_models import FileRecordingModel, load_replay, load_script
 from beliefnest.llm.remote import AnswerLimits, RemoteModel
 from beliefnest.llm.retrying import RetryingModel, RetryPolicy, TellWait, tell_on_stderr
+from beliefnest.world.texts import quoted
 
 __all__ = [
     "Connection",
@@ -100,9 +101,9 @@ def resolve_model(
     if is_own(name):
         return own_model(name)
     if kind not in _KINDS:
-        raise UnknownNameError(f"no model {name!r}{_nearest(kind)}")
+        raise UnknownNameError(f"no model {quoted(name)}{_nearest(kind)}")
     if not rest:
-        raise InputError(f"{name!r} is incomplete; write {kind}:{_placeholder(kind)}")
+        raise InputError(f"{quoted(name)} is incomplete; write {kind}:{_placeholder(kind)}")
     if kind == "replay":
         return load_replay(name, Path(rest))
     if kind == "scripted":

@@ -16,6 +16,7 @@ from beliefnest.errors import InputError
 from beliefnest.facts.reading import edits_of, plain_entry
 from beliefnest.world.array_types import Floats
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = [
@@ -95,9 +96,9 @@ def simplex_grid(k: int, m: int, smoothing: float = 0.0) -> Floats:
     """
     for name, value in (("k", k), ("m", m)):
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise InputError(f"{name} is {value!r}; give a whole number from 1")
+            raise InputError(f"{name} is {quoted(value)}; give a whole number from 1")
     if not 0 <= smoothing <= 1:
-        raise InputError(f"smoothing is {smoothing!r}; give a number from 0 to 1")
+        raise InputError(f"smoothing is {quoted(smoothing)}; give a number from 0 to 1")
     # Each vector is a way to put k - 1 bars between m stars.
     rows = []
     for bars in itertools.combinations(range(m + k - 1), k - 1):
@@ -172,7 +173,7 @@ class MindModel:
 
     def __post_init__(self) -> None:
         if not isinstance(self.agent, str) or not self.agent:
-            raise InputError(f"agent is {self.agent!r}; give the name of the modelled agent")
+            raise InputError(f"agent is {quoted(self.agent)}; give the name of the modelled agent")
         self._check_numbers()
         self._set("goal_values", _read_goals(self.goals))
         self._set("utility_rows", _utility_rows(self.utilities, tuple(self.goals)))
@@ -215,9 +216,11 @@ class MindModel:
         for name in ("step_cost", "stay_cost", "act_cost"):
             value = getattr(self, name)
             if not _is_number(value) or value < 0:
-                raise InputError(f"{name} is {value!r}; give a number from 0")
+                raise InputError(f"{name} is {quoted(value)}; give a number from 0")
         if not _is_number(self.discount) or not 0 < self.discount <= 1:
-            raise InputError(f"discount is {self.discount!r}; give a number above 0, at most 1")
+            raise InputError(
+                f"discount is {quoted(self.discount)}; give a number above 0, at most 1"
+            )
         if self.discount == 1 and self.stay_cost != 0:
             raise InputError(
                 f"discount is 1 and stay_cost {self.stay_cost}: staying for ever would cost "
@@ -232,18 +235,18 @@ class MindModel:
         if ticks is not None and (
             isinstance(ticks, bool) or not isinstance(ticks, int) or ticks < 1
         ):
-            raise InputError(f"step_ticks is {ticks!r}; give a whole number from 1, or None")
+            raise InputError(f"step_ticks is {quoted(ticks)}; give a whole number from 1, or None")
         for name in ("diagonal", "stays"):
             if not isinstance(getattr(self, name), bool):
-                raise InputError(f"{name} is {getattr(self, name)!r}; give True or False")
+                raise InputError(f"{name} is {quoted(getattr(self, name))}; give True or False")
         if not _is_number(self.lapse) or not 0 <= self.lapse <= 1:
-            raise InputError(f"lapse is {self.lapse!r}; give a number from 0 to 1")
+            raise InputError(f"lapse is {quoted(self.lapse)}; give a number from 0 to 1")
         given: Any = self.rationality
         listed: list[Any] = [given] if _is_number(given) else list(_listed("rationality", given))
         if not listed or not all(_is_number(each) and each >= 0 for each in listed):
-            raise InputError(f"rationality is {given!r}; give numbers that are 0 or more")
+            raise InputError(f"rationality is {quoted(given)}; give numbers that are 0 or more")
         if len(set(listed)) < len(listed):
-            raise InputError(f"rationality is {given!r}; name each value once")
+            raise InputError(f"rationality is {quoted(given)}; name each value once")
         self._set("rationalities", tuple(float(each) for each in listed))
 
 
@@ -256,7 +259,7 @@ def read_doubt(doubt: Mapping[str, Any] | None) -> tuple[Alternative, ...]:
     if doubt is None:
         return (Alternative(""),)
     if not isinstance(doubt, Mapping) or not doubt:
-        raise InputError(f"doubt is {doubt!r}; give alternatives by name, or None")
+        raise InputError(f"doubt is {quoted(doubt)}; give alternatives by name, or None")
     if len(doubt) > MOST_ALTERNATIVES:
         raise InputError(
             f"the doubt has {len(doubt)} alternatives; give at most {MOST_ALTERNATIVES}"
@@ -269,14 +272,16 @@ def read_doubt(doubt: Mapping[str, Any] | None) -> tuple[Alternative, ...]:
             kind, key = odd[0]
             has, lacks = (first, each) if odd[0] in first.elements else (each, first)
             raise InputError(
-                f"alternative {has.name!r} sets the {kind} {key}, {lacks.name!r} does not; "
+                f"alternative {quoted(has.name)} sets the {kind} {key}, {quoted(lacks.name)} does "
+                "not; "
                 "let all alternatives of a doubt set the same elements"
             )
     for number, each in enumerate(read):
         for other in read[:number]:
             if _values(each) == _values(other):
                 raise InputError(
-                    f"alternatives {other.name!r} and {each.name!r} are equal; alternatives "
+                    f"alternatives {quoted(other.name)} and {quoted(each.name)} are equal; "
+                    "alternatives "
                     "exclude each other, so let them differ or remove one"
                 )
     return tuple(read)
@@ -290,12 +295,13 @@ def _values(each: Alternative) -> tuple[object, ...]:
 
 def _read_alternative(name: object, edits: object) -> Alternative:
     if not isinstance(name, str) or not name:
-        raise InputError(f"an alternative is called {name!r}; give it a name")
+        raise InputError(f"an alternative is called {quoted(name)}; give it a name")
     if isinstance(edits, list | tuple):
         edits = edits_of(map(plain_entry, edits))
     if not isinstance(edits, Mapping) or set(edits) - {"blocks", "containers", "agents"}:
         raise InputError(
-            f"alternative {name!r} is {edits!r}; give a list of facts, or a mapping with blocks, "
+            f"alternative {quoted(name)} is {quoted(edits)}; give a list of facts, or a mapping "
+            "with blocks, "
             "containers or agents"
         )
     registry = Registry.load()
@@ -308,7 +314,8 @@ def _read_alternative(name: object, edits: object) -> Alternative:
         at = _position(name, place)
         if at in blocks and not registry.is_container(blocks[at].split("[")[0]):
             raise InputError(
-                f"alternative {name!r} puts items into {blocks[at]!r} at {at}, which is no "
+                f"alternative {quoted(name)} puts items into {quoted(blocks[at])} at {at}, which "
+                "is no "
                 "container; change its block or its contents"
             )
         containers[at] = _items(name, items)
@@ -322,16 +329,20 @@ def _read_alternative(name: object, edits: object) -> Alternative:
 def _items(name: str, items: object) -> Items:
     registry = Registry.load()
     if not isinstance(items, Mapping):
-        raise InputError(f"alternative {name!r} has contents {items!r}; give counts by item")
+        raise InputError(
+            f"alternative {quoted(name)} has contents {quoted(items)}; give counts by item"
+        )
     for item, count in items.items():
         registry.item_stack(str(item))
         if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-            raise InputError(f"alternative {name!r} has {count!r} {item}; give a count from 1")
+            raise InputError(
+                f"alternative {quoted(name)} has {quoted(count)} {item}; give a count from 1"
+            )
     return {str(item).removeprefix("minecraft:"): int(count) for item, count in items.items()}
 
 
 def _position(name: str, place: object) -> Position:
-    return _cell(f"alternative {name!r}", place)
+    return _cell(f"alternative {quoted(name)}", place)
 
 
 def _cell(owner: str, place: object) -> Position:
@@ -339,7 +350,7 @@ def _cell(owner: str, place: object) -> Position:
     if len(parts) != 3 or not all(
         isinstance(part, int | np.integer) and not isinstance(part, bool) for part in parts
     ):
-        raise InputError(f"{owner} names the place {place!r}; give three whole numbers")
+        raise InputError(f"{owner} names the place {quoted(place)}; give three whole numbers")
     return (int(parts[0]), int(parts[1]), int(parts[2]))
 
 
@@ -347,33 +358,36 @@ def _point(name: str, agent: object, feet: object) -> Point:
     parts = tuple(feet) if isinstance(feet, Sequence) and not isinstance(feet, str) else ()
     if len(parts) != 3 or not all(_is_number(part) for part in parts):
         raise InputError(
-            f"alternative {name!r} puts {agent} at {feet!r}; give the feet as three numbers"
+            f"alternative {quoted(name)} puts {agent} at {quoted(feet)}; give the feet as three "
+            "numbers"
         )
     return (float(parts[0]), float(parts[1]), float(parts[2]))
 
 
 def _read_goals(goals: object) -> Mapping[str, PossibleGoal]:
     if not isinstance(goals, Mapping) or not goals:
-        raise InputError(f"goals are {goals!r}; give goals by name")
+        raise InputError(f"goals are {quoted(goals)}; give goals by name")
     registry = Registry.load()
     read = {}
     for name, what in goals.items():
         if not isinstance(name, str) or not name or "." in name:
-            raise InputError(f"a goal is called {name!r}; give it a name without dots")
+            raise InputError(f"a goal is called {quoted(name)}; give it a name without dots")
         if not isinstance(what, Mapping) or len(what) != 1 or set(what) - {"at", "block", "item"}:
             raise InputError(
-                f"goal {name!r} is {what!r}; give {{'at': cell}}, {{'block': name}} or "
+                f"goal {quoted(name)} is {quoted(what)}; give {{'at': cell}}, {{'block': name}} or "
                 "{'item': name}: one place or thing. An agent that does several things one after "
                 "the other is a program or a policy of `imagine`"
             )
         ((kind, value),) = what.items()
         if kind == "at":
-            read[name] = PossibleGoal(at=_cell(f"goal {name!r}", value))
+            read[name] = PossibleGoal(at=_cell(f"goal {quoted(name)}", value))
             continue
         text = str(value).removeprefix("minecraft:")
         known = registry.has_block(text) if kind == "block" else registry.has_item(text)
         if not known:
-            raise InputError(f"goal {name!r} is about {kind} {value!r}, which does not exist")
+            raise InputError(
+                f"goal {quoted(name)} is about {kind} {quoted(value)}, which does not exist"
+            )
         read[name] = PossibleGoal(block=text) if kind == "block" else PossibleGoal(item=text)
     return read
 
@@ -386,18 +400,19 @@ def _utility_rows(utilities: object, goals: Sequence[str]) -> Floats:
             given = utilities[goal]
             values.append([given] if _is_number(given) else list(_listed(goal, given)))
             if not values[-1]:
-                raise InputError(f"goal {goal!r} has no utility; give at least one value")
+                raise InputError(f"goal {quoted(goal)} has no utility; give at least one value")
         rows = list(itertools.product(*values))
     elif isinstance(utilities, Sequence) and not isinstance(utilities, str) and utilities:
         rows = []
         for each in utilities:
             if not isinstance(each, Mapping):
-                raise InputError(f"utilities list {each!r}; give a mapping of values by goal")
+                raise InputError(f"utilities list {quoted(each)}; give a mapping of values by goal")
             _check_goal_names(each, goals)
             rows.append(tuple(each[goal] for goal in goals))
     else:
         raise InputError(
-            f"utilities are {utilities!r}; give lists of values by goal, or a list of mappings"
+            f"utilities are {quoted(utilities)}; give lists of values by goal, or a list of "
+            "mappings"
         )
     if not all(_is_number(value) for row in rows for value in row):
         raise InputError("a utility is no finite number; give numbers in units of one step's cost")
@@ -453,17 +468,22 @@ def _actual(actual: object, names: Sequence[str], doubts: bool) -> Mapping[str, 
     if actual is None:
         return None
     if not doubts:
-        raise InputError(f"actual is {actual!r} without a doubt; give the alternatives, or None")
+        raise InputError(
+            f"actual is {quoted(actual)} without a doubt; give the alternatives, or None"
+        )
     if isinstance(actual, str):
         if actual in names:
             return {name: float(name == actual) for name in names}
         if actual == "unknown":
             return {name: 1 / len(names) for name in names}
         raise InputError(
-            f"actual is {actual!r}; give None, 'unknown', weights, or one of {', '.join(names)}"
+            f"actual is {quoted(actual)}; give None, 'unknown', weights, or one of "
+            f"{', '.join(names)}"
         )
     if not isinstance(actual, Mapping):
-        raise InputError(f"actual is {actual!r}; give None, a name, 'unknown' or weights by name")
+        raise InputError(
+            f"actual is {quoted(actual)}; give None, a name, 'unknown' or weights by name"
+        )
     unknown = [str(name) for name in actual if name not in names]
     if unknown:
         raise InputError(
@@ -471,7 +491,7 @@ def _actual(actual: object, names: Sequence[str], doubts: bool) -> Mapping[str, 
         )
     weights = {name: actual.get(name, 0.0) for name in names}
     if not all(_is_number(weight) and weight >= 0 for weight in weights.values()):
-        raise InputError(f"actual is {dict(actual)!r}; give weights from 0")
+        raise InputError(f"actual is {quoted(dict(actual))}; give weights from 0")
     total = sum(weights.values())
     if abs(total - 1) > _SUM_SLACK:
         raise InputError(f"the weights of actual sum to {total:.6g}; let them sum to 1")
@@ -480,7 +500,7 @@ def _actual(actual: object, names: Sequence[str], doubts: bool) -> Mapping[str, 
 
 def _listed(name: str, values: object) -> Iterable[Any]:
     if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
-        raise InputError(f"{name!r} has {values!r}; give a number or a list of numbers")
+        raise InputError(f"{quoted(name)} has {quoted(values)}; give a number or a list of numbers")
     return values
 
 

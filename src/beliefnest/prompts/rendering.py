@@ -23,7 +23,7 @@ from beliefnest.prompts.templates import (
     load_template,
 )
 from beliefnest.prompts.text import nearest
-from beliefnest.world.texts import visible
+from beliefnest.world.texts import quoted, visible
 
 __all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "Renderer", "instructions", "render"]
 
@@ -235,7 +235,7 @@ def _parse(environment: jinja2.Environment, name: str, text: str) -> nodes.Templ
 
 def _refuse(template: str, line: int, kind: str, name: str, known: Iterable[str]) -> NoReturn:
     raise TemplateError(
-        f"{template}, line {line}: there is no {kind} {name!r}{nearest(name, known)}"
+        f"{template}, line {line}: there is no {kind} {quoted(name)}{nearest(name, known)}"
     )
 
 

@@ -9,6 +9,7 @@ from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.prompts.observations import Observation
 from beliefnest.prompts.text import nearest
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Position
 
 __all__ = ["BranchView", "belief_of", "believed_agent", "blocks_named", "blocks_where", "owner_of"]
@@ -108,7 +109,9 @@ def believed_agent(state: State, agent: str | None) -> AgentBelief:
     """
     name = owner_of(state) if agent is None else agent
     if name not in state.agents:
-        raise UnknownNameError(f"no agent {name!r} in the scenario{nearest(name, state.agents)}")
+        raise UnknownNameError(
+            f"no agent {quoted(name)} in the scenario{nearest(name, state.agents)}"
+        )
     return state.agents[name]
 
 

@@ -9,6 +9,7 @@ from types import MappingProxyType
 
 from beliefnest.errors import TemplateError
 from beliefnest.files import read_regular_text
+from beliefnest.world.texts import quoted
 
 __all__ = ["BUILT_IN_TEMPLATES", "Template", "built_in_template", "load_template"]
 
@@ -48,7 +49,8 @@ def built_in_template(name: str) -> Template:
     """
     if name not in BUILT_IN_TEMPLATES:
         raise TemplateError(
-            f"there is no built-in template {name!r}; there are {', '.join(BUILT_IN_TEMPLATES)}"
+            f"there is no built-in template {quoted(name)}; there are "
+            f"{', '.join(BUILT_IN_TEMPLATES)}"
         )
     source = files("beliefnest.prompts") / "texts" / f"{name}.txt"
     return Template(name, source.read_text(encoding="utf-8"))

@@ -18,6 +18,7 @@ from beliefnest.world.forms import note
 from beliefnest.world.near import NEAR, names_near
 from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.signs import sign_words
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import listed, point_words
 
@@ -180,7 +181,7 @@ class Believed:
             if len(alike) == 1:
                 return alike[0]
         raise self._fault(
-            f"the right answer is {found.names[0]!r}, which is none of the options "
+            f"the right answer is {quoted(found.names[0])}, which is none of the options "
             f"{', '.join(options)}; add it"
         )
 

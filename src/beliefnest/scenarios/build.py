@@ -50,6 +50,7 @@ from beliefnest.world.limits import AGENT_SLOTS, WORN_SLOTS
 from beliefnest.world.paths import parse_pattern
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Block, Items, Point, Position, block_at
 
 __all__ = ["build_scenario"]
@@ -73,7 +74,7 @@ def build_scenario(
     """
     if not _NAME.fullmatch(file.name):
         raise document.fault(
-            ("name",), f"{file.name!r} is no name for a folder; use letters, digits, - and _"
+            ("name",), f"{quoted(file.name)} is no name for a folder; use letters, digits, - and _"
         )
     builder = _Builder(document, file, Registry.load())
     descriptions = {
@@ -194,7 +195,7 @@ class _Builder:
         if not expect or any(not isinstance(each, Answers) for each in expect):
             for key in ("acts_in", "agent", "task"):
                 if getattr(entry, key) is None:
-                    raise self._document.fault(path, f"the key {key!r} is missing")
+                    raise self._document.fault(path, f"the key {quoted(key)} is missing")
         return Probe(
             path=entry.path,
             acts_in=entry.path if entry.acts_in is None else entry.acts_in,
@@ -262,7 +263,7 @@ class _Builder:
         programs = dict(entry.programs)
         if (entry.agent is None) != (entry.program is None):
             missing = "agent" if entry.agent is None else "program"
-            raise self._document.fault(path, f"the key {missing!r} is missing")
+            raise self._document.fault(path, f"the key {quoted(missing)} is missing")
         if entry.agent is not None and entry.program is not None:
             if entry.agent in programs:
                 raise self._document.fault(path, f"has two programs for {entry.agent}")
@@ -294,7 +295,8 @@ class _Builder:
         earlier = self._file.initial_beliefs[:number]
         if names in [parse_pattern(each.path, self._snapshot.agents) for each in earlier]:
             raise self._document.fault(
-                (*path, "path"), f"{entry.path!r} has initial beliefs already; put them into one"
+                (*path, "path"),
+                f"{quoted(entry.path)} has initial beliefs already; put them into one",
             )
         blocks = self._believed_blocks((*path, "blocks"), entry.blocks)
         for index, sign in enumerate(entry.signs):

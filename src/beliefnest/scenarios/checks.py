@@ -9,6 +9,7 @@ from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import AGENT_SLOTS, WORN_SLOTS, items_fault, slots_at
 from beliefnest.world.paths import parse_path
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Items, Position
 
 __all__ = ["Checks", "check_inside", "check_items"]
@@ -63,7 +64,7 @@ class Checks:
         """Refuse an unknown agent."""
         if name not in self.snapshot.agents:
             known = ", ".join(self.snapshot.agents)
-            raise self.fault(path, f"there is no agent {name!r}; agents are {known}")
+            raise self.fault(path, f"there is no agent {quoted(name)}; agents are {known}")
 
     def container_at(self, position: Position) -> Position:
         """Return the position of the container to which a block belongs: that of its right half."""

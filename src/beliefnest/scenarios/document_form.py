@@ -89,7 +89,7 @@ def _fault(document: Document, error: str, form: _Form) -> ScenarioError:
         name = unknown["name"]
         return document.fault((*path, name), f"unknown key{_hint(shortened(name), path)}")
     if missing := _MISSING_FIELD.fullmatch(what):
-        return document.fault(path, f"the key {missing['name']!r} is missing")
+        return document.fault(path, f"the key {quoted(missing['name'])} is missing")
     what = shortened(what[:1].lower() + what[1:].replace("`", "'"), _LONGEST_FAULT)
     if match["key"]:
         quotes = "; put it into quotes" if what.startswith("expected 'str'") else ""

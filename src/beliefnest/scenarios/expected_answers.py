@@ -20,6 +20,7 @@ from beliefnest.scenarios.expected import (
     source_of,
 )
 from beliefnest.scenarios.naming import Naming
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import listed
 
 __all__ = [
@@ -89,7 +90,7 @@ class Answers(Expected):
             yield (), "give a question and at least one right answer"
         missing = [each for each in right if each not in options]
         if options and missing:
-            yield ("right",), f"{missing[0]!r} is none of the options"
+            yield ("right",), f"{quoted(missing[0])} is none of the options"
         if len(options) > _MOST_OPTIONS:
             yield ("options",), f"are more than {_MOST_OPTIONS}"
         if len({each.casefold() for each in options}) < len(options):
@@ -100,11 +101,11 @@ class Answers(Expected):
         if letters:
             yield (
                 ("options",),
-                f"{letters[0]!r} is a single letter, which names an option; write it out",
+                f"{quoted(letters[0])} is a single letter, which names an option; write it out",
             )
         both = [each for each in right if each in self.wrong]
         if both:
-            yield ("wrong",), f"{both[0]!r} is right as well"
+            yield ("wrong",), f"{quoted(both[0])} is right as well"
         if options and self.wrong:
             yield ("wrong",), "is for answers in words, without options"
 
@@ -134,7 +135,8 @@ class Answers(Expected):
         both = [each for each in found.right if each in self.wrong]
         if both:
             raise ScenarioError(
-                f"{self.believed.where}the belief gives {both[0]!r}, which 'wrong' names as well"
+                f"{self.believed.where}the belief gives {quoted(both[0])}, which 'wrong' names as "
+                "well"
             )
         return found
 
@@ -148,7 +150,7 @@ class Answers(Expected):
     def judge_text(self, answer: str) -> Judgement:
         """Judge an answer: one of the options if there are any, else an answer in words."""
         if self.options:
-            return self.verdict(answer in self.right, f"answered {answer!r}", by_deed=True)
+            return self.verdict(answer in self.right, f"answered {quoted(answer)}", by_deed=True)
         return self._judge_words(answer)
 
     def _judge_words(self, answer: str) -> Judgement:
@@ -157,7 +159,7 @@ class Answers(Expected):
         known = list(dict.fromkeys([*right, *self.wrong, *self.known]))
         named = named_in_words(answer, known)
         chosen = {known[number] for number in named.yes}
-        told = f"answered {answer!r}"
+        told = f"answered {quoted(answer)}"
         other = bool(chosen - set(right)) or named.alternative
         if named.unsure or (chosen & set(right) and other):
             told += ", which is ambiguous"

@@ -18,6 +18,7 @@ from beliefnest.scenarios.expected_acts import (
     Takes,
 )
 from beliefnest.scenarios.expected_answers import Answers
+from beliefnest.world.texts import quoted
 
 __all__ = [
     "KINDS",
@@ -134,7 +135,8 @@ def read_inferred(
         for name in expected.factors:
             if name not in factors:
                 raise checks.fault(
-                    (*path, factor), f"there is no factor {name!r}; there are {', '.join(factors)}"
+                    (*path, factor),
+                    f"there is no factor {quoted(name)}; there are {', '.join(factors)}",
                 )
         if bounds.above is None and bounds.below is None:
             raise checks.fault((*path, factor), "expects nothing; give above, below or both")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from beliefnest.errors import InputError
 from beliefnest.importing import imported_object
 from beliefnest.scenarios.trial import Trial
+from beliefnest.world.texts import quoted
 
 __all__ = ["NamedFunction", "function_of"]
 
@@ -34,7 +35,7 @@ class NamedFunction:
         """
         found = imported_object(f"{self.module}:{self.function}", "judging function")
         if not callable(found):
-            raise InputError(f"{self.function!r} in {self.module!r} is no function")
+            raise InputError(f"{quoted(self.function)} in {quoted(self.module)} is no function")
         return found
 
 
@@ -50,4 +51,4 @@ def function_of(written: object) -> tuple[Callable[[Trial], bool | str], str]:
         module, _, function = written.partition(":")
         if function.isidentifier() and all(part.isidentifier() for part in module.split(".")):
             return NamedFunction(module, function), function
-    raise InputError(f"{written!r} is no function; give one as module:function")
+    raise InputError(f"{quoted(written)} is no function; give one as module:function")

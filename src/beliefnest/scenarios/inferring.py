@@ -19,6 +19,7 @@ from beliefnest.scenarios.format import (
 )
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items, Position
 
 if TYPE_CHECKING:
@@ -170,7 +171,7 @@ def _check(document: Document, path: KeyPath, entry: InferEntry, snapshot: Snaps
     if entry.agent not in snapshot.agents:
         known = ", ".join(snapshot.agents)
         raise document.fault(
-            (*path, "agent"), f"there is no agent {entry.agent!r}; agents are {known}"
+            (*path, "agent"), f"there is no agent {quoted(entry.agent)}; agents are {known}"
         )
     for name, goal in entry.goals.items():
         if goal.at is not None:

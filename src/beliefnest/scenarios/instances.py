@@ -32,6 +32,7 @@ from beliefnest.scenarios.parameters import (
 from beliefnest.scenarios.terrain_entry import terrain_in
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
 from beliefnest.world.words import counted
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
@@ -127,7 +128,7 @@ class _Drawing:
             for key in ("seen_by", "hidden_from", "reached_by"):
                 for agent in getattr(rule, key):
                     if agent not in agents:
-                        told = f"there is no agent {agent!r}; agents are {', '.join(agents)}"
+                        told = f"there is no agent {quoted(agent)}; agents are {', '.join(agents)}"
                         raise self.document.fault((_KEY, name, key), told)
 
     def draw(self, chance: random.Random) -> dict[str, Any]:
@@ -309,7 +310,7 @@ def _rule(
         raise document.fault(path, f"{error}; rules are {keys}") from None
     for other in rule.differs_from:
         if other not in declared:
-            raise document.fault((*path, "differs_from"), f"{other!r} is no parameter")
+            raise document.fault((*path, "differs_from"), f"{quoted(other)} is no parameter")
     if rule.within is None:
         for key in ("seen_by", "hidden_from", "reached_by"):
             if getattr(rule, key):

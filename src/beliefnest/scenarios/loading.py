@@ -11,6 +11,7 @@ from beliefnest.scenarios.document_form import check_form, check_written
 from beliefnest.scenarios.drawn_map import with_map
 from beliefnest.scenarios.older_spellings import respelled
 from beliefnest.scenarios.parameters import text_of, with_parameters
+from beliefnest.world.texts import quoted
 
 __all__ = [
     "DocumentChange",
@@ -33,7 +34,7 @@ def condition_number(condition: int | str | None) -> int | None:
         return condition
     if isinstance(condition, str) and condition.strip().isdecimal():
         return int(condition)
-    raise ScenarioError(f"{condition!r} is no condition; give its number")
+    raise ScenarioError(f"{quoted(condition)} is no condition; give its number")
 
 
 def condition_numbers(document: Document) -> tuple[int | None, ...]:

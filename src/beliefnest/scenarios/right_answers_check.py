@@ -12,6 +12,7 @@ from beliefnest.scenarios.content import Probe, ScenarioContent, ScenarioWarning
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.probing import naming_for, resolved
 from beliefnest.scenarios.prose_check import warn_of_prose
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import listed
 
 __all__ = ["warn_of_answers", "warn_of_scene"]
@@ -63,7 +64,8 @@ def _several(probes: Sequence[Probe]) -> Iterator[ScenarioWarning]:
         if question.options and len(question.right) > 1 and question.believed is not None:
             right = listed([repr(each) for each in question.right])
             yield ScenarioWarning(
-                f"{question.believed.where}probe {probe.label!r} has {len(question.right)} right "
+                f"{question.believed.where}probe {quoted(probe.label)} has {len(question.right)} "
+                "right "
                 f"answers, {right}: {question.believed.thing} is believed to be in each; "
                 "list it under 'unique', or change the script",
                 f"several {question.believed.where}",
@@ -93,15 +95,16 @@ def _intended(
         probe, kind = kinds[0]
         yield ScenarioWarning(
             f"{probe.where}condition {scenario.condition} is described as "
-            f"{scenario.condition_description.strip()!r}, and the right answer to probe "
-            f"{probe.label!r} is that of a {kind}; change the script or the description",
+            f"{quoted(scenario.condition_description.strip())}, and the right answer to probe "
+            f"{quoted(probe.label)} is that of a {kind}; change the script or the description",
             f"described {probe.where}{scenario.condition}",
         )
 
 
 def _other(probe: Probe, said: str, computed: str) -> ScenarioWarning:
     return ScenarioWarning(
-        f"{probe.where}probe {probe.label!r} is meant as {said!r}, but {computed}; change the "
+        f"{probe.where}probe {quoted(probe.label)} is meant as {quoted(said)}, but {computed}; "
+        "change the "
         "script, or what is intended",
         f"intended {probe.where}",
     )

@@ -10,6 +10,7 @@ from beliefnest.facts.kinds import FactEntry
 from beliefnest.facts.reading import PlainScene, check_entry, conditions_of
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.forms import note
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
 
 __all__ = [
@@ -119,11 +120,11 @@ def _faults_of_help(
         if goal.reach or goal.never or goal.ticks is not None or goal.messages is not None:
             yield where, "stands beside other keys; remove them: the agent has no other goal"
         elif goal.helps not in agents:
-            yield where, f"{goal.helps!r} is none of the agents {_listed(agents)}"
+            yield where, f"{quoted(goal.helps)} is none of the agents {_listed(agents)}"
         elif goal.helps == name or helped.helps is not None:
-            yield where, f"{goal.helps!r} has no goal of its own; name another agent"
+            yield where, f"{quoted(goal.helps)} has no goal of its own; name another agent"
         elif not entry.goals_known and goal.helps not in entry.possible_goals:
-            yield where, f"the goal of {goal.helps!r} is unknown; give its `possible_goals`"
+            yield where, f"the goal of {quoted(goal.helps)} is unknown; give its `possible_goals`"
 
 
 def _faults_of_possible_goals(
@@ -134,7 +135,7 @@ def _faults_of_possible_goals(
     for name, possible in entry.possible_goals.items():
         given = ("possible_goals", name)
         if name not in agents:
-            yield given, f"{name!r} is none of the agents {_listed(agents)}"
+            yield given, f"{quoted(name)} is none of the agents {_listed(agents)}"
         elif not possible:
             yield given, "is empty; name at least one goal"
         elif any(goal.helps is not None for goal in possible.values()):
@@ -157,7 +158,7 @@ def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
     """
     for name in sorted({*entry.players, *entry.goals, *entry.policies, *entry.talk}):
         if name not in agents:
-            raise InputError(f"{name!r} is none of the agents {_listed(agents)}")
+            raise InputError(f"{quoted(name)} is none of the agents {_listed(agents)}")
     for path, message in rule_faults(entry, agents):
         raise InputError(f"{'.'.join(path)}: {message}")
     possible = [goal for goals in entry.possible_goals.values() for goal in goals.values()]

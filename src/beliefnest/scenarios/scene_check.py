@@ -13,6 +13,7 @@ from beliefnest.scenarios.format import ScenarioFile
 from beliefnest.scenarios.space import parts_of
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Position
 from beliefnest.world.words import listed
 
@@ -65,7 +66,11 @@ def _names(file: ScenarioFile) -> _Found:
     for path, name in named:
         other = first.setdefault(name.casefold(), name)
         if other != name:
-            yield "names", path, f"{name!r} differs from {other!r} only in case; rename one of them"
+            yield (
+                "names",
+                path,
+                f"{quoted(name)} differs from {quoted(other)} only in case; rename one of them",
+            )
 
 
 def _walls(document: Document, file: ScenarioFile, snapshot: Snapshot) -> _Found:
@@ -172,7 +177,8 @@ def _options(file: ScenarioFile) -> _Found:
                     yield (
                         "options",
                         ("probes", number, "expect", "answers", place, "options"),
-                        f"{' '.join(one)!r} is contained in {' '.join(other)!r}, so that an answer "
+                        f"{quoted(' '.join(one))} is contained in {quoted(' '.join(other))}, so "
+                        "that an answer "
                         "may name both; give options without a common name",
                     )
 

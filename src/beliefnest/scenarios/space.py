@@ -15,6 +15,7 @@ from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import text_of, written
 from beliefnest.world.terrain import Terrain
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Items, Position
 
 __all__ = [
@@ -68,7 +69,7 @@ def build_blocks(document: Document, file: ScenarioFile, box: Box, registry: Reg
         with document.naming((*path, "block")):
             state = registry.state_id(container.block)
         if not registry.is_container(registry.name(state)):
-            raise document.fault((*path, "block"), f"{container.block!r} is no container")
+            raise document.fault((*path, "block"), f"{quoted(container.block)} is no container")
         check_inside(document, (*path, "at"), container.at, box)
         blocks[box.index(container.at)] = state
     for number, sign in enumerate(file.signs):

@@ -208,7 +208,7 @@ def damaged_files(folder: Path, kind: str) -> list[PairedDifference]:
     if manifest.form != _FORM or manifest.kind != kind:
         raise InputError(
             f"{file} is that of a {quoted(manifest.kind)} in the form {quoted(manifest.form)}, "
-            f"and the folder holds a {kind} of the form {_FORM!r}; {remedy}"
+            f"and the folder holds a {kind} of the form {quoted(_FORM)}; {remedy}"
         )
     for name, known in manifest.sha256.items():
         path = inside(folder, name)

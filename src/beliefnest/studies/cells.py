@@ -19,6 +19,7 @@ from beliefnest.studies.checking import StudyKeyError
 from beliefnest.studies.design import Design, Template
 from beliefnest.studies.random_variations import drawn_variations
 from beliefnest.studies.variation import Variation, listed_variations
+from beliefnest.world.texts import quoted
 
 __all__ = [
     "SEEDS",
@@ -252,7 +253,8 @@ def plan_cells(
         if design.design != "crossed" and len(conditions) < 2:
             raise StudyKeyError(
                 "design",
-                f"{name} has one condition, and design {design.design!r} allocates several; give "
+                f"{name} has one condition, and design {quoted(design.design)} allocates several; "
+                "give "
                 "the scenario conditions, or leave `design` out",
             )
         invalid += _unknown_conditions(design, name, document)
@@ -330,7 +332,7 @@ def check_called(called: dict[str, str], name: str, source: str) -> None:
     other = called.setdefault(name, source)
     if other != source:
         raise InputError(
-            f"{other} and {source} are both called {name!r}, so that their rows would be "
+            f"{other} and {source} are both called {quoted(name)}, so that their rows would be "
             "indistinguishable; give one another name"
         )
 

@@ -15,6 +15,7 @@ from beliefnest.studies.program_rewriting import Rewriting, rewritten
 from beliefnest.studies.scene_changes import SceneKind
 from beliefnest.studies.symmetry import Placing
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 
 __all__ = ["MovedBySymmetry", "Renamed"]
 
@@ -93,7 +94,8 @@ class MovedBySymmetry:
     def _told(self, text: str) -> str:
         if found := _DIRECTIONAL.search(text):
             raise InputError(
-                f"says {found[0]!r}, which is another direction in a scene that is {self._name}; "
+                f"says {quoted(found[0])}, which is another direction in a scene that is "
+                f"{self._name}; "
                 "name places by parameters"
             )
         return self._text(text)

@@ -9,6 +9,7 @@ from typing import Any, TypeGuard
 from beliefnest.errors import InputError
 from beliefnest.llm.budget import RunLimits
 from beliefnest.scenarios.loading import condition_number
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import nearest_or_all
 
 __all__ = [
@@ -48,7 +49,7 @@ def several(key: str, names: object) -> tuple[str, ...]:
     found = [names] if isinstance(names, str | os.PathLike) else names
     if isinstance(found, Sequence) and all(isinstance(each, str | os.PathLike) for each in found):
         return tuple(map(os.fspath, found))
-    raise StudyKeyError(key, f"{key} is {names!r}; give a name, or a list of names")
+    raise StudyKeyError(key, f"{key} is {quoted(names)}; give a name, or a list of names")
 
 
 def checked_columns(names: object, known: Sequence[str]) -> list[str]:
@@ -61,7 +62,7 @@ def checked_columns(names: object, known: Sequence[str]) -> list[str]:
     chosen = several("by", names)
     for name in chosen:
         if name not in known:
-            raise InputError(f"there is no column {name!r}{nearest_or_all(name, known)}")
+            raise InputError(f"there is no column {quoted(name)}{nearest_or_all(name, known)}")
     return list(chosen)
 
 
@@ -76,7 +77,7 @@ def checked_conditions(conditions: object) -> tuple[int, ...] | None:
         return None
     found = [conditions] if isinstance(conditions, int | str) else conditions
     if not isinstance(found, Sequence) or not found:
-        told = f"conditions is {conditions!r}; give numbers, or leave it out for all of them"
+        told = f"conditions is {quoted(conditions)}; give numbers, or leave it out for all of them"
         raise StudyKeyError("conditions", told)
     numbers = tuple(number for each in found if (number := condition_number(each)) is not None)
     check_once("conditions", numbers)
@@ -87,14 +88,16 @@ def check_once(key: str, values: Sequence[Any], what: str = "") -> None:
     """Raise StudyKeyError if a list contains a value twice."""
     twice = [value for value in values if values.count(value) > 1]
     if twice:
-        told = f"{what or key}: {twice[0]!r} is named twice; use repeats to do it again"
+        told = f"{what or key}: {quoted(twice[0])} is named twice; use repeats to do it again"
         raise StudyKeyError(key, told)
 
 
 def check_count(key: str, number: object) -> None:
     """Raise StudyKeyError unless a value is a whole number, at least 1."""
     if not is_count(number):
-        raise StudyKeyError(key, f"{key} is {number!r}; it must be a whole number, at least 1")
+        raise StudyKeyError(
+            key, f"{key} is {quoted(number)}; it must be a whole number, at least 1"
+        )
 
 
 def is_whole(number: object) -> TypeGuard[int]:
@@ -122,11 +125,13 @@ def checked_limits(max_tokens: int | None, max_cost: float | None) -> RunLimits:
     """
     if max_tokens is not None and not is_count(max_tokens):
         raise StudyKeyError(
-            "max_tokens", f"max_tokens is {max_tokens!r}; give at least 1, or no limit"
+            "max_tokens", f"max_tokens is {quoted(max_tokens)}; give at least 1, or no limit"
         )
     is_number = isinstance(max_cost, int | float) and not isinstance(max_cost, bool)
     if max_cost is not None and (not is_number or math.isnan(max_cost) or max_cost < 0):
-        raise StudyKeyError("max_cost", f"max_cost is {max_cost!r}; give US dollars, or no limit")
+        raise StudyKeyError(
+            "max_cost", f"max_cost is {quoted(max_cost)}; give US dollars, or no limit"
+        )
     return RunLimits(max_tokens, max_cost)
 
 
@@ -140,13 +145,17 @@ def checked_lists(variations: Mapping[str, Sequence[Any]]) -> None:
         if isinstance(values, str) or not isinstance(values, Sequence) or not values:
             raise StudyKeyError(
                 ("variations", name),
-                f"variations of {name!r} are {values!r}; give a list of at least one value",
+                f"variations of {quoted(name)} are {quoted(values)}; give a list of at least one "
+                "value",
             )
         for value in values:
             if not _is_plain(value):
-                told = f"variations of {name!r} have {value!r}; give texts, finite numbers, and "
+                told = (
+                    f"variations of {quoted(name)} have {quoted(value)}; give texts, finite "
+                    "numbers, and "
+                )
                 raise StudyKeyError(("variations", name), f"{told}lists and mappings of them")
-        check_once("variations", [json.dumps(v) for v in values], f"variations of {name!r}")
+        check_once("variations", [json.dumps(v) for v in values], f"variations of {quoted(name)}")
 
 
 def _is_plain(value: object) -> bool:

@@ -28,6 +28,7 @@ from beliefnest.studies.checking import (
     is_whole,
 )
 from beliefnest.studies.variation import CHANGES, Variation
+from beliefnest.world.texts import quoted
 from beliefnest.worlds.names import check_world
 
 __all__ = ["Constraint", "Design", "Template", "template_named"]
@@ -86,13 +87,13 @@ class Design:
         check_count("repeats", self.repeats)
         check_count("attempts", self.attempts)
         if self.temperature is not None and not is_amount(self.temperature):
-            told = f"temperature is {self.temperature!r}; give a number, at least 0, or None"
+            told = f"temperature is {quoted(self.temperature)}; give a number, at least 0, or None"
             raise StudyKeyError("temperature", told)
         for name, text in (("world", self.world), ("claims_from", self.claims_from or "")):
             if not isinstance(text, str):
-                raise StudyKeyError(name, f"{name} is {text!r}; give a name")
+                raise StudyKeyError(name, f"{name} is {quoted(text)}; give a name")
         if not is_whole(self.seed):
-            raise StudyKeyError("seed", f"seed is {self.seed!r}; it must be a whole number")
+            raise StudyKeyError("seed", f"seed is {quoted(self.seed)}; it must be a whole number")
         check_world(self.world, servers=False)
         self._check_variations()
 
@@ -102,12 +103,13 @@ class Design:
             if not is_count(variations):
                 raise StudyKeyError(
                     "variations",
-                    f"variations is {variations!r}; give at least 1, or lists of values",
+                    f"variations is {quoted(variations)}; give at least 1, or lists of values",
                 )
             return
         if not isinstance(variations, Mapping):
             raise StudyKeyError(
-                "variations", f"variations is {variations!r}; give a number, or lists of values"
+                "variations",
+                f"variations is {quoted(variations)}; give a number, or lists of values",
             )
         checked_lists(variations)
 
@@ -157,7 +159,7 @@ class Design:
         for constraint in self.constraints:
             told = getattr(constraint, "__name__", str(constraint))
             if not _holds(constraint, told, values):
-                return ScenarioError(f"the constraint {told!r} does not hold")
+                return ScenarioError(f"the constraint {quoted(told)} does not hold")
         return None
 
 
@@ -168,7 +170,7 @@ def _holds(constraint: Constraint, told: str, values: Mapping[str, Any]) -> bool
         return bool(constraint(values))
     except Exception as error:  # a user's function may raise anything; report it
         raise InputError(
-            f"the constraint {told!r} raised {type(error).__name__}: {error}"
+            f"the constraint {quoted(told)} raised {type(error).__name__}: {error}"
         ) from error
 
 

@@ -23,6 +23,7 @@ from beliefnest.studies.cells import (
 from beliefnest.studies.chance import episode_draws
 from beliefnest.studies.episode_design import EpisodeDesign, Player
 from beliefnest.studies.variation import Variation, listed_variations
+from beliefnest.world.texts import quoted
 
 __all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes", "task_of_cell"]
 
@@ -188,7 +189,7 @@ def _cells(
         has_program = any(is_program(name) and text_of_policy(name) for name in policies.values())
         strange = sorted(policies.keys() - set(tasks[design.seeds[0]].agents))
         if strange:
-            why = f"{place.name} has no agent {strange[0]!r} for the policies {player.text}"
+            why = f"{place.name} has no agent {quoted(strange[0])} for the policies {player.text}"
             yield place.invalid(why)
             continue
         if place.document is not None and place.variation.changes_scene and has_program:

@@ -13,6 +13,7 @@ from beliefnest.studies.checking import (
     checked_lists,
     is_count,
 )
+from beliefnest.world.texts import quoted
 from beliefnest.worlds.names import check_world
 
 __all__ = [
@@ -114,12 +115,12 @@ class EpisodeDesign:
         named = [player.text for player in self.players]
         if twice := next((name for name in named if named.count(name) > 1), None):
             raise StudyKeyError(
-                "policies", f"two of the policies have the name {twice!r}; give each its own"
+                "policies", f"two of the policies have the name {quoted(twice)}; give each its own"
             )
         for order in self.orders:
             if order != "omniscient" and (isinstance(order, bool) or not isinstance(order, int)):
                 raise StudyKeyError(
-                    "orders", f"orders has {order!r}; give whole numbers, or 'omniscient'"
+                    "orders", f"orders has {quoted(order)}; give whole numbers, or 'omniscient'"
                 )
         check_count("repeats", self.repeats)
         checked_lists(self.variations)
@@ -181,7 +182,7 @@ def _check_policies(policies: object) -> None:
     if not names or not all(isinstance(name, str) for name in names):
         raise StudyKeyError(
             "policies",
-            f"policies has {policies!r}; give names as `beliefnest play --agent` takes them, "
+            f"policies has {quoted(policies)}; give names as `beliefnest play --agent` takes them, "
             "mappings from agent to such a name, or a mapping from a name to one such mapping",
         )
 
@@ -223,6 +224,8 @@ def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
     """
     if isinstance(seeds, int):
         if not is_count(seeds):
-            raise StudyKeyError("seeds", f"seeds is {seeds!r}; give at least 1, or a list of seeds")
+            raise StudyKeyError(
+                "seeds", f"seeds is {quoted(seeds)}; give at least 1, or a list of seeds"
+            )
         return tuple(range(first, first + seeds))
     return tuple(seeds)

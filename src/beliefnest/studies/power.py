@@ -12,6 +12,7 @@ from beliefnest.errors import InputError
 from beliefnest.studies.checking import is_count, is_whole
 from beliefnest.studies.clusters import FEWEST, rate_interval
 from beliefnest.studies.counting import Pairs
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 
 __all__ = [
@@ -73,14 +74,14 @@ class AssumedRates:
 
     def __post_init__(self) -> None:
         if not 0 < self.accuracy < 1:
-            raise InputError(f"accuracy is {self.accuracy!r}; give a number between 0 and 1")
+            raise InputError(f"accuracy is {quoted(self.accuracy)}; give a number between 0 and 1")
         if not 0 <= self.correlation < 1:
             raise InputError(
-                f"correlation is {self.correlation!r}; give a number from 0 to below 1"
+                f"correlation is {quoted(self.correlation)}; give a number from 0 to below 1"
             )
         if not 0 < self.accuracy - self.difference < 1:
             raise InputError(
-                f"difference is {self.difference!r}, so that the other accuracy would be "
+                f"difference is {quoted(self.difference)}, so that the other accuracy would be "
                 f"{self.accuracy - self.difference:g}; it must lie between 0 and 1"
             )
 
@@ -183,9 +184,9 @@ def _simulated(
     """Yield the result of each source and size; raise InputError if a number is wrong."""
     for name, number in (*(("sizes", each) for each in sizes), ("simulations", simulations)):
         if not is_count(number) or not number <= _MOST:
-            raise InputError(f"{name} has {number!r}; give whole numbers from 1 to {_MOST}")
+            raise InputError(f"{name} has {quoted(number)}; give whole numbers from 1 to {_MOST}")
     if not is_whole(seed) or seed < 0:
-        raise InputError(f"seed is {seed!r}; it must be a whole number, at least 0")
+        raise InputError(f"seed is {quoted(seed)}; it must be a whole number, at least 0")
     if not sizes:
         raise InputError("sizes is empty; give at least one number of variations")
     done, total = 0, len(sources) * len(sizes)

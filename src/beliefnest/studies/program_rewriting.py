@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from beliefnest.errors import InputError
+from beliefnest.world.texts import quoted
 
 __all__ = ["Rewriting", "rewritten"]
 
@@ -84,22 +85,22 @@ def _edits(node: _Node, by: Rewriting) -> list[tuple[int, int, str]]:
     kind, text = node.type, node.text.decode()
     if kind == "string_fragment":
         if by.vector is not None and _DIRECTIONAL.search(text):
-            raise _refused(node, f"names a direction in the text {text!r}")
+            raise _refused(node, f"names a direction in the text {quoted(text)}")
         new = by.text(text)
         return [(node.start_byte, node.end_byte, new)] if new != text else []
     if kind in ("property_identifier", "shorthand_property_identifier"):
         if by.vector is not None and text in _COMPUTED:
-            raise _refused(node, f"computes with {text!r}")
+            raise _refused(node, f"computes with {quoted(text)}")
         new = by.key(text)
         if new != text and kind == "shorthand_property_identifier":
-            raise _refused(node, f"has {text!r} both as a name and as a key")
+            raise _refused(node, f"has {quoted(text)} both as a name and as a key")
         return [(node.start_byte, node.end_byte, new)] if new != text else []
     if by.vector is None:
         return []
     if kind == "new_expression":
         return _vector(node, by.vector)
     if kind == "identifier" and text in _HELPERS:
-        raise _refused(node, f"holds positions by {text!r}")
+        raise _refused(node, f"holds positions by {quoted(text)}")
     if kind == "array" and _is_numbers(node):
         raise _refused(node, f"holds the numbers {text}, which may be a position")
     return []

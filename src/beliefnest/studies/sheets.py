@@ -4,12 +4,14 @@ import csv
 import io
 import itertools
 import re
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular
+from beliefnest.world.texts import quoted
 
 __all__ = ["Sheet", "decode_sheet", "read_sheet", "spoilt_number", "spoilt_text"]
 
@@ -27,6 +29,8 @@ _DATE = re.compile(
     re.IGNORECASE,
 )
 _FAULT = re.compile(r"#[A-ZÄÖÜÉÀÇÑ/0]+[!?]?")
+_MOST_CELLS = 8_000_000
+"""Greatest number of cells of a file, also of those that are missing at the ends of rows."""
 _DIGITS = 15
 """Digits that numbers of a spreadsheet keep."""
 
@@ -68,6 +72,7 @@ def decode_sheet(content: bytes, where: str, needed: Sequence[str] = ()) -> Shee
         InputError: The file is no CSV, or lacks a column.
     """
     text = _decoded(content, where)
+    _check_cells(where, text.count("\n") + max(map(text.count, _DELIMITERS)))
     skipped = 0
     first, _, rest = text.partition("\n")
     delimiters: Sequence[str] = _DELIMITERS
@@ -80,11 +85,12 @@ def decode_sheet(content: bytes, where: str, needed: Sequence[str] = ()) -> Shee
     missing = [name for name in needed if name not in columns]
     if missing:
         raise InputError(
-            f"{where}:{1 + skipped} has no column {missing[0]!r}; give the file as it was written"
+            f"{where}:{1 + skipped} has no column {quoted(missing[0])}; give the file as it was "
+            "written"
         )
-    twice = [name for name in columns if name and columns.count(name) > 1]
+    twice = [name for name, count in Counter(columns).items() if name and count > 1]
     if twice:
-        raise InputError(f"{where}:{1 + skipped} has the column {twice[0]!r} twice; keep one")
+        raise InputError(f"{where}:{1 + skipped} has the column {quoted(twice[0])} twice; keep one")
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
     rows: list[tuple[int, dict[str, str]]] = []
     try:
@@ -96,13 +102,19 @@ def decode_sheet(content: bytes, where: str, needed: Sequence[str] = ()) -> Shee
             if any(cell.strip() for cell in cells[len(columns) :]):
                 raise InputError(
                     f"{where}:{line} has {len(cells)} cells, but the first line has "
-                    f"{len(columns)} columns; quote cells that contain {delimiter!r}"
+                    f"{len(columns)} columns; quote cells that contain {quoted(delimiter)}"
                 )
+            _check_cells(where, len(columns) * len(rows))
             filled = [*cells, *[""] * (len(columns) - len(cells))]
             rows.append((line, dict(zip(columns, filled, strict=False))))
     except csv.Error as error:
         raise InputError(f"{where}:{reader.line_num + skipped} cannot be read: {error}") from None
     return Sheet(columns, tuple(rows), delimiter)
+
+
+def _check_cells(where: str, count: int) -> None:
+    if count > _MOST_CELLS:
+        raise InputError(f"{where} has more than {_MOST_CELLS:,} cells; divide it")
 
 
 def _decoded(content: bytes, where: str) -> str:

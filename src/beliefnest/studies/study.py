@@ -52,6 +52,7 @@ from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_keys import StudyKeys, design_of
 from beliefnest.studies.table import Table, variation_columns
 from beliefnest.studies.terms import Terms
+from beliefnest.world.texts import quoted
 
 if TYPE_CHECKING:  # pandas is optional, and imported when a table is made.
     import pandas
@@ -370,7 +371,8 @@ class Study:
         design, cells = self._scenarios()
         if PARTICIPANT in self.columns:
             raise InputError(
-                f"the parameter {PARTICIPANT!r} has the name of the column of people; give it "
+                f"the parameter {quoted(PARTICIPANT)} has the name of the column of people; give "
+                "it "
                 "another name"
             )
         found = join_answers(
@@ -425,7 +427,9 @@ class Study:
         if between is None:
             between = next((name for name in self._table.compared if name in varied), None)
         elif between not in varied or between not in self.columns:
-            raise InputError(f"{between!r} does not vary in this study; name a column that does")
+            raise InputError(
+                f"{quoted(between)} does not vary in this study; name a column that does"
+            )
         columns = (*self._table.groups, *self._table.further_groups)
         by = [name for name in columns if name in varied]
         paired = None if plan.get("design") == "balanced" else between
@@ -549,7 +553,7 @@ def _told_apart(plan: Plan[C], table: Table) -> Plan[C]:
     for name in sorted(varied):
         if name in columns:
             raise InputError(
-                f"the parameter {name!r} has the name of a column of the table; "
+                f"the parameter {quoted(name)} has the name of a column of the table; "
                 "give it another name"
             )
     return plan
@@ -567,7 +571,7 @@ def _constraints(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
     given: Sequence[object] = constraints
     for each in given:
         if not isinstance(each, str) and not callable(each):
-            told = f"constraints has {each!r}; give expressions, or functions of values"
+            told = f"constraints has {quoted(each)}; give expressions, or functions of values"
             raise StudyKeyError("constraints", told)
     return tuple(constraints)
 
@@ -590,7 +594,7 @@ def _two(shard: object) -> tuple[int, int]:
     if isinstance(shard, tuple | list) and len(shard) == 2 and all(map(is_whole, shard)):
         return shard[0], shard[1]
     raise InputError(
-        f"shard is {shard!r}; give its number and the number of shards, such as (1, 4)"
+        f"shard is {quoted(shard)}; give its number and the number of shards, such as (1, 4)"
     )
 
 

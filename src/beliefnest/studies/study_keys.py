@@ -13,6 +13,7 @@ from beliefnest.studies.allocation import DESIGNS, Allocation
 from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
 from beliefnest.studies.design import Constraint, Design, Template
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies, listed, seeds_of
+from beliefnest.world.texts import quoted
 
 __all__ = ["StudyKeys", "design_of", "labelled_scenarios"]
 
@@ -107,7 +108,9 @@ def labelled_scenarios(entries: object) -> list[tuple[str, tuple[str, ...]]]:
         place = ("scenarios", number)
         label = each.get("label")
         if set(each) != {"label", "scenarios"} or not isinstance(label, str) or not label.strip():
-            told = f"has {dict(each)!r}; give a name, or a mapping with `label` and `scenarios`"
+            told = (
+                f"has {quoted(dict(each))}; give a name, or a mapping with `label` and `scenarios`"
+            )
             raise StudyKeyError(place, f"scenarios {told}")
         found.append((label.strip(), several("scenarios", each["scenarios"])))
     bare = [names[0] for label, names in found if not label and names]
@@ -133,7 +136,7 @@ def _allocation(name: object) -> Allocation:
     for known in DESIGNS:
         if known == name:
             return known
-    raise StudyKeyError("design", f"design is {name!r}; give one of {', '.join(DESIGNS)}")
+    raise StudyKeyError("design", f"design is {quoted(name)}; give one of {', '.join(DESIGNS)}")
 
 
 def _episodes(keys: StudyKeys, constraints: Sequence[Constraint]) -> EpisodeDesign:

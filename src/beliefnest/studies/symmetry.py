@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.terrain import BlockStates, Terrain
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
 
 __all__ = ["SYMMETRIES", "Placing", "Symmetry", "symmetry_named"]
@@ -75,7 +76,7 @@ class Symmetry:
             for candidate in self._spellings(name, new):
                 if _is_state(candidate, registry):
                     return candidate
-        raise InputError(f"{text!r} cannot be {self.name}: there is no {changed!r}")
+        raise InputError(f"{quoted(text)} cannot be {self.name}: there is no {quoted(changed)}")
 
     def wanted_state(self, text: str, registry: Registry) -> str:
         """Return a changed partial block state, in which only the named properties count.
@@ -136,7 +137,7 @@ def symmetry_named(name: object) -> Symmetry:
         if symmetry.name == name:
             return symmetry
     known = ", ".join(symmetry.name for symmetry in SYMMETRIES)
-    raise InputError(f"there is no symmetry {name!r}; there are {known}")
+    raise InputError(f"there is no symmetry {quoted(name)}; there are {known}")
 
 
 @dataclass(frozen=True, slots=True)

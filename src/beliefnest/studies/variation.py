@@ -15,6 +15,7 @@ from beliefnest.studies.changes import MovedBySymmetry, Renamed
 from beliefnest.studies.scene_changes import SceneChange, SceneKind, changed_scene
 from beliefnest.studies.symmetry import SYMMETRIES, Placing, symmetry_named
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
 
 __all__ = ["CHANGES", "Variation", "listed_variations"]
@@ -91,7 +92,7 @@ class Variation:
     def _names(self, kind: str) -> Mapping[str, str]:
         names = self.values.get(kind, {})
         if not isinstance(names, dict) or not all(isinstance(n, str) for n in names.values()):
-            raise InputError(f"{kind} is {names!r}; give a mapping from old to new names")
+            raise InputError(f"{kind} is {quoted(names)}; give a mapping from old to new names")
         return names
 
 
@@ -109,11 +110,11 @@ def _check_agents(document: Document, agents: Mapping[str, str]) -> None:
     unknown = [name for name in agents if name not in known]
     if unknown:
         there = ", ".join(sorted(known))
-        raise InputError(f"there is no agent {unknown[0]!r} to rename; agents are {there}")
+        raise InputError(f"there is no agent {quoted(unknown[0])} to rename; agents are {there}")
     new = [agents.get(name, name) for name in known]
     twice = [name for name in new if new.count(name) > 1]
     if twice:
-        raise InputError(f"two agents would be called {twice[0]!r}")
+        raise InputError(f"two agents would be called {quoted(twice[0])}")
 
 
 def _check_items(document: Document, items: Mapping[str, str]) -> None:
@@ -122,11 +123,11 @@ def _check_items(document: Document, items: Mapping[str, str]) -> None:
     unknown = [name for name in items if name not in named.found | named.words]
     if unknown:
         there = ", ".join(sorted(named.found)) or "none"
-        raise InputError(f"there is no item {unknown[0]!r} to rename; items are {there}")
+        raise InputError(f"there is no item {quoted(unknown[0])} to rename; items are {there}")
     new = [items.get(name, name) for name in sorted(named.found | items.keys())]
     twice = [name for name in new if new.count(name) > 1]
     if twice:
-        raise InputError(f"two items would be called {twice[0]!r}")
+        raise InputError(f"two items would be called {quoted(twice[0])}")
 
 
 class _NamedItems:

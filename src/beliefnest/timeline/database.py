@@ -29,7 +29,7 @@ from beliefnest.timeline.store_schema import (
     STATEMENTS,
     expected_schema,
 )
-from beliefnest.world.texts import shortened
+from beliefnest.world.texts import quoted, shortened
 
 __all__ = ["Database", "DatabaseRow", "OlderFormat", "checked", "checksum", "damage"]
 
@@ -411,7 +411,7 @@ class Database(Owned):
         )
         if set(found) != expected:
             other = sorted({(str(kind), str(name)) for kind, name, *_ in expected ^ set(found)})
-            names = ", ".join(f"{kind} {name!r}" for kind, name in other[:5])
+            names = ", ".join(f"{kind} {quoted(name)}" for kind, name in other[:5])
             raise StoreError(
                 f"{self.path} has other tables than this program writes ({names}); "
                 "restore it from a copy"
@@ -490,7 +490,7 @@ def _recognise_start(path: Path) -> None:
     if not header.startswith(_MAGIC):
         kinds = [kind for start, kind in _KNOWN_STARTS if header.startswith(start)]
         begin = header[: len(_MAGIC)]
-        what = kinds[0] if kinds else f"a file that begins with {begin!r}"
+        what = kinds[0] if kinds else f"a file that begins with {quoted(begin)}"
         if not header:
             raise NotBegunError(f"{path} is not a run file: it is an empty file; give a run file")
         raise StoreError(f"{path} is not a run file: it is {what}; give a run file")

@@ -140,7 +140,7 @@ def branch_taken(key: TimelineKey) -> BranchError:
 
 def branch_carries(key: TimelineKey, others: Iterable[TimelineKey]) -> BranchError:
     """Return the error for the removal of a branch that `others` are based on."""
-    names = ", ".join(f"{path_text(k.path)} {k.branch!r}" for k in others)
+    names = ", ".join(f"{path_text(k.path)} {quoted(k.branch)}" for k in others)
     return BranchError(
         f"branch {quoted(key.branch)} of {path_text(key.path)} carries others ({names}); "
         "delete those first, or delete with recursive=True"

@@ -221,7 +221,7 @@ class Records:
 
     def state(self, name: str) -> bytes | None:
         """Return the bytes last stored under a name; None if there are none."""
-        where, what = "meta WHERE name = ?", f"state {name!r}"
+        where, what = "meta WHERE name = ?", f"state {quoted(name)}"
         found = self._database.sound_rows("name, value", where, (name,), what, tuple[str, bytes])
         return next((value for _, value in found), None)
 

@@ -90,7 +90,9 @@ def agent_name_fault(name: object) -> str | None:
     if not isinstance(name, str) or not _AGENT_NAME.fullmatch(name):
         return f"{quoted(name)} is no agent name; use 1 to 16 letters, digits and _"
     if name == "__proto__":
-        return f"{name!r} cannot be the name of an agent: it means something else in JavaScript"
+        return (
+            f"{quoted(name)} cannot be the name of an agent: it means something else in JavaScript"
+        )
     return None
 
 
@@ -183,7 +185,9 @@ def items_fault(
     needed = 0
     for name, count in items.items():
         if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-            return f"the count of {name!r} is {quoted(count)}; it must be a whole number above 0"
+            return (
+                f"the count of {quoted(name)} is {quoted(count)}; it must be a whole number above 0"
+            )
         needed += -(-count // registry.item_stack(name))
     if needed > slots:
         return f"the items need {quoted(needed)} slots; {holder} has {slots}"
@@ -226,7 +230,7 @@ def held_fault(items: Mapping[str, int], registry: Registry) -> str | None:
         if not registry.has_item(name):
             return f"there is no item {quoted(name)}"
         if not 0 < count <= _LARGEST_COUNT:
-            return f"the count of {name!r} is {quoted(count)}"
+            return f"the count of {quoted(name)} is {quoted(count)}"
     return None
 
 

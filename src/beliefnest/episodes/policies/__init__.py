@@ -14,6 +14,7 @@ from beliefnest.errors import BeliefNestError, InputError, UnknownNameError
 from beliefnest.files import read_regular_text
 from beliefnest.importing import imported_object, is_object_name, text_of_object
 from beliefnest.llm.model_settings import ModelSettings
+from beliefnest.world.texts import quoted
 
 if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.resolve import Connection
@@ -99,8 +100,8 @@ def resolve_policy(
     if is_own_policy(name):
         return _of_user(name)
     close = difflib.get_close_matches(kind, sorted(_KINDS), n=1)
-    hint = f"did you mean {close[0]!r}? Policies are" if close else "give one of"
-    raise UnknownNameError(f"there is no policy {name!r}; {hint} {', '.join(POLICIES)}")
+    hint = f"did you mean {quoted(close[0])}? Policies are" if close else "give one of"
+    raise UnknownNameError(f"there is no policy {quoted(name)}; {hint} {', '.join(POLICIES)}")
 
 
 def _omniscient() -> Policy:
@@ -136,20 +137,23 @@ def _of_user(name: str) -> Policy:
     """Return a policy of a class, or of a function, of the user's own."""
     made = imported_object(name, "policy")
     if not callable(made):
-        raise InputError(f"{name!r} is no class and no function; name one that makes a policy")
+        raise InputError(
+            f"{quoted(name)} is no class and no function; name one that makes a policy"
+        )
     try:
         policy = made()
     except TypeError as error:
         raise InputError(
-            f"{name!r} cannot be called without arguments: {error}; give them defaults"
+            f"{quoted(name)} cannot be called without arguments: {error}; give them defaults"
         ) from error
     except BeliefNestError:
         raise
     except (Exception, SystemExit) as error:  # Code of users may raise anything.
-        raise InputError(f"{name!r} raised {type(error).__name__}: {error}") from error
+        raise InputError(f"{quoted(name)} raised {type(error).__name__}: {error}") from error
     if not callable(getattr(policy, "act", None)):
         raise InputError(
-            f"{name!r} makes no policy: {type(policy).__name__} has no method act(view), which "
+            f"{quoted(name)} makes no policy: {type(policy).__name__} has no method act(view), "
+            "which "
             "returns a program"
         )
     found: Policy = policy
@@ -257,12 +261,12 @@ def _model(
     try:
         settings = ModelSettings.of_query(query)
     except InputError as error:
-        raise InputError(f"{name!r}: {error}") from None
+        raise InputError(f"{quoted(name)}: {error}") from None
     if settings.answer != "text":
-        raise InputError(f"{name!r}: policies answer with programs; leave out `answer`")
+        raise InputError(f"{quoted(name)}: policies answer with programs; leave out `answer`")
     model_name, colon, order = plain.rpartition(":")
     if not colon:
-        raise InputError(f"{name!r} is not complete; give model:MODEL:ORDER")
+        raise InputError(f"{quoted(name)} is not complete; give model:MODEL:ORDER")
     number = 2 if order == "omniscient" else order_of(order, name)
     known = connection or Connection()
     if query:
@@ -279,7 +283,7 @@ def order_of(text: str, name: str) -> int:
         InputError: The text is no order.
     """
     if not text.isdecimal() or int(text) > _HIGHEST:
-        raise InputError(f"{text!r} in {name!r} is no order; give 0 to {_HIGHEST}")
+        raise InputError(f"{quoted(text)} in {quoted(name)} is no order; give 0 to {_HIGHEST}")
     return int(text)
 
 

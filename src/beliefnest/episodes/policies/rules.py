@@ -20,6 +20,7 @@ from beliefnest.errors import UnknownNameError
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call, program_of
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Position
 
 __all__ = ["KEYS", "Rule", "features_of", "linear_key", "places_of", "rule_of"]
@@ -113,11 +114,13 @@ def rule_of(text: str) -> Rule:
         is_known = key in (*KEYS, _PLAN) or (known in ("nearest", "farthest") and bool(rest))
         if not is_known and not _weights(key):
             raise UnknownNameError(
-                f"there is no rule {key!r}; rules are {', '.join(KEYS)}, nearest-AGENT, "
+                f"there is no rule {quoted(key)}; rules are {', '.join(KEYS)}, nearest-AGENT, "
                 "farthest-AGENT, and linear=W/W/..."
             )
     if tells not in _TELLS:
-        raise UnknownNameError(f"{tells!r} in the rule {text!r} is unknown; give tell or tell-all")
+        raise UnknownNameError(
+            f"{quoted(tells)} in the rule {quoted(text)} is unknown; give tell or tell-all"
+        )
     return Rule(take, put or "nearest", _TELLS[tells])
 
 

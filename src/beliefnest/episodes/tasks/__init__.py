@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from beliefnest.errors import InputError, UnknownNameError
+from beliefnest.world.texts import quoted
 
 __all__ = ["builtin_tasks", "generated", "parameters_of"]
 
@@ -52,10 +53,10 @@ def generated(name: str, seed: int, parameters: Mapping[str, int]) -> dict[str, 
     for key, value in parameters.items():
         if key not in ranges:
             there = ", ".join(ranges) or "none"
-            raise UnknownNameError(f"task {name} has no parameter {key!r}; it has {there}")
+            raise UnknownNameError(f"task {name} has no parameter {quoted(key)}; it has {there}")
         _, low, high = ranges[key]
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-            raise InputError(f"{key} of task {name} is {value!r}; give {low} to {high}")
+            raise InputError(f"{key} of task {name} is {quoted(value)}; give {low} to {high}")
     values = {key: parameters.get(key, default) for key, (default, _, _) in ranges.items()}
     chance = random.Random(f"{name} {seed}")
     content: dict[str, Any] = _module(name).instance(chance, **values)

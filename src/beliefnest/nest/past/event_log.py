@@ -8,6 +8,7 @@ from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Event
 
 __all__ = ["EventLog"]
@@ -51,7 +52,8 @@ class EventLog:
             self._entries = stop
         if len(self._events) < count:
             raise StoreError(
-                f"the run file is damaged: it counts {count} events of branch {self._key.branch!r} "
+                f"the run file is damaged: it counts {count} events of branch "
+                f"{quoted(self._key.branch)} "
                 f"and holds {len(self._events)}; restore it from a copy"
             )
         return self._events

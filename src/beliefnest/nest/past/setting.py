@@ -22,7 +22,7 @@ from beliefnest.world.limits import (
 from beliefnest.world.paths import parse_path, parse_pattern, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state
-from beliefnest.world.texts import escaped, is_well_formed
+from beliefnest.world.texts import escaped, is_well_formed, quoted
 from beliefnest.world.values import Box, Position
 
 __all__ = ["MAIN", "Senses", "Setting", "Step"]
@@ -100,13 +100,13 @@ class Setting:
         fault = fault or self._claims_fault() or self._unique_fault()
         fault = fault or self._people_fault() or self._text_fault()
         if fault:
-            raise InputError(f"setting {self.name!r}: {fault}")
+            raise InputError(f"setting {quoted(self.name)}: {fault}")
         seen: set[tuple[str, ...]] = set()
         for belief in self.initial_beliefs:
             text = path_text(belief.path)
             if parse_pattern(text, agents) != belief.path:
                 raise PathError(
-                    f"initial belief {text!r} names an agent twice in a row; name it once"
+                    f"initial belief {quoted(text)} names an agent twice in a row; name it once"
                 )
             if not belief.path:
                 raise InputError(
@@ -115,7 +115,7 @@ class Setting:
                 )
             if belief.path in seen:
                 raise InputError(
-                    f"initial_beliefs has the path {text!r} twice; put the two into one"
+                    f"initial_beliefs has the path {quoted(text)} twice; put the two into one"
                 )
             seen.add(belief.path)
             for name in (*belief.agents, *belief.inventories):
@@ -147,7 +147,8 @@ class Setting:
             label = next((step.label for step in self.script if name in step.programs), None)
             if label is not None:
                 return (
-                    f"{name} is played by a person but has a program in step {label!r}; remove the "
+                    f"{name} is played by a person but has a program in step {quoted(label)}; "
+                    "remove the "
                     "program"
                 )
         return None
@@ -158,13 +159,15 @@ class Setting:
             texts += [step.label, step.where, *step.programs.values()]
         bad = next((text for text in texts if not is_well_formed(text)), None)
         return (
-            None if bad is None else f"{escaped(bad[:100])!r} has half a character in it; remove it"
+            None
+            if bad is None
+            else f"{quoted(escaped(bad[:100]))} has half a character in it; remove it"
         )
 
 
 def _belief_fault(belief: InitialBelief, box: Box, registry: Registry) -> str | None:
     """Return what is wrong with the positions and contents of an initial belief; None: nothing."""
-    whose = f"the initial belief {path_text(belief.path)!r}"
+    whose = f"the initial belief {quoted(path_text(belief.path))}"
     outside = [place for place in (*belief.containers, *belief.blocks) if place not in box]
     if outside:
         return f"{whose} names {outside[0]}, which lies outside the box"

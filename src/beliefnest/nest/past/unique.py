@@ -8,6 +8,7 @@ from beliefnest.errors import InputError
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.paths import AND_BELOW, BeliefPath, path_text
 from beliefnest.world.registry import Registry
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items
 
 __all__ = ["unique_fault", "unique_items"]
@@ -22,7 +23,7 @@ def unique_items(names: Iterable[str]) -> frozenset[str]:
     """
     given = None if isinstance(names, str) or not isinstance(names, Iterable) else tuple(names)
     if given is None or not all(isinstance(name, str) for name in given):
-        raise InputError(f"unique is {names!r}; give a list of items, such as ['diamond']")
+        raise InputError(f"unique is {quoted(names)}; give a list of items, such as ['diamond']")
     for name in given:
         Registry.load().item_stack(name)
     return frozenset(name.removeprefix("minecraft:") for name in given)
@@ -39,7 +40,7 @@ def unique_fault(item: str, world: Snapshot, initial: Sequence[InitialBelief]) -
         ),
     ]
     if fault := _more_than_one(item, present):
-        return f"{item!r} is unique, but at the start there are {fault}; remove all but one"
+        return f"{quoted(item)} is unique, but at the start there are {fault}; remove all but one"
     for path in dict.fromkeys(_spoken_of(initial)):
         merged = merged_belief(initial, path)
         believed = [
@@ -48,7 +49,8 @@ def unique_fault(item: str, world: Snapshot, initial: Sequence[InitialBelief]) -
         ]
         if fault := _more_than_one(item, believed):
             return (
-                f"{item!r} is unique, but initial_beliefs give {path_text(path)!r} {fault}; "
+                f"{quoted(item)} is unique, but initial_beliefs give {quoted(path_text(path))} "
+                f"{fault}; "
                 "remove all but one"
             )
     return None

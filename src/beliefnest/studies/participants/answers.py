@@ -12,6 +12,7 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.studies.sheets import decode_sheet, spoilt_number, spoilt_text
+from beliefnest.world.texts import quoted
 
 __all__ = ["PersonAnswer", "answer_files", "read_answers", "with_pseudonyms"]
 
@@ -107,7 +108,7 @@ def read_answers(file: Path) -> list[PersonAnswer]:
     ]
     found += [_start(where, row, spoilt) for where, row in rows if row.get("trial_type") == _START]
     if not found:
-        raise InputError(f"{file} has no answers: no row has the trial_type {_TRIAL!r}")
+        raise InputError(f"{file} has no answers: no row has the trial_type {quoted(_TRIAL)}")
     return found
 
 
@@ -159,7 +160,8 @@ def _answer(where: str, row: Mapping[str, Any], spoilt: Callable[[str], str]) ->
         told = spoilt(texts[name])
         if told:
             raise InputError(
-                f"{where}, column {name}: {texts[name]!r} is {told}, which a spreadsheet has made "
+                f"{where}, column {name}: {quoted(texts[name])} is {told}, which a spreadsheet has "
+                "made "
                 "of an id; give the file as it was written, without opening it in a spreadsheet"
             )
     return PersonAnswer(where=where, options=_options(where, row), plain=dict(row), **texts)
@@ -176,7 +178,7 @@ def _text(where: str, row: Mapping[str, Any], name: str) -> str:
     if value is None:
         return ""
     if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise InputError(f"{where}, column {name}: is {value!r}; it must be a text")
+        raise InputError(f"{where}, column {name}: is {quoted(value)}; it must be a text")
     return str(value).strip()
 
 
@@ -188,5 +190,5 @@ def _options(where: str, row: Mapping[str, Any]) -> tuple[str, ...]:
         return tuple(msgspec.convert(listed, Sequence[str]))
     except (ValueError, RecursionError, msgspec.ValidationError):
         raise InputError(
-            f"{where}, column options: is {value!r}; it must be a list of texts"
+            f"{where}, column options: is {quoted(value)}; it must be a list of texts"
         ) from None

@@ -6,6 +6,7 @@ from pathlib import Path
 from beliefnest.errors import InputError
 from beliefnest.studies.participants.answers import PersonAnswer
 from beliefnest.studies.sheets import read_sheet, spoilt_text
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 
 __all__ = ["excluded_words", "read_exclusions"]
@@ -28,7 +29,9 @@ def read_exclusions(file: Path, answers: Sequence[PersonAnswer]) -> dict[str, st
     sheet = read_sheet(file, (_REASON,))
     column = next((name for name in _IDS if name in sheet.columns), None)
     if column is None:
-        raise InputError(f"{file}:1 has no column {_IDS[0]!r}; give the ids of participants in it")
+        raise InputError(
+            f"{file}:1 has no column {quoted(_IDS[0])}; give the ids of participants in it"
+        )
     known = {answer.participant for answer in answers}
     found: dict[str, str] = {}
     for line, row in sheet.rows:
@@ -38,20 +41,22 @@ def read_exclusions(file: Path, answers: Sequence[PersonAnswer]) -> dict[str, st
             spoilt = spoilt_text(participant)
             told = f", which is {spoilt} that a spreadsheet made" if spoilt else ""
             raise InputError(
-                f"{where} {column}: nobody who answered is {participant!r}{told}; correct "
+                f"{where} {column}: nobody who answered is {quoted(participant)}{told}; correct "
                 "the id, and give the files of all participants, also of excluded ones"
             )
         if not reason:
-            raise InputError(f"{where} {_REASON}: is empty; say why {participant!r} is excluded")
+            raise InputError(
+                f"{where} {_REASON}: is empty; say why {quoted(participant)} is excluded"
+            )
         if found.setdefault(participant, reason) != reason:
             raise InputError(
-                f"{where} {_REASON}: {participant!r} is excluded for {found[participant]!r} as "
-                "well; give one reason"
+                f"{where} {_REASON}: {quoted(participant)} is excluded for "
+                f"{quoted(found[participant])} as well; give one reason"
             )
     return found
 
 
 def excluded_words(reasons: Mapping[str, int]) -> str:
     """Return how many participants were excluded for which reasons, in words."""
-    told = [f"{count} for {reason!r}" for reason, count in sorted(reasons.items())]
+    told = [f"{count} for {quoted(reason)}" for reason, count in sorted(reasons.items())]
     return f"{counted(sum(reasons.values()), 'participant')} by a list ({', '.join(told)})"

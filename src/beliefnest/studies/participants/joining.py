@@ -17,7 +17,7 @@ from beliefnest.studies.participants.answers import PersonAnswer
 from beliefnest.studies.participants.items import Item, ItemQuestion
 from beliefnest.studies.participants.playing import Judged
 from beliefnest.studies.study_folder import PersonCell
-from beliefnest.world.texts import visible
+from beliefnest.world.texts import quoted, visible
 from beliefnest.world.words import counted
 
 __all__ = ["Joined", "Sessions", "check_name", "counted_answers", "joined"]
@@ -114,8 +114,8 @@ def counted_answers(
         if before_it.response != answer.response:
             raise answer.fault(
                 "response",
-                f"is {answer.response!r}, but {before_it.where} has "
-                f"{before_it.response!r}; keep one of the two files",
+                f"is {quoted(answer.response)}, but {before_it.where} has "
+                f"{quoted(before_it.response)}; keep one of the two files",
             )
         twice += before_it is not answer
     if twice:
@@ -129,7 +129,8 @@ def _checked(answer: PersonAnswer, items: Mapping[str, Item]) -> PersonAnswer:
     if item is None:
         raise answer.fault(
             "cell",
-            f"{answer.cell!r} is no cell of this study; the study, its scenarios, seed or world "
+            f"{quoted(answer.cell)} is no cell of this study; the study, its scenarios, seed or "
+            "world "
             "have changed since this participant's page was written: read the answers with the "
             "files of that time",
         )
@@ -142,7 +143,7 @@ def _checked(answer: PersonAnswer, items: Mapping[str, Item]) -> PersonAnswer:
     if answer.response and answer.response not in texts:
         raise answer.fault(
             "response",
-            f"{answer.response!r} is none of the options {', '.join(asked.options)}",
+            f"{quoted(answer.response)} is none of the options {', '.join(asked.options)}",
         )
     if answer.options and set(answer.options) != set(texts):
         raise answer.fault("options", f"must be {', '.join(asked.options)} in some order")
@@ -287,4 +288,6 @@ def check_name(name: str, models: Sequence[str]) -> None:
     if not name.strip():
         raise InputError("--name is empty; give the people a name, such as people")
     if name in models:
-        raise InputError(f"--name is {name!r}, which is a model of the study; give another name")
+        raise InputError(
+            f"--name is {quoted(name)}, which is a model of the study; give another name"
+        )

@@ -22,6 +22,7 @@ from beliefnest.suites.films.film import (
     event_name,
     grid_for,
 )
+from beliefnest.world.texts import quoted
 
 __all__ = ["films_from", "parameters_from", "read_films"]
 
@@ -79,11 +80,14 @@ def films_from(content: Mapping[str, Any]) -> list[Film]:
         index = entry.get("world_set", 1 if len(worlds) == 1 else None)
         if not _is_whole(index) or not 1 <= index <= len(worlds):
             raise InputError(
-                f"{owner}: world_set is {index!r}; give the number of a world, 1 to {len(worlds)}"
+                f"{owner}: world_set is {quoted(index)}; give the number of a world, 1 to "
+                f"{len(worlds)}"
             )
         world = worlds[index - 1]
         if not isinstance(world, Mapping):
-            raise InputError(f"world {index} is {world!r}; give a mapping with size, wall, spot1")
+            raise InputError(
+                f"world {index} is {quoted(world)}; give a mapping with size, wall, spot1"
+            )
         # A key that the film lacks is read from its world, and then from the file.
         said = {**content, **world, **entry}
         films.append(_Reader(owner, world, entry, said).film(groups))
@@ -102,7 +106,7 @@ def parameters_from(content: Mapping[str, Any]) -> FilmParameters:
     """
     given = content.get("parameters", {})
     if not isinstance(given, Mapping):
-        raise InputError(f"parameters are {given!r}; give numbers by name")
+        raise InputError(f"parameters are {quoted(given)}; give numbers by name")
     usual = FilmParameters()
     levels = given.get("reward_levels", list(usual.rewards))
     by_goal = {}
@@ -126,7 +130,8 @@ def _levels(given: object) -> tuple[float, ...]:
     values = [given] if _is_number(given) else given
     if not isinstance(values, list) or not values or not all(map(_is_number, values)):
         raise InputError(
-            f"parameters: reward_levels are {given!r}; give a list of numbers, or one for each goal"
+            f"parameters: reward_levels are {quoted(given)}; give a list of numbers, or one for "
+            "each goal"
         )
     return tuple(map(float, values))
 
@@ -138,7 +143,7 @@ def _grid(text: object, usual: FilmParameters) -> tuple[int, float]:
     steps = re.search(r"step 1/(\d{1,3})\b", str(text))
     if steps is None or int(steps[1]) < 1:
         raise InputError(
-            f"parameters: agent_prior_grid is {text!r}; write it as "
+            f"parameters: agent_prior_grid is {quoted(text)}; write it as "
             "'simplex of step 1/6, shrunk: b*(1-.075)+.075/3'"
         )
     shrunk = re.search(r"\(1-(0?\.\d+)\)", str(text).replace(" ", ""))
@@ -148,7 +153,7 @@ def _grid(text: object, usual: FilmParameters) -> tuple[int, float]:
 def _number(given: Mapping[str, Any], name: str, usual: float) -> float:
     value = given.get(name, usual)
     if not _is_number(value):
-        raise InputError(f"parameters: {name} is {value!r}; give a number")
+        raise InputError(f"parameters: {name} is {quoted(value)}; give a number")
     return float(value)
 
 
@@ -175,7 +180,7 @@ class _Reader:
         self.said = said
         human = entry.get("human") or {}
         if not isinstance(human, Mapping):
-            raise self.fault(f"human is {human!r}; give judgments by name")
+            raise self.fault(f"human is {quoted(human)}; give judgments by name")
         self.human = human
 
     def fault(self, text: str) -> InputError:
@@ -232,7 +237,9 @@ class _Reader:
         for place in doubted:
             given = self.said[f"possible_{place}"]
             if not isinstance(given, list) or not given:
-                raise self.fault(f"possible_{place} is {given!r}; list goals, null for nothing")
+                raise self.fault(
+                    f"possible_{place} is {quoted(given)}; list goals, null for nothing"
+                )
             options.append([self.goal(each, f"possible_{place}") for each in given])
         combined = [dict(zip(doubted, each, strict=True)) for each in itertools.product(*options)]
         return {_joined(held.values()): held for held in combined}
@@ -266,7 +273,7 @@ class _Reader:
         given = self.said.get("goals")
         if given is not None:
             if not isinstance(given, list) or not given or not all(map(_is_name, given)):
-                raise self.fault(f"goals are {given!r}; list their names")
+                raise self.fault(f"goals are {quoted(given)}; list their names")
             return tuple(dict.fromkeys(given))
         for key in self.human:
             found = _JUDGED.fullmatch(key)
@@ -315,7 +322,9 @@ class _Reader:
         if given is not None and given != _UNKNOWN:
             if given not in alternatives:
                 names = ", ".join(alternatives)
-                raise self.fault(f"actual is {given!r}; give {_UNKNOWN!r} or one of {names}")
+                raise self.fault(
+                    f"actual is {quoted(given)}; give {quoted(_UNKNOWN)} or one of {names}"
+                )
             return (str(given),)
         possible = list(alternatives)
         for place in doubted:
@@ -331,7 +340,7 @@ class _Reader:
             options = {held[place] for held in alternatives.values()}
             if true not in options:
                 told = ", ".join(sorted(goal or "null" for goal in options))
-                raise self.fault(f"{key} is {value!r}, which is none of the possible: {told}")
+                raise self.fault(f"{key} is {quoted(value)}, which is none of the possible: {told}")
             possible = [name for name in possible if alternatives[name][place] == true]
         if not possible:
             raise self.fault("no alternative has what its true_spot keys say; correct one of them")
@@ -387,7 +396,7 @@ class _Reader:
             known = film.events
         if names is None or len(set(names)) < len(names) or not set(names) <= set(known):
             raise self.fault(
-                f"human.{key} is not understood: {found['names']!r} does not spell different "
+                f"human.{key} is not understood: {quoted(found['names'])} does not spell different "
                 f"names of {', '.join(known)}"
             )
         return names
@@ -430,7 +439,9 @@ class _Reader:
             or len(values) != count
             or not all(value is None or _is_number(value) for value in values)
         ):
-            raise self.fault(f"human.{key} is {values!r}; give {count} numbers, null for missing")
+            raise self.fault(
+                f"human.{key} is {quoted(values)}; give {count} numbers, null for missing"
+            )
         return [None if value is None else float(value) for value in values]
 
     def normalised(self, key: str, ratings: Sequence[float | None]) -> list[float | None]:
@@ -467,7 +478,7 @@ class _Reader:
         width, height = self.cell(given, "size")
         if min(width, height) < 1 or width * height > _MOST_CELLS:
             raise self.fault(
-                f"size is {given!r}; give two numbers from 1, whose product is at "
+                f"size is {quoted(given)}; give two numbers from 1, whose product is at "
                 f"most {_MOST_CELLS}"
             )
         return width, height
@@ -476,7 +487,7 @@ class _Reader:
         """Return a truth value; a missing one is false."""
         value = self.entry.get(key, False)
         if not isinstance(value, bool):
-            raise self.fault(f"{key} is {value!r}; give true or false")
+            raise self.fault(f"{key} is {quoted(value)}; give true or false")
         return value
 
     def goal(self, value: object, key: str) -> str | None:
@@ -484,19 +495,19 @@ class _Reader:
         if value is None or value == NOTHING:
             return None
         if not _is_name(value):
-            raise self.fault(f"{key} names the goal {value!r}; give a name or null")
+            raise self.fault(f"{key} names the goal {quoted(value)}; give a name or null")
         return str(value)
 
     def cells(self, key: str, given: object) -> list[FilmCell]:
         """Return a list of cells."""
         if not isinstance(given, list):
-            raise self.fault(f"{key} is {given!r}; list cells as [x, y]")
+            raise self.fault(f"{key} is {quoted(given)}; list cells as [x, y]")
         return [self.cell(each, key) for each in given]
 
     def cell(self, given: object, key: str) -> FilmCell:
         """Return two whole numbers."""
         if not isinstance(given, list) or len(given) != 2 or not all(map(_is_whole, given)):
-            raise self.fault(f"{key} has {given!r}; give two whole numbers [x, y]")
+            raise self.fault(f"{key} has {quoted(given)}; give two whole numbers [x, y]")
         return int(given[0]), int(given[1])
 
 
@@ -518,7 +529,7 @@ def _owner(entry: object, number: int) -> str:
 def _groups(given: object) -> dict[str, str]:
     """Return the group of each film by id."""
     if not isinstance(given, Mapping) or not all(isinstance(ids, list) for ids in given.values()):
-        raise InputError(f"groups are {given!r}; give lists of film ids by name")
+        raise InputError(f"groups are {quoted(given)}; give lists of film ids by name")
     return {str(film): str(name) for name, films in given.items() for film in films}
 
 

@@ -13,6 +13,7 @@ from beliefnest.suites.stories.grammar import parse_all
 from beliefnest.suites.stories.played_story import Knowing, check_question
 from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
+from beliefnest.world.texts import quoted
 
 __all__ = ["BatteryItem", "ReadStories", "StoryItems", "Unread", "line_of", "read_items"]
 
@@ -188,7 +189,7 @@ def _item(number: int, row: _Row, story: Story) -> BatteryItem:
     check_question(story, question)
     if row.question_order not in (None, question.order):
         raise InputError(
-            f"{row.question!r} is of order {question.order}, and question_order says "
+            f"{quoted(row.question)} is of order {question.order}, and question_order says "
             f"{row.question_order}"
         )
     return BatteryItem(number, question, row.answer)

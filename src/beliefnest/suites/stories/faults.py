@@ -6,6 +6,7 @@ from typing import Any, get_args
 
 import msgspec
 
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import nearest_or_all
 
 __all__ = ["form_fault"]
@@ -29,7 +30,9 @@ def form_fault(fault: msgspec.DecodeError, story: type[Any], event: Any) -> str:
     what, path = match["what"], match["path"] or ""
     words = what[:1].lower() + what[1:].replace("`", "'")
     if unknown := _UNKNOWN.fullmatch(what):
-        words = f"unknown key {unknown['name']!r}{_nearest(unknown['name'], _keys(story, path))}"
+        words = (
+            f"unknown key {quoted(unknown['name'])}{_nearest(unknown['name'], _keys(story, path))}"
+        )
     if what.startswith("Invalid value") and path.endswith(".event"):
         kinds = [str(kind.__struct_config__.tag) for kind in get_args(event)]
         words += _nearest(what.split("'")[1], kinds)

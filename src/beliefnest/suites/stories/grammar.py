@@ -13,6 +13,7 @@ from typing import Annotated
 import msgspec
 
 from beliefnest.errors import InputError
+from beliefnest.world.texts import quoted
 
 __all__ = [
     "IT",
@@ -227,7 +228,7 @@ class Line:
 
     def fault(self, what: str) -> InputError:
         """Return the error to raise for this line."""
-        return InputError(f"{self.place}: {self.text!r}: {what}")
+        return InputError(f"{self.place}: {quoted(self.text)}: {what}")
 
 
 IT = "it"
@@ -457,7 +458,8 @@ def _parse(line: str, place: str) -> Sentence:
             _check_names(match, place, line)
             return make(match)
     raise InputError(
-        f"{place}: {line!r} is no sentence of a story; write that someone entered, left, returned "
+        f"{place}: {quoted(line)} is no sentence of a story; write that someone entered, left, "
+        "returned "
         "to or stayed in a room, moved, took or put a thing, opened a container, opened or shut "
         'the door of a room, wrote "..." on the sign of a room, said or whispered to someone that '
         "a thing is in a container, likes or dislikes something, or that a thing is in a container"
@@ -471,4 +473,6 @@ def _check_names(match: re.Match[str], place: str, line: str) -> None:
             continue
         for name in _JOINT.split(found) if kind == "agents" else (found,):
             if name.lower() in _NOBODY and (kind, name) != ("thing", IT):
-                raise InputError(f"{place}: {line!r}: {name!r} is no name; write the name")
+                raise InputError(
+                    f"{place}: {quoted(line)}: {quoted(name)} is no name; write the name"
+                )

@@ -30,6 +30,7 @@ from beliefnest.suites.stories.grammar import (
 from beliefnest.suites.stories.played_story import Knowing, check_question
 from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
+from beliefnest.world.texts import quoted
 
 __all__ = ["read_own"]
 
@@ -155,7 +156,8 @@ def _question(asked: _Asked) -> Question:
     parts = [part for part in asks if part is not None]
     if len(parts) != 1 or (asked.question is not None and asked.believers):
         raise InputError(
-            f"the question {parts!r} must have one of: 'question', a sentence; 'believers' and "
+            f"the question {quoted(parts)} must have one of: 'question', a sentence; 'believers' "
+            "and "
             "'thing'; 'believers' and 'door' or 'sign', the name of its room"
         )
     if asked.question is not None:
@@ -180,6 +182,7 @@ def _check_answer(story: Story, item: BatteryItem) -> None:
         there = {act.text for act in story.acts if isinstance(act, Write)} | {""}
     if item.expected not in there:
         raise InputError(
-            f"{item.question.text!r}: {item.expected!r} is no possible answer; answers are "
+            f"{quoted(item.question.text)}: {quoted(item.expected)} is no possible answer; answers "
+            "are "
             f"{', '.join(map(repr, sorted(there)))}, and null for unknown"
         )

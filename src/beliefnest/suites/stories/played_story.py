@@ -22,6 +22,7 @@ from beliefnest.suites.stories.story import (
     Place,
     Story,
 )
+from beliefnest.world.texts import quoted
 
 if TYPE_CHECKING:  # Importing models takes long, and few stories need one.
     from beliefnest.llm.claim_reader import ClaimsFromModel
@@ -235,12 +236,15 @@ def check_question(story: Story, question: Question) -> None:
     for agent in question.believers:
         if agent not in story.agents:
             there = ", ".join(story.agents)
-            raise InputError(f"{question.text!r}: {agent} is not in the story; there are {there}")
+            raise InputError(
+                f"{quoted(question.text)}: {agent} is not in the story; there are {there}"
+            )
     if question.door is not None:
         if question.door not in story.doors:
             there = ", ".join(story.doors) or "none"
             raise InputError(
-                f"{question.text!r}: nobody opens or shuts a door of the {question.door}; there "
+                f"{quoted(question.text)}: nobody opens or shuts a door of the {question.door}; "
+                "there "
                 f"are doors of: {there}"
             )
         return
@@ -248,14 +252,16 @@ def check_question(story: Story, question: Question) -> None:
         if question.sign not in story.signs:
             there = ", ".join(story.signs) or "none"
             raise InputError(
-                f"{question.text!r}: nobody writes on a sign of the {question.sign}; there are "
+                f"{quoted(question.text)}: nobody writes on a sign of the {question.sign}; there "
+                "are "
                 f"signs of: {there}"
             )
         return
     if question.thing not in story.things:
         there = ", ".join(story.things)
         raise InputError(
-            f"{question.text!r}: no line says where the {question.thing} is; there are {there}"
+            f"{quoted(question.text)}: no line says where the {question.thing} is; there are "
+            f"{there}"
         )
 
 
@@ -307,7 +313,7 @@ def _play(story: Story, plan: FloorPlan, nest: Nest, world: str, grace: int) -> 
             shuts = isinstance(act, Come | Go) and act.shuts
             steps = [{a: p} for a, p in programs.items()] if shuts else [programs]
             for together in steps:
-                _perform(nest, together, f"{line.place}: {line.text!r}")
+                _perform(nest, together, f"{line.place}: {quoted(line.text)}")
             if grace and isinstance(act, Go):
                 nest["/"].step(grace + 1)
         ends.append(nest.tick)

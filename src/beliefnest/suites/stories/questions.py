@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass
 
 from beliefnest.errors import InputError
+from beliefnest.world.texts import quoted
 
 __all__ = ["Question", "parse_question"]
 
@@ -74,7 +75,8 @@ def parse_question(text: str) -> Question:
     if found is not None:
         return found
     raise InputError(
-        f"{text!r} is no question about a story; ask 'Where is the X really?', 'Where was the X "
+        f"{quoted(text)} is no question about a story; ask 'Where is the X really?', 'Where was "
+        "the X "
         "at the beginning?', 'Where will A look for the X?', 'Where does A think B thinks the "
         "X is?', 'Does A think the door of the R is open?' or 'What does A think the sign of the "
         "R says?'"

@@ -32,6 +32,7 @@ from beliefnest.suites.stories.grammar import (
     parse_lines,
 )
 from beliefnest.world.signs import sign_fault
+from beliefnest.world.texts import quoted
 from beliefnest.world.words import listed
 
 __all__ = [
@@ -530,9 +531,9 @@ class _Reader:
             hears = f"{listed(audience)} {'hears' if len(audience) == 1 else 'hear'} it"
             if told.hearer is not None and told.hearer not in audience:
                 hears = f"{hears} instead" if audience else "nobody hears it"
-                yield f"{line.place}: {line.text!r}: {told.hearer} is not there; {hears}"
+                yield f"{line.place}: {quoted(line.text)}: {told.hearer} is not there; {hears}"
             elif not audience:
-                yield f"{line.place}: {line.text!r}: nobody else is there; nobody hears it"
+                yield f"{line.place}: {quoted(line.text)}: nobody else is there; nobody hears it"
 
     def _room_of(self, line: Line, agent: str, room: str | None) -> str:
         """Return the room with containers that an agent is in.

@@ -10,6 +10,7 @@ from beliefnest.suites.stories.grammar import Line, parse_line
 from beliefnest.suites.stories.played_story import check_question
 from beliefnest.suites.stories.questions import parse_question
 from beliefnest.suites.stories.story import Story, story_of
+from beliefnest.world.texts import quoted
 
 __all__ = ["read_tomi"]
 
@@ -80,7 +81,7 @@ def _read(
             continue
         if number > first:
             what = "stands after a question; put the questions after the story"
-            faults.append(f"line {number}: {line.strip()!r} {what}")
+            faults.append(f"line {number}: {quoted(line.strip())} {what}")
         try:
             lines.append(parse_line(number, line))
         except InputError as error:
@@ -111,5 +112,5 @@ def _item(number: int, line: str, story: Story) -> BatteryItem:
     question = parse_question(rest if first.isdecimal() else asked)
     check_question(story, question)
     if not answer:
-        raise InputError(f"{asked!r} has no answer; {_FORM}")
+        raise InputError(f"{quoted(asked)} has no answer; {_FORM}")
     return BatteryItem(number, question, answer)

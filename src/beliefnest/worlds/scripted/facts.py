@@ -10,7 +10,7 @@ from beliefnest.errors import WorldError
 from beliefnest.world.frames import PlainClaims
 from beliefnest.world.limits import agent_name_fault, box_fault
 from beliefnest.world.terrain import Draft
-from beliefnest.world.texts import fault_of
+from beliefnest.world.texts import fault_of, quoted
 from beliefnest.world.values import (
     EQUIPMENT_SLOTS,
     AgentState,
@@ -149,7 +149,7 @@ def whole_position(position: Position) -> Position:
     """Return a block position of ints; WorldError if the position is invalid."""
     # Most positions are ints: test the type first, because it is cheaper.
     if len(position) != 3 or any(type(p) is not int and p != math.floor(p) for p in position):
-        raise WorldError(f"{position!r} is no block position; give three whole numbers")
+        raise WorldError(f"{quoted(position)} is no block position; give three whole numbers")
     x, y, z = (int(p) for p in position)
     return (x, y, z)
 
@@ -163,6 +163,6 @@ def checked_equipment(worn: Mapping[str, str], check: Callable[[Items], object])
     for slot, item in worn.items():
         if slot not in EQUIPMENT_SLOTS:
             there = ", ".join(EQUIPMENT_SLOTS)
-            raise WorldError(f"unknown slot {slot!r}; slots are {there}")
+            raise WorldError(f"unknown slot {quoted(slot)}; slots are {there}")
         check({item: 1})
     return dict(worn)

@@ -14,7 +14,7 @@ from typing import Any
 from beliefnest.errors import BeliefNestError
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand
 from beliefnest.world.registry import AIR, Registry
-from beliefnest.world.texts import MOST_UTTERANCES
+from beliefnest.world.texts import MOST_UTTERANCES, quoted
 from beliefnest.world.values import EYE_HEIGHT, AgentState, Point, Position, block_at, feet_in
 from beliefnest.worlds.protocol import NO_WAY
 from beliefnest.worlds.scripted.footpaths import Ground, InReach, Near, WalkGoal
@@ -193,7 +193,7 @@ def doors_in(value: Any) -> Doors:
         name in names and isinstance(flag, bool) for name, flag in given.items()
     ):
         raise SkillError(
-            f"doors may have openDoors and closeDoors, each true or false; it is {value!r}"
+            f"doors may have openDoors and closeDoors, each true or false; it is {quoted(value)}"
         )
     return Doors(given.get("openDoors", True), given.get("closeDoors", False))
 
@@ -288,7 +288,7 @@ def _step_to(hand: Hand, feet: Point, ahead: Point) -> None:
 def point_in(name: str, value: Any) -> Point:
     """Return a program's point; raises SkillError if it is not valid."""
     if not (isinstance(value, list | tuple) and len(value) == 3 and all(map(_is_number, value))):
-        raise SkillError(f"{name} must be a Vec3 of three finite numbers; it is {value!r}")
+        raise SkillError(f"{name} must be a Vec3 of three finite numbers; it is {quoted(value)}")
     return (float(value[0]), float(value[1]), float(value[2]))
 
 
@@ -301,25 +301,27 @@ def items_in(value: Any) -> dict[str, int]:
     """Return items and their counts; raises SkillError if they are not valid."""
     registry = Registry.load()
     if not isinstance(value, dict) or not value:
-        raise SkillError(f"items must say how many of which, like {{diamond: 1}}; it is {value!r}")
+        raise SkillError(
+            f"items must say how many of which, like {{diamond: 1}}; it is {quoted(value)}"
+        )
     for name, count in value.items():
         registry.item_stack(name)
         if not _is_number(count) or count != int(count) or count < 1:
-            raise SkillError(f"items.{name} must be a whole number above 0; it is {count!r}")
+            raise SkillError(f"items.{name} must be a whole number above 0; it is {quoted(count)}")
     return {name: int(count) for name, count in value.items()}
 
 
 def text_in(value: Any) -> str:
     """Return a text that is not empty; raises SkillError otherwise."""
     if not isinstance(value, str) or not value.strip():
-        raise SkillError(f"a text is wanted that is not empty; it is {value!r}")
+        raise SkillError(f"a text is wanted that is not empty; it is {quoted(value)}")
     return value
 
 
 def number_in(name: str, value: Any) -> float:
     """Return a number of at least 0; raises SkillError otherwise."""
     if not _is_number(value) or value < 0:
-        raise SkillError(f"{name} must be a number of at least 0; it is {value!r}")
+        raise SkillError(f"{name} must be a number of at least 0; it is {quoted(value)}")
     return float(value)
 
 

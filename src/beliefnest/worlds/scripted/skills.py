@@ -14,7 +14,7 @@ from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.doors import is_door, is_open
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import sign_fault
-from beliefnest.world.texts import MOST_UTTERANCES
+from beliefnest.world.texts import MOST_UTTERANCES, quoted
 from beliefnest.world.values import EYE_HEIGHT, Position, block_at
 from beliefnest.worlds.scripted.building import mine_block, place_item, press_button, switch_lever
 from beliefnest.worlds.scripted.footpaths import Near
@@ -100,7 +100,7 @@ def _write_sign(hand: Hand, position: Any, lines: Any, claims: Any = ()) -> Doin
     place, told = block_in(position), _claims(claims)
     text = "\n".join(lines) if _is_lines(lines) else lines
     if not isinstance(text, str):
-        raise SkillError(f"text must be a text; it is {text!r}")
+        raise SkillError(f"text must be a text; it is {quoted(text)}")
     if fault := sign_fault(text):
         raise SkillError(f"text is {fault}")
     yield from walk_to_use(hand, place)
@@ -201,7 +201,9 @@ def _give_item(hand: Hand, other: Any, item: Any, count: Any) -> Doing:
     name = text_in(other)
     others = hand.others()
     if name not in others:
-        raise SkillError(f"{name!r} is no agent that is known to be here; it is {sorted(others)}")
+        raise SkillError(
+            f"{quoted(name)} is no agent that is known to be here; it is {sorted(others)}"
+        )
     where = others[name].position
     yield from walk(hand, where, Near(block_at(where), _NEAR), name)
     yield 0

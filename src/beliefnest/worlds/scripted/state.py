@@ -14,6 +14,7 @@ from beliefnest.world.limits import container_slots, divided, items_fault
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.signs import written
 from beliefnest.world.terrain import Terrain
+from beliefnest.world.texts import quoted
 from beliefnest.world.values import (
     AgentState,
     Block,
@@ -210,7 +211,7 @@ class ScriptedState(Barred):
         """Set all blocks of a cuboid of a new world."""
         state = self._state(block)
         if self._registry.is_container(self._registry.name(state)) or state in self._plates:
-            raise WorldError(f"{block!r} cannot fill a cuboid; give each one in 'blocks'")
+            raise WorldError(f"{quoted(block)} cannot fill a cuboid; give each one in 'blocks'")
         if any(a > b for a, b in zip(low, high, strict=True)):
             raise WorldError(f"the cuboid {low} to {high} is empty; give its lower corner first")
         x, y, z = self._box.index(high)
@@ -235,7 +236,7 @@ class ScriptedState(Barred):
 
     def _agent(self, name: str) -> AgentState:
         if name not in self._facts.agents:
-            raise WorldError(f"no agent {name!r}; agents are {sorted(self._facts.agents)}")
+            raise WorldError(f"no agent {quoted(name)}; agents are {sorted(self._facts.agents)}")
         return self._facts.agents[name]
 
     def _container(self, position: Position) -> Position:
@@ -258,7 +259,7 @@ class ScriptedState(Barred):
 
     def _feet(self, position: Point) -> Point:
         if len(position) != 3 or not all(map(math.isfinite, position)):
-            raise WorldError(f"{position!r} is no point; give three finite numbers")
+            raise WorldError(f"{quoted(position)} is no point; give three finite numbers")
         x, y, z = map(float, position)
         self._in_box(block_at((x, y, z)))
         return (x, y, z)
@@ -272,9 +273,11 @@ class ScriptedState(Barred):
     def _items(self, items: Items) -> dict[str, int]:
         for name, count in items.items():
             if not self._registry.has_item(name):
-                raise WorldError(f"there is no item {name!r}")
+                raise WorldError(f"there is no item {quoted(name)}")
             if not isinstance(count, int) or isinstance(count, bool) or count <= 0:
-                raise WorldError(f"count {count!r} of {name!r}; give a whole number above 0")
+                raise WorldError(
+                    f"count {quoted(count)} of {quoted(name)}; give a whole number above 0"
+                )
         return dict(items)
 
     def _fitting(self, who: str, held: Items, moved: Items, slots: int) -> dict[str, int]:
