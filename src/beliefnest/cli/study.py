@@ -130,7 +130,7 @@ def _print(result: StudyResult, by: Sequence[str], warned: Mapping[str, str]) ->
     print_table(console, _table(by, result.counted(by)))
     told = [f"no result: {why}" for why in dict.fromkeys(result.failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
-    told += [*_lost_rounds(result.rows), *warned.values()]
+    told += [*_lost_rounds(result.rows), *_not_read(result.rows), *warned.values()]
     for line in told[:_MOST_TOLD]:
         console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
     if len(told) > _MOST_TOLD:
@@ -156,6 +156,16 @@ def _lost_rounds(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         told = unanswered_words(Counter(outcomes))
         rounds += f" ({told})" if told else ""
         yield f"{policy} gave no program in {rounds} of {episodes}; the first failure: {first}"
+
+
+def _not_read(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield a line for each model of whose answers none could be read."""
+    outcomes: dict[str, set[str]] = {}
+    for row in rows:
+        outcomes.setdefault(row.get("model", ""), set()).add(row["outcome"])
+    for model in (name for name, found in outcomes.items() if found == {"unread"}):
+        first = next(row for row in rows if row["model"] == model)
+        yield f"{model} gave no answer that could be read; the first: {first['why_not']}"
 
 
 def _invalid_text(invalid: Mapping[str, Any]) -> str:

@@ -12,6 +12,7 @@ from beliefnest.llm.statements import (
     Statement,
     afterthoughts,
     bare_lines,
+    given_reason,
     statements,
     unfenced,
     without_made_up_turns,
@@ -134,6 +135,8 @@ def read_answer(  # noqa: PLR0911 - each end of an answer has its own reason
         names = " and ".join(repr(options[each]) for each in sorted(chosen))
         reason = f"it names {names or 'no option clearly'}: {told}"
         return AnswerReading(None, "ambiguous", reason, said.thinking, statement)
+    if grounds := given_reason(said.text):
+        told = f"{told} ({excerpt(grounds)})"
     refused = is_refusal(said.text)
     reason = f"the model refused: {told}" if refused else f"it names none of the options: {told}"
     return AnswerReading(None, "unread", reason, said.thinking, statement, refused)

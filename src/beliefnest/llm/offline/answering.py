@@ -23,6 +23,11 @@ __all__ = ["answer_question"]
 _NEAR = 3.0
 _OPTION = re.compile(r"^([A-Z])\) (.+)$", re.MULTILINE)
 _NOT_KNOWN = "I do not know"
+_NOTHING = "Nothing that I was told says so."
+_NO_TABLE = (
+    "I read sections and the table of the template question, and no prose such as that of story; "
+    "use the template question, or another model."
+)
 
 
 def answer_question(question: str, text: str, reading: PromptReading) -> str:
@@ -39,7 +44,8 @@ def answer_question(question: str, text: str, reading: PromptReading) -> str:
         found = _found(question, reading)
         names, reason = ([], "") if found is None else (_names(found[0], reading), found[1])
     if not names:
-        return _said(_NOT_KNOWN, reason or "Nothing that I was told says so.")
+        told = reading.position or reading.chests or reading.players or reading.signs
+        return _said(_NOT_KNOWN, reason or (_NOTHING if told else _NO_TABLE))
     options = [option for _, option in _OPTION.findall(text.rpartition("Options:")[2])]
     chosen = [option for option in options if any(_same(option, name) for name in names)]
     if options and len(chosen) != 1:
