@@ -64,7 +64,7 @@ class FactEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_de
 
     path: Annotated[str, note("Belief path of the fact; / is reality.", "path")] = "/"
     container: Annotated[
-        forms.Position | None, note("A container that holds `items`.", "block")
+        forms.WrittenPosition | None, note("A container that holds `items`.", "block")
     ] = None
     agent: Annotated[
         str | None, note("An agent that has `items` or stands `at` a place.", "agent")
@@ -73,23 +73,27 @@ class FactEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_de
         dict[str, int] | None, note("Item name to count; {}: nothing at all.", "items")
     ] = None
     at: Annotated[
-        forms.Point | msgspec.UnsetType | None,
+        forms.WrittenPoint | msgspec.UnsetType | None,
         note("A block position, or the middle of the feet; null: unknown.", "place"),
     ] = msgspec.UNSET
     within: Annotated[forms.Within, note("Greatest distance from `at`, in blocks.", "keep")] = (
         WITHIN
     )
-    block: Annotated[forms.Position | None, note("A block that has a state.", "block")] = None
+    block: Annotated[forms.WrittenPosition | None, note("A block that has a state.", "block")] = (
+        None
+    )
     state: Annotated[
         str | msgspec.UnsetType | None,
         note("name or name[property=value,...]; null: unknown.", "wanted"),
     ] = msgspec.UNSET
     lacks: Annotated[str | None, note("An item that a container does not hold.", "item")] = None
-    like: Annotated[forms.Position | None, note("A block that it must equal.", "block")] = None
+    like: Annotated[forms.WrittenPosition | None, note("A block that it must equal.", "block")] = (
+        None
+    )
     property: Annotated[str, note("Property to compare with `like`; empty: the state.", "keep")] = (
         ""
     )
-    sign: Annotated[forms.Position | None, note("A sign that says `text`.", "block")] = None
+    sign: Annotated[forms.WrittenPosition | None, note("A sign that says `text`.", "block")] = None
     text: Annotated[
         str | msgspec.UnsetType | None, note("Exact text of the sign; null: unknown.", "text")
     ] = msgspec.UNSET
@@ -99,7 +103,7 @@ class FactEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_de
         tuple[str, ...], note("Agents that hold levers at once, one each.", "[agent]")
     ] = ()
     sites: Annotated[
-        tuple[tuple[forms.Position, ...], ...],
+        tuple[tuple[forms.WrittenPosition, ...], ...],
         note("Levers of each site; one site is enough.", "[[block]]"),
     ] = ()
 

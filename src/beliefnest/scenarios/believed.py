@@ -54,12 +54,12 @@ class BelievedEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     item: Annotated[str | None, note("An item: where it is.", "item")] = None
     agent: Annotated[str | None, note("An agent: at which named place it is.", "agent")] = None
     container: Annotated[
-        forms.Position | None, note("A container: names of the items in it.", "block")
+        forms.WrittenPosition | None, note("A container: names of the items in it.", "block")
     ] = None
     block: Annotated[
-        forms.Position | None, note("A block: its name; open or shut; on or off.", "block")
+        forms.WrittenPosition | None, note("A block: its name; open or shut; on or off.", "block")
     ] = None
-    sign: Annotated[forms.Position | None, note("A sign: its text.", "block")] = None
+    sign: Annotated[forms.WrittenPosition | None, note("A sign: its text.", "block")] = None
     unknown: Annotated[str, note("The right answer if the simulator does not know it.", "text")] = (
         _UNKNOWN
     )

@@ -30,9 +30,9 @@ __all__ = [
     "Deed",
     "ExpectEntry",
     "Expected",
-    "Happened",
     "InferredEntry",
     "Judgement",
+    "ProbeFacts",
     "as_list",
     "expected_json",
     "source_of",
@@ -54,7 +54,7 @@ class Answered(Protocol):
     def why_not(self) -> str: ...
 
 
-class Happened(Protocol):
+class ProbeFacts(Protocol):
     """Facts of a probe with which expectations are told, as `ProbeOutcome` has them."""
 
     @property
@@ -102,7 +102,7 @@ class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Expectations about a probe: at least one of these; all of them must hold."""
 
     opens: Annotated[
-        forms.Position | BelievedEntry | None,
+        forms.WrittenPosition | BelievedEntry | None,
         note(
             "The container that the agent opens first; with a path: that in which a simulator "
             "believes an item.",
@@ -110,10 +110,10 @@ class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         ),
     ] = None
     arrives: Annotated[
-        forms.Point | BelievedEntry | None, note("Place of the agent at the end.", "point")
+        forms.WrittenPoint | BelievedEntry | None, note("Place of the agent at the end.", "point")
     ] = None
     intends: Annotated[
-        forms.Point | BelievedEntry | None,
+        forms.WrittenPoint | BelievedEntry | None,
         note(
             "Container or place that the program heads for, even if it never gets there.", "place"
         ),
@@ -215,7 +215,9 @@ class Expected(ABC):
         """Return what is expected, for a table."""
         return self.ground
 
-    def told(self, judged: "Judgement", outcome: Happened, setting: Setting, *, alone: bool) -> str:
+    def told(
+        self, judged: "Judgement", outcome: ProbeFacts, setting: Setting, *, alone: bool
+    ) -> str:
         """Return what happened, for a table.
 
         Args:
@@ -226,7 +228,9 @@ class Expected(ABC):
         """
         return self.wanted if judged.ok else judged.why_not
 
-    def account(self, judged: "Judgement", outcome: Happened, setting: Setting, agent: str) -> str:
+    def account(
+        self, judged: "Judgement", outcome: ProbeFacts, setting: Setting, agent: str
+    ) -> str:
         """Return a sentence that says on what grounds the expectation holds or does not.
 
         Args:

@@ -17,8 +17,8 @@ from beliefnest.scenarios.expected import (
     Deed,
     Expected,
     ExpectEntry,
-    Happened,
     Judgement,
+    ProbeFacts,
     as_list,
     source_of,
 )
@@ -137,11 +137,11 @@ class Opens(Deed):
         found = f"opened {point_words(first[0])} first" if first else "opened nothing"
         return self.verdict(first == (self.container,), found, by_deed=bool(first))
 
-    def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
+    def told(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, *, alone: bool) -> str:
         opened = container_name(outcome.opened[0], setting) if outcome.opened else "nothing"
         return opened if alone else f"opens {opened}"
 
-    def account(self, judged: Judgement, outcome: Happened, setting: Setting, agent: str) -> str:
+    def account(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, agent: str) -> str:
         opened = with_the(container_name(outcome.opened[0], setting)) if outcome.opened else "none"
         return (
             f"Judged by the container that {agent} opens first, in the world and not in the "
@@ -181,11 +181,11 @@ class Arrives(Deed):
         found = "is nowhere" if arrived is None else f"ended at {point_words(arrived)}"
         return self.verdict(ok, found)
 
-    def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
+    def told(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, *, alone: bool) -> str:
         where = "nowhere" if outcome.arrived is None else point_text(outcome.arrived)
         return where if alone else f"arrives at {where}"
 
-    def account(self, judged: Judgement, outcome: Happened, setting: Setting, agent: str) -> str:
+    def account(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, agent: str) -> str:
         where, far = "nowhere", ""
         if outcome.arrived is not None:
             where = named_place(outcome.arrived, setting)
@@ -245,7 +245,7 @@ class Intends(Deed):
             return False
         return bool(walked) and math.dist(block_at(walked[-1]), block_at(self.place)) <= self.within
 
-    def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
+    def told(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, *, alone: bool) -> str:
         if outcome.intended is None:
             return "makes for nothing"
         place = block_at(outcome.intended)

@@ -14,8 +14,8 @@ from beliefnest.scenarios.expected import (
     Answered,
     Expected,
     ExpectEntry,
-    Happened,
     Judgement,
+    ProbeFacts,
     as_list,
     source_of,
 )
@@ -169,12 +169,12 @@ class Answers(Expected):
             return Judgement(self, ok=False, why_not=told, outcome="unread")
         return self.verdict(bool(chosen & set(right)), told, by_deed=True)
 
-    def told(self, judged: Judgement, outcome: Happened, setting: Setting, *, alone: bool) -> str:
+    def told(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, *, alone: bool) -> str:
         answers = {each.question: each.answer for each in outcome.replies}
         told = f"answers {answers.get(self.question) or 'nothing'}"
         return told if judged.ok else f"{told}, right is {listed(self.right, 'or')}"
 
-    def account(self, judged: Judgement, outcome: Happened, setting: Setting, agent: str) -> str:
+    def account(self, judged: Judgement, outcome: ProbeFacts, setting: Setting, agent: str) -> str:
         told = "" if judged.ok else f": {judged.why_not}"
         source = "" if self.believed is None else f" ({self.believed.words}; computed by the nest)"
         right = listed([repr(each) for each in self.right], "or")

@@ -14,7 +14,7 @@ from beliefnest.scenarios.expected import ExpectEntry
 from beliefnest.scenarios.expected_state import ExpectationEntry
 from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world import values as world
-from beliefnest.world.forms import Point, Position, note
+from beliefnest.world.forms import WrittenPoint, WrittenPosition, note
 
 __all__ = [
     "AgentEntry",
@@ -65,12 +65,13 @@ class BlockEntry(_Entry, frozen=True):
     """Blocks of one kind, with one of `at`, `fill` and `walls`. Later entries replace earlier."""
 
     block: Annotated[str | None, note("A block state: name or name[property=value,...].")]
-    at: Annotated[Position | None, note("One position.")] = None
+    at: Annotated[WrittenPosition | None, note("One position.")] = None
     fill: Annotated[
-        tuple[Position, Position] | None, note("Two inclusive corners; all between them.")
+        tuple[WrittenPosition, WrittenPosition] | None,
+        note("Two inclusive corners; all between them."),
     ] = None
     walls: Annotated[
-        tuple[Position, Position] | None,
+        tuple[WrittenPosition, WrittenPosition] | None,
         note("Two inclusive corners; the four vertical sides of the box between them."),
     ] = None
 
@@ -88,7 +89,7 @@ class TerrainEntry(_Entry, frozen=True):
 class ContainerEntry(_Entry, frozen=True):
     """A container with its block."""
 
-    at: Annotated[Position, note("Position of its block.")]
+    at: Annotated[WrittenPosition, note("Position of its block.")]
     block: Annotated[str, note("A block state of a container.")] = "chest"
     items: _ItemsField = {}
     label: _LabelField = ""
@@ -104,7 +105,7 @@ _SignText = Annotated[
 class SignEntry(_Entry, frozen=True):
     """A sign with its block and its text."""
 
-    at: Annotated[Position, note("Position of its block.")]
+    at: Annotated[WrittenPosition, note("Position of its block.")]
     text: _SignText = ""
     block: Annotated[str, note("A block state of a sign.")] = "oak_sign"
     claims: Annotated[list[FactEntry], note("Claims of the text, for its readers.")] = []
@@ -113,7 +114,7 @@ class SignEntry(_Entry, frozen=True):
 class BelievedSignEntry(_Entry, frozen=True):
     """A believed sign and its text."""
 
-    at: Annotated[Position, note("Its position.")]
+    at: Annotated[WrittenPosition, note("Its position.")]
     text: _SignText = ""
     block: Annotated[
         str | None, note("A block state of a sign; null: that of the real sign there.")
@@ -135,7 +136,7 @@ class _AgentAttributes(_Entry, frozen=True):
     """Attributes of an agent apart from its name and place."""
 
     facing: Annotated[
-        Literal["north", "east", "south", "west"] | Point | None,
+        Literal["north", "east", "south", "west"] | WrittenPoint | None,
         note("A direction, or a point to look at; instead of yaw and pitch."),
     ] = None
     yaw: Annotated[_Angle | None, note("Radians; 0 looks north (-z), pi/2 west (-x).")] = None
@@ -214,7 +215,7 @@ class MapEntry(_Entry, frozen=True):
         ),
     ] = {}
     origin: Annotated[
-        Position, note("Block of the first character of the first row of the lowest floor.")
+        WrittenPosition, note("Block of the first character of the first row of the lowest floor.")
     ] = (0, 1, 0)
     floor: Annotated[str | None, note("Block below the lowest floor; null: none.")] = "stone"
     height: Annotated[_Height, note("Height of each floor in blocks.")] = 3
@@ -223,7 +224,7 @@ class MapEntry(_Entry, frozen=True):
 class _BelievedContainerEntry(_Entry, frozen=True):
     """Believed contents of a container."""
 
-    at: Annotated[Position, note("Its position.")]
+    at: Annotated[WrittenPosition, note("Its position.")]
     items: _ItemsField = {}
     complete: Annotated[bool, note("True if these are believed to be all items in it.")] = True
 
@@ -241,7 +242,7 @@ class InitialBeliefEntry(_Entry, frozen=True):
     blocks: Annotated[list[BlockEntry], note("Believed blocks; `block` null: unknown.")] = []
     signs: Annotated[list[BelievedSignEntry], note("Believed signs.")] = []
     agents: Annotated[
-        dict[str, Point] | list[str],
+        dict[str, WrittenPoint] | list[str],
         note("Believed positions of the feet; or names of agents, which are where they stand."),
     ] = {}
     inventories: Annotated[
@@ -263,7 +264,7 @@ class StepEntry(_Entry, frozen=True):
 class _MindGoalEntry(_Entry, frozen=True):
     """A possible goal of an agent; exactly one of the keys."""
 
-    at: Annotated[Position | None, note("The cell in which to stand.")] = None
+    at: Annotated[WrittenPosition | None, note("The cell in which to stand.")] = None
     block: Annotated[str | None, note("Name of the block on which to stand.")] = None
     item: Annotated[str | None, note("Name of the item to take.")] = None
 
@@ -395,7 +396,7 @@ class InstanceEntry(_Entry, frozen=True):
     """Rules for the value of a parameter in a random instance."""
 
     within: Annotated[
-        tuple[Position, Position] | None,
+        tuple[WrittenPosition, WrittenPosition] | None,
         note("Two inclusive corners: the value is a position between them."),
     ] = None
     free: Annotated[bool, note("True if `blocks` must leave the position free, above a block.")] = (
@@ -439,14 +440,16 @@ class _File(_Entry, frozen=True, kw_only=True):
         list[ContainerEntry], note("Containers, their initial contents, and their names.")
     ] = []
     signs: Annotated[list[SignEntry], note("Signs and their texts.")] = []
-    places: Annotated[dict[str, Position], note("Named places: block positions by name.")] = {}
+    places: Annotated[
+        dict[str, WrittenPosition], note("Named places: block positions by name.")
+    ] = {}
     perception: Annotated[
         Perception,
         note("Range of sight and hearing, and effect of claims."),
     ] = Perception()
     senses: Annotated[_Senses, _SENSES] = "world"
     static_blocks: Annotated[
-        list[str | Position],
+        list[str | WrittenPosition],
         note("Blocks that all agents know from the start: names, or positions."),
     ] = []
     unique: Annotated[
@@ -483,7 +486,7 @@ _BOX = note("Two inclusive corners of the scenario's space.")
 class ScenarioFile(_File, frozen=True, kw_only=True):
     """A scenario: a world, agents, a script, and expected beliefs."""
 
-    box: Annotated[tuple[Position, Position], _BOX]
+    box: Annotated[tuple[WrittenPosition, WrittenPosition], _BOX]
     agents: Annotated[
         dict[str, AgentEntry],
         msgspec.Meta(min_length=1, description="Agents by name."),
@@ -499,7 +502,9 @@ class WrittenFile(_File, frozen=True, kw_only=True):
             "A drawing of the scene. Other keys add to it, and `box` and `agents` may be missing."
         ),
     ] = msgspec.UNSET
-    box: Annotated[tuple[Position, Position] | msgspec.UnsetType, _BOX] = msgspec.UNSET
+    box: Annotated[tuple[WrittenPosition, WrittenPosition] | msgspec.UnsetType, _BOX] = (
+        msgspec.UNSET
+    )
     agents: Annotated[
         dict[str, dict[str, Any]],
         note("Agents by name. What is stated here counts for agents on the map, too."),

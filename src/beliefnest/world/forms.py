@@ -6,7 +6,7 @@ import msgspec
 
 from beliefnest.world.limits import FARTHEST
 
-__all__ = ["Point", "Position", "Within", "note", "scene_kinds"]
+__all__ = ["Within", "WrittenPoint", "WrittenPosition", "note", "scene_kinds"]
 
 
 def note(text: str, scene: str | None = None) -> msgspec.Meta:
@@ -33,7 +33,7 @@ def scene_kinds(form: type[msgspec.Struct]) -> dict[str, str]:
 
 _Whole = Annotated[int, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
 _Number = Annotated[float, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
-Position = tuple[_Whole, _Whole, _Whole]
-Point = tuple[_Number, _Number, _Number]
+WrittenPosition = tuple[_Whole, _Whole, _Whole]
+WrittenPoint = tuple[_Number, _Number, _Number]
 Within = Annotated[float, msgspec.Meta(gt=0, le=FARTHEST)]
 """Distance in blocks."""
