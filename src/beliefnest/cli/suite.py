@@ -17,16 +17,15 @@ from beliefnest.cli.films import run_films
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.suites import FILMS, SUITES
-from beliefnest.suites.stories.data import StoryItems, Unread, read_items
-from beliefnest.suites.stories.own import read_own
+from beliefnest.suites.stories.data import StoryItems, Unread
 from beliefnest.suites.stories.suite import (
+    READERS,
     JudgedAnswer,
     Score,
     answer_story,
     score,
     scores_by_order,
 )
-from beliefnest.suites.stories.tomi import read_tomi
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
 
@@ -34,8 +33,6 @@ if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
     from beliefnest.llm.claim_reader import ClaimsFromModel
 
 __all__ = ["run_suite"]
-
-_READERS = {"hi-tom": read_items, "tomi": read_tomi, "stories": read_own}
 
 _ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
 
@@ -63,7 +60,7 @@ def run_suite(options: SuiteOptions) -> int:
         return run_films(options, rows)
     if options.out is not None:
         raise InputError(f"--out is for films; the suite {options.name} writes no files")
-    found = _READERS[options.name](options.data, rows)
+    found = READERS[options.name](options.data, rows)
     stories = (found.whole() if options.strict else found.stories)[: options.limit]
     if not stories:
         found.whole()

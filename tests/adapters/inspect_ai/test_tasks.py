@@ -238,7 +238,12 @@ def test_suites_are_tasks_whose_answers_are_scored_and_explained(run, tmp_path):
     story += "4 Bob moved the ball to the jar."
     asked = {"Where does Ann think the ball is?": "box", "Where is the ball really?": "jar"}
     rows = [{"story": story, "question": each, "answer": asked[each]} for each in asked]
-    files = {"hi_tom": str(tmp_path / "hi.json"), "stories": str(tmp_path / "own.jsonl")}
+    files = {
+        name: str(tmp_path / file)
+        for name, file in {"hi_tom": "hi.json", "tomi": "to.txt", "stories": "own.jsonl"}.items()
+    }
+    questions = [f"{n} {each}\t{asked[each]}\t1" for n, each in enumerate(asked, 5)]
+    Path(files["tomi"]).write_text("\n".join([story, *questions]), encoding="utf-8")
     Path(files["hi_tom"]).write_text(json.dumps(rows), encoding="utf-8")
     events = [line.partition(" ")[2] for line in story.splitlines()]
     own = {

@@ -47,6 +47,7 @@ __all__ = [
     "minds",
     "scenario",
     "stories",
+    "tomi",
 ]
 
 
@@ -66,6 +67,12 @@ def scenario(
 def hi_tom(file: str | list[str], stories: int | None = None) -> Task:
     """Return the task of stories in Hi-ToM's form; `stories` limits their number."""
     return suite_task("hi-tom", file, stories)
+
+
+@task
+def tomi(file: str | list[str], stories: int | None = None) -> Task:
+    """Return the task of stories in ToMi's form; `stories` limits their number."""
+    return suite_task("tomi", file, stories)
 
 
 @task

@@ -19,18 +19,15 @@ from beliefnest.adapters.inspect_ai.task_parts import (
 from beliefnest.errors import InputError
 from beliefnest.llm.reading_answers import read_answer
 from beliefnest.studies.cells import variation_id
-from beliefnest.suites.stories.data import BatteryItem, StoryItems, read_items
+from beliefnest.suites.stories.data import BatteryItem, StoryItems
 from beliefnest.suites.stories.explaining import explain_answer
-from beliefnest.suites.stories.own import read_own
 from beliefnest.suites.stories.played_story import PlayedStory
-from beliefnest.suites.stories.tomi import read_tomi
+from beliefnest.suites.stories.suite import READERS
 
 __all__ = ["NOWHERE", "story_answer", "suite_task"]
 
 NOWHERE = "in none of them"
 """Answer option for a thing that is in no container."""
-
-_READERS = {"hi-tom": read_items, "tomi": read_tomi, "stories": read_own}
 
 
 def suite_task(suite: str, file: str | list[str], limit: int | None) -> Task:
@@ -48,7 +45,7 @@ def suite_task(suite: str, file: str | list[str], limit: int | None) -> Task:
     samples = [
         _sample(suite, each, place, number, asked, item, "" if len(files) == 1 else Path(each).stem)
         for each in files
-        for place, asked in enumerate(_READERS[suite](Path(each)).whole()[:limit])
+        for place, asked in enumerate(READERS[suite](Path(each)).whole()[:limit])
         for number, item in enumerate(asked.items)
     ]
     if not samples:
@@ -130,7 +127,7 @@ def story_answer() -> Scorer:
 
 def _explanation(sample: dict[str, object]) -> tuple[str, ...]:
     """Return the nest's answer to a question and the reasons for it, in lines."""
-    stories = _READERS[str(sample["suite"])](Path(str(sample["file"]))).whole()
+    stories = READERS[str(sample["suite"])](Path(str(sample["file"]))).whole()
     asked = stories[int(str(sample["story"]))]
     item = asked.items[int(str(sample["item"]))]
     with PlayedStory.play(asked.story, asked=[item.question], knowing=asked.knowing) as played:
