@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -301,3 +302,10 @@ def test_every_command_takes_h_for_help(
 ) -> None:
     assert run_command_line([*command, "-h"]) == 0
     assert "-h, --help" in capsys.readouterr().out
+
+
+def test_the_help_lists_each_command_once_in_a_panel(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command_line([]) == 0
+    listed = capsys.readouterr().out.partition("Play:\n")[2]
+    assert "Other commands" not in listed
+    assert sorted(re.findall(r"^  (\w+)  ", listed, re.MULTILINE)) == sorted(COMMANDS)

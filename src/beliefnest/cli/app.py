@@ -2,11 +2,12 @@
 
 import errno
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from beliefnest.cli.options import (
     CaptureOptions,
@@ -45,8 +46,33 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 # The bases of BadParameter are UsageError and then ClickException.
 _UsageFault: Any = typer.BadParameter.__mro__[2]
 
+_PLAY = "Play"
+_READ = "Read results"
+_WRITE = "Write files"
+_HERE = "See what is here"
+
+
+class _InPanels(TyperGroup):
+    """Commands whose list in the help is grouped, as plain text."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write a section for each panel, in the order of its first command."""
+        commands: Mapping[str, Any] = self.commands
+        limit = formatter.width - 6 - max(map(len, commands))
+        for panel in dict.fromkeys(each.rich_help_panel for each in commands.values()):
+            with formatter.section(panel or "Other commands"):
+                formatter.write_dl(
+                    [
+                        (name, command.get_short_help_str(limit))
+                        for name, command in commands.items()
+                        if command.rich_help_panel == panel
+                    ]
+                )
+
+
 app = typer.Typer(
     name="beliefnest",
+    cls=_InPanels,
     help="Nested belief simulators for embodied agents, in a Minecraft world.",
     no_args_is_help=True,
     add_completion=False,
@@ -144,7 +170,7 @@ def common(
     """Read the options that belong to no command."""
 
 
-@app.command()
+@app.command(rich_help_panel=_PLAY)
 @with_options(RunOptions)
 def run(options: RunOptions) -> int:
     """Play a scenario, track the beliefs, ask the model, and judge the results."""
@@ -162,7 +188,7 @@ def run(options: RunOptions) -> int:
         return run_scenarios(options, launch)
 
 
-@app.command()
+@app.command(rich_help_panel=_READ)
 @with_options(ShowOptions)
 def show(options: ShowOptions) -> None:
     """Show the state of a simulator in a recorded run."""
@@ -176,7 +202,7 @@ def show(options: ShowOptions) -> None:
         show_run(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_READ)
 @with_options(ServeOptions)
 def serve(options: ServeOptions) -> None:
     """Show a run in the browser, live while it is being recorded."""
@@ -185,7 +211,7 @@ def serve(options: ServeOptions) -> None:
     serve(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_READ)
 def branches(
     run: Annotated[Path, typer.Argument(help="Run folder or run file.")], json: Json = False
 ) -> None:
@@ -195,7 +221,7 @@ def branches(
     show_branches(run, as_json=json)
 
 
-@app.command()
+@app.command(rich_help_panel=_READ)
 def prompt(
     run: Annotated[Path, typer.Argument(help="Run folder, or the folder of one condition in it.")],
     path: Annotated[str, typer.Option(help="Belief path to render.")],
@@ -215,7 +241,7 @@ def prompt(
     print_prompt(run, path, template, var or [])
 
 
-@app.command()
+@app.command(rich_help_panel=_WRITE)
 def template(
     name: Annotated[
         str | None, typer.Argument(help="Built-in template; without it, the names of all.")
@@ -227,7 +253,7 @@ def template(
     print_template(name)
 
 
-@app.command()
+@app.command(rich_help_panel=_WRITE)
 def new(
     name: Annotated[str, typer.Argument(help="Name of the scenario and of its file.")],
 ) -> None:
@@ -237,7 +263,7 @@ def new(
     write_starter(name)
 
 
-@app.command()
+@app.command(rich_help_panel=_WRITE)
 @with_options(CaptureOptions)
 def capture(options: CaptureOptions) -> None:
     """Write a place on a server, or in a file, as a scenario."""
@@ -246,7 +272,7 @@ def capture(options: CaptureOptions) -> None:
     write_capture(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_PLAY)
 def replay(
     run: Annotated[Path, typer.Argument(help="Folder of a run or a study, or a run file.")],
     json: Json = False,
@@ -257,7 +283,7 @@ def replay(
     return replay_runs(run, as_json=json)
 
 
-@app.command()
+@app.command(rich_help_panel=_WRITE)
 @with_options(ExportOptions)
 def export(options: ExportOptions) -> None:
     """Write a run as tables that other programs can read."""
@@ -266,7 +292,7 @@ def export(options: ExportOptions) -> None:
     export_run(options)
 
 
-@app.command("import")
+@app.command("import", rich_help_panel=_WRITE)
 def import_(
     trace: Annotated[Path, typer.Argument(help="JSONL trace of another program.")],
     out: Annotated[Path, typer.Option(help="Run file to write; it must not exist.")],
@@ -277,7 +303,7 @@ def import_(
     import_run(trace, out)
 
 
-@app.command("list")
+@app.command("list", rich_help_panel=_HERE)
 def list_installed(json: Json = False) -> None:
     """List scenarios, tasks, suites, templates, worlds and models."""
     from beliefnest.cli.listing import print_installed
@@ -285,7 +311,7 @@ def list_installed(json: Json = False) -> None:
     print_installed(as_json=json)
 
 
-@app.command()
+@app.command(rich_help_panel=_PLAY)
 @with_options(SuiteOptions)
 def suite(options: SuiteOptions) -> int:
     """Answer a file of questions from nests; compare with its answers, or with people."""
@@ -294,7 +320,7 @@ def suite(options: SuiteOptions) -> int:
     return run_suite(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_PLAY)
 @with_options(StudyOptions)
 def study(options: StudyOptions) -> int:
     """Play many variations of scenarios with several models; print accuracies with intervals."""
@@ -303,7 +329,7 @@ def study(options: StudyOptions) -> int:
     return run_study(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_PLAY)
 @with_options(ParticipantsOptions)
 def participants(options: ParticipantsOptions) -> None:
     """Write a page on which people answer a study's questions; read their answers back."""
@@ -312,7 +338,7 @@ def participants(options: ParticipantsOptions) -> None:
     run_participants(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_READ)
 @with_options(StatsOptions)
 def stats(options: StatsOptions) -> int:
     """Print accuracies, paired differences and regressions of a study, clustered by variation."""
@@ -321,7 +347,7 @@ def stats(options: StatsOptions) -> int:
     return run_stats(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_READ)
 @with_options(PowerOptions)
 def power(options: PowerOptions) -> int:
     """Simulate how wide intervals are, and which differences are found, with more variations."""
@@ -330,7 +356,7 @@ def power(options: PowerOptions) -> int:
     return run_power(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_PLAY)
 @with_options(PlayOptions)
 def play(options: PlayOptions) -> int:
     """Let agents act on their own beliefs, round after round; say if they reach the goal."""
@@ -343,7 +369,7 @@ def play(options: PlayOptions) -> int:
     return play_task(options)
 
 
-@app.command()
+@app.command(rich_help_panel=_WRITE)
 def bundle(
     results: Annotated[Path, typer.Argument(help="Folder of a study or a run.")],
     out: Annotated[
@@ -360,7 +386,7 @@ def bundle(
     write_bundle(results, out, runs=runs)
 
 
-@app.command()
+@app.command(rich_help_panel=_READ)
 def methods(
     results: Annotated[Path, typer.Argument(help="Folder of a study or a run.")],
     form: MethodsFormat = "markdown",
@@ -371,7 +397,7 @@ def methods(
     print_methods(results, form)
 
 
-@app.command()
+@app.command(rich_help_panel=_PLAY)
 def reproduce(
     supplement: Annotated[
         Path | None,
@@ -412,7 +438,7 @@ def reproduce(
     return run_reproduction(4 if copies is None else copies, jobs, page, as_json=json)
 
 
-@app.command()
+@app.command(rich_help_panel=_HERE)
 def doctor(
     server: Annotated[
         str | None, typer.Argument(help="Server to check as well, as minecraft://HOST:PORT.")
@@ -428,7 +454,7 @@ def doctor(
     return examine(server, as_json=json, warm=warm)
 
 
-@app.command()
+@app.command(rich_help_panel=_HERE)
 def bench(
     names: Annotated[
         list[str] | None, typer.Argument(help="Names of benches; default: all except minecraft.")
