@@ -69,10 +69,8 @@ def test_a_task_of_another_size_needs_its_order_too(name: str) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", KNOWN[:: at_night(1, 2)])
 def test_a_task_of_more_agents_needs_its_order_too(name: str) -> None:
-    # More than one plot takes planners longest of all.
-    smaller = {"plots": 1} if name == "blueprint" else {}
     for seed in range(at_night(10, 1)):
-        task = bn.Task.load(name, seed=seed, agents=3, **smaller)
+        task = bn.Task.load(name, seed=seed, agents=3)
         assert len(task.agents) == 3
         assert played(task, task.order), seed
         assert not played(task, task.order - 1), seed

@@ -2,9 +2,9 @@
 
 A lift rises while all its levers are on, with an agent at each of them. Each lift is in a stall
 behind a door. Anne knows all lifts, and knows that Bob has been shown only one of them: never the
-one nearest to both, else any. They cannot talk. An agent that considers what the other one knows
-goes to the lift where the other one will be. Further agents stand beside Bob and know what he
-knows; each lift then has a lever for each of them.
+one nearest to both, which is in the middle, else any. They cannot talk. An agent that considers
+what the other one knows goes to the lift where the other one will be. Further agents stand beside
+Bob and know what he knows; each lift then has a lever for each of them.
 """
 
 import random
@@ -12,7 +12,7 @@ from typing import Any
 
 from beliefnest.episodes.tasks.building import FLOOR, WALL, abreast, also, hall, wall
 
-PARAMETERS = {"far": (14, 12, 20), "lifts": (4, 3, 5), "agents": (2, 2, 4)}
+PARAMETERS = {"far": (14, 12, 20), "lifts": (5, 3, 5), "agents": (2, 2, 4)}
 
 _COMPANIONS = ("bob", "carl", "dora")
 _STALL, _DEPTH, _ROUND = 6, 12, 15
@@ -23,7 +23,8 @@ def instance(chance: random.Random, far: int, lifts: int, agents: int) -> dict[s
     """Return an instance.
 
     Args:
-        chance: Random source of the lift that Bob knows, of the sides and the places.
+        chance: Random source of the lift that Bob knows, and of the nearest one if none is in the
+            middle.
         far: Blocks from one lift to the next.
         lifts: Number of lifts.
         agents: Number of agents: Anne, Bob, and agents beside Bob who know what he knows; each lift
@@ -31,7 +32,9 @@ def instance(chance: random.Random, far: int, lifts: int, agents: int) -> dict[s
     """
     width, depth = far * lifts, _DEPTH
     columns = [far // 2 + far * number for number in range(lifts)]
-    near, shown = chance.sample(columns, 2)
+    # At both sides is a lift so far away: the time that is left does not tell which one it is.
+    near = chance.choice(columns[1:-1]) if lifts % 2 == 0 else columns[lifts // 2]
+    shown = chance.choice([x for x in columns if x != near and 2 * near - x in columns])
     companions = _COMPANIONS[: agents - 1]
     sites = {x: _site(x, agents) for x in columns}
     hung = "oak_door[facing=south,half={},hinge=left,open=false,powered=false]"
