@@ -429,7 +429,7 @@ class AgentAt(Fact):
     def __str__(self) -> str:
         if self.place is None:
             return f"{self.agent} at an unknown place"
-        return f"{self.agent} within {self.within:g} of {self.place}"
+        return f"{self.agent} within {self.within:g} of {point_words(self.place)}"
 
     @property
     def claims(self) -> Sequence[Claim]:

@@ -93,11 +93,9 @@ class _Spelling:
             return node.value
         entry = {"at" if key == "position" else key: child for key, child in node.value.items()}
         if "position" in node.value:
-            told = "'at' for 'position'"
+            self._note("'at' for 'position'", node.value["position"])
             if entry["at"].value is not None and not {"within", "position"} & {*entry, *usual}:
-                entry["within"] = YamlNode(_OLD_WITHIN)
-                told += f", with 'within: {_OLD_WITHIN:g}'"
-            self._note(told, node.value["position"])
+                entry["within"] = self._old_within(node)
         for subject, keys in _UNKNOWN.items():
             if subject in entry and not usual and not entry.keys() & {*keys}:
                 entry[keys[0]] = YamlNode(None)
@@ -125,8 +123,7 @@ class _Spelling:
                 entry[key] = self._asked(entry[key])
         walks = {"arrives", "intends"}
         if walks & entry.keys() and not {"within", *walks} & {*before, *(entry.keys() - walks)}:
-            entry["within"] = YamlNode(_OLD_WITHIN)
-            self._note(f"'within: {_OLD_WITHIN:g}' beside 'arrives' and 'intends'", node)
+            entry["within"] = self._old_within(node)
         for key, change in (("answers", self._question), ("believes", self._believes)):
             if key in entry:
                 entry[key] = self._each(entry[key], change)
@@ -199,6 +196,10 @@ class _Spelling:
             node,
             value={"path" if key == "believed" else key: each for key, each in node.value.items()},
         )
+
+    def _old_within(self, node: YamlNode) -> YamlNode:
+        self._note(f"'within: {_OLD_WITHIN:g}' where a place has none", node)
+        return YamlNode(_OLD_WITHIN)
 
     def _note(self, told: str, node: YamlNode) -> None:
         self.advice.setdefault(told, node.line)
