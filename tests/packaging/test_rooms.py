@@ -6,6 +6,8 @@ import tomllib
 from graphlib import TopologicalSorter
 from pathlib import Path
 
+import pytest
+
 TOP = Path(__file__).parents[2]
 SOURCES = TOP / "src" / "beliefnest"
 NODE_SOURCES = SOURCES / "worlds" / "minecraft" / "node" / "src"
@@ -21,11 +23,15 @@ def layers_of(container):
     return {name.strip("() ") for layer in found["layers"] for name in layer.split("|")}
 
 
-def test_files_that_the_architecture_names_are_there():
-    text = (TOP / "design" / "architecture.md").read_text()
+@pytest.mark.parametrize(
+    ("paper", "from_here"),
+    [("design/architecture.md", ""), ("CONTRIBUTING.md", "## Adding something")],
+)
+def test_files_that_the_papers_name_are_there(paper, from_here):
+    _, _, text = f"\n{(TOP / paper).read_text()}".partition(f"\n{from_here}")
     named = re.findall(r"`([\w/]+/[\w.]*|[\w/]+\.(?:py|js|md|toml))`", text)
     assert len(named) > 30
-    roots = (SOURCES, NODE_SOURCES, TOP)
+    roots = (SOURCES, NODE_SOURCES, NODE_SOURCES.parent, TOP)
     missing = [name for name in named if not any((at / name).exists() for at in roots)]
     assert missing == []
 
