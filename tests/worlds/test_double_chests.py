@@ -215,6 +215,39 @@ def test_prompts_list_one_chest(world: str) -> None:
 
 
 @pytest.mark.parametrize("world", WORLDS)
+@pytest.mark.parametrize("hidden", HALVES)
+@pytest.mark.parametrize("contents", ["opaque", "transparent"])
+def test_the_sight_of_either_half_is_that_of_the_chest(
+    world: str, hidden: tuple[int, int, int], contents: str
+) -> None:
+    # Both look along the chest, below a beam.
+    spots = (9.5, 8.5) if hidden == RIGHT else (1.5, 0.5)
+    agents = {
+        name: {"position": [x, 1, 2.5]} for name, x in zip(("ann", "bob"), spots, strict=True)
+    }
+    found = scenario(
+        chests(),
+        perception={"containers": contents},
+        agents=agents,
+        blocks=[
+            {"block": "stone", "fill": [[0, 0, 0], [12, 0, 8]]},
+            {"block": "bricks", "fill": [[4, 2, 2], [5, 2, 2]]},
+        ],
+    )
+    knows = {"diamond": 1, "bone": 2} if contents == "transparent" else {}
+    with bn.Nest.open(found, world=world) as nest:
+        for path in PATHS[1:]:
+            state = nest[path].state
+            assert state.blocks[hidden] is None
+            assert list(state.containers) == [RIGHT]
+            assert dict(state.containers[hidden].items) == knows
+            text = nest[path].render(built_in_template("default"), task="Get a bone.")
+            assert "(4, 1, 2)" in text
+        nest["/"].edit(blocks={LEFT: "air", RIGHT: "air"})
+        assert [list(nest[path].state.containers) for path in PATHS] == [[]] * 4
+
+
+@pytest.mark.parametrize("world", WORLDS)
 def test_a_half_whose_other_half_was_not_seen_has_one_in_bodies(world: str) -> None:
     with bn.Nest.open(scenario(chests()), world=world) as nest:
         nest["/bob"].switch("alone")

@@ -57,7 +57,8 @@ class Space(NamedTuple):
         boxes: float64 (n, 6), shapes' boxes.
         reaches: uint8 by code, bit set of the sides on which a shape reaches out of its cell.
         codes: uint16, code of each block number; the last entry is for unknown blocks.
-        holds: bool, True for each block number of a container; the last entry is for unknown.
+        shows: bool, True for each block number that shows a container; the last entry is for
+            unknown.
         origin: float64 (3,), added to scenario coordinates to get the grid's.
         senses: Limits of what agents can perceive.
         beam: Scratch memory from `beams.beam_room`.
@@ -71,7 +72,7 @@ class Space(NamedTuple):
     boxes: Floats
     reaches: npt.NDArray[np.uint8]
     codes: npt.NDArray[np.uint16]
-    holds: Flags
+    shows: Flags
     origin: Floats
     senses: SenseLimits
     beam: "Beam"

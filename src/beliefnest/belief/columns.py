@@ -117,7 +117,7 @@ class Columns:
                 context.note_signs((cell,))
             columns["block_cell"].append(cell)
             columns["block_state"].append(state)
-            if context.holds[state]:
+            if context.shows[state]:
                 self.held.append(cell)
         for event in frame.events:
             self._add_event(entry, event)

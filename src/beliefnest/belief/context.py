@@ -109,6 +109,15 @@ class BeliefContext:
         return holds
 
     @cached_property
+    def shows(self) -> npt.NDArray[np.bool_]:
+        """Bool by block number, as `holds`: a container, or the left half that belongs to one."""
+        shows = self.holds.copy()
+        for name in self.registry.containers:
+            ids = self.registry.state_ids(name)
+            shows[ids.start : ids.stop] = True
+        return shows
+
+    @cached_property
     def space(self) -> Space:
         """The box and its shapes for the kernel."""
         # Imported here because compiled code loads slowly and listing scenarios does without it.
@@ -128,7 +137,7 @@ class BeliefContext:
             registry.shape_boxes,
             sight.reaches,
             codes,
-            self.holds,
+            self.shows,
             1.0 - np.array(self.box.low, dtype=np.float64),
             self.options.limits,
             beams.beam_room(),

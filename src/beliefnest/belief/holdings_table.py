@@ -5,13 +5,14 @@ changed blocks, of frames and of perceived acts, shallower nodes first. `holding
 one node.
 """
 
-from collections.abc import Collection, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.belief.columns import cell_of
+from beliefnest.belief.arrays import UNKNOWN
+from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.context import SavedWriting
 from beliefnest.belief.grounds import Basis, Source
 from beliefnest.belief.holdings import (
@@ -24,9 +25,10 @@ from beliefnest.belief.holdings import (
     witness,
 )
 from beliefnest.belief.node_table import NodeTable
+from beliefnest.world.double_chests import left_half_of, other_half
 from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import DroppedItem, Event, Items
+from beliefnest.world.values import DroppedItem, Event, Items, Position
 
 __all__ = ["HoldingsTable", "RootFacts", "SavedHoldings"]
 
@@ -263,6 +265,8 @@ class HoldingsTable:
                 names = self._context.block_name(old), self._context.container_name(new)
                 basis = self._context.basis(observed_at, source)
                 replaced_block(self._holdings[node], cell, *names, basis)
+                before, after = (self._right_half(state, cell) for state in (old, new))
+                self._follow_half(node, before, after, basis)
             if node not in looking:
                 self._lose_sight(node, set(), last)
                 continue
@@ -278,6 +282,35 @@ class HoldingsTable:
             self._see_items(node)
             for item in self._context.unique:
                 self._find(node, item, tick, is_moved=item in moved)
+
+    def _right_half(self, state: int, cell: int) -> int | None:
+        """Return the cell of the chest to which a left half at a cell belongs; None: it is none."""
+        context = self._context
+        if context.holds[state] or not context.shows[state]:
+            return None
+        other = other_half(context.registry, state, place_of(context.box, cell))
+        return (
+            None if other is None or other[0] not in context.box else cell_of(context.box, other[0])
+        )
+
+    def _follow_half(self, node: int, before: int | None, after: int | None, basis: Basis) -> None:
+        """Let a node that learns the left half of a chest hold the chest, unless it knows better.
+
+        Args:
+            node: Number of the node.
+            before: Cell of the chest to which the left half at a cell belonged; None: none did.
+            after: The same for the block that is there now.
+            basis: Ground of the new block.
+        """
+        held = self._holdings[node]
+        for cell in {before, after} - {None} if before != after else ():
+            if self._table.block(node, cell) >= 0:
+                continue
+            if cell == before:
+                held.drop(cell)
+            elif cell not in held.containers:
+                held.containers[cell] = Content({}, complete=False, basis=basis)
+                self.doubt(node, cell)
 
     def _looking(self, acts: Mapping[int, list[Event]], which: npt.NDArray[np.bool_]) -> set[int]:
         """Return the nodes whose present owners have acts or things to look at."""
@@ -474,7 +507,9 @@ class HoldingsTable:
         if self._context.options.containers != "transparent":
             return set()
         parent = self._table.parent(node)
-        into = self._table.sees_cells(node, self._holdings[parent].containers)
+        shown = {cell: cell for cell in self._holdings[parent].containers}
+        shown |= self._left_halves(parent, [*shown])
+        into = {shown[cell] for cell in self._table.sees_cells(node, shown)}
         for cell in sorted(into):
             content, old = self.content(parent, cell), self._holdings[node].containers.get(cell)
             basis = Basis(tick, Source.SEEN) if parent == 0 else content.basis
@@ -483,6 +518,17 @@ class HoldingsTable:
                 basis = old.basis
             self._learn(node, cell, replace(content, basis=basis))
         return into
+
+    def _left_halves(self, node: int, cells: Iterable[int]) -> dict[int, int]:
+        """Return the containers among some cells that are double chests, by cell of left half."""
+        box, registry, shows = self._context.box, self._context.registry, self._context.shows
+
+        def state_at(place: Position) -> int:
+            state = self._table.block(node, cell_of(box, place)) if place in box else UNKNOWN
+            return state if shows[state] else UNKNOWN
+
+        found = {left_half_of(registry, state_at, place_of(box, cell)): cell for cell in cells}
+        return {cell_of(box, left): cell for left, cell in found.items() if left is not None}
 
     def _learn(self, node: int, cell: int, content: Content) -> None:
         """Set the content of a container to one that the owner finds when it looks in."""

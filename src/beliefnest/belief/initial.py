@@ -48,7 +48,7 @@ class Beginning:
         self.snapshot, self._context, self._static = snapshot, context, static_blocks
         self._cut: CutGrids | None = None
         self._world = _numbers(context, snapshot)
-        holders = [state for state in snapshot.blocks.states if context.holds[state]]
+        holders = [state for state in snapshot.blocks.states if context.shows[state]]
         context.track(cell_of(context.box, place) for place in snapshot.places(holders))
 
     @cached_property

@@ -204,14 +204,14 @@ def _put_noted(
     cell: int,
     state: int,
 ) -> None:
-    """Call `_put`. Add a row to `changes` if the old or the new block is a container.
+    """Call `_put`. Add a row to `changes` if the old or the new block shows a container.
 
     The row carries the basis of the new block: that of the parent, from which the owner took it.
     """
     old = _held(space, grids, node, place_of(space.chunks, space, cell))
     if old == state:
         return
-    if space.holds[old] or space.holds[state]:
+    if space.shows[old] or space.shows[state]:
         row = changes.used[0]
         changes.rows[row, 0] = entry
         changes.rows[row, 1] = node

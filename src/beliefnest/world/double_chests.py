@@ -22,6 +22,7 @@ __all__ = [
     "holds_items",
     "is_double",
     "is_left_half",
+    "left_half_of",
     "other_half",
     "states_in",
     "whole_chests",
@@ -102,6 +103,18 @@ def believed_container_at(registry: Registry, state_at: StateAt, place: Position
         if other is not None and other[0] == place and holds_items(registry, state_at(near)):
             return near
     return place
+
+
+def left_half_of(registry: Registry, state_at: StateAt, place: Position) -> Position | None:
+    """Return the position of the left half whose right half is at a place; None: there is none."""
+    for x, y, z in _TO_RIGHT.values():
+        near = (place[0] - x, place[1] - y, place[2] - z)
+        state = state_at(near)
+        if state >= 0 and is_left_half(registry, state):
+            other = other_half(registry, state, near)
+            if other is not None and other[0] == place:
+                return near
+    return None
 
 
 def states_in(box: Box, blocks: Terrain, outside: int) -> StateAt:
