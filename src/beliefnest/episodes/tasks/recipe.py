@@ -9,7 +9,8 @@ look into one more chest. Further agents stand behind glass and know what both c
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import Position, belief, booths, chest, hall, passages, wall
+from beliefnest.episodes.tasks.building import belief, booths, chest, hall, passages, wall
+from beliefnest.world.values import Position
 
 PARAMETERS = {"chests": (6, 4, 6), "reach": (20, 16, 24), "agents": (2, 2, 4)}
 
