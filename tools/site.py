@@ -24,6 +24,7 @@ import beliefnest.env
 import beliefnest.frames
 import beliefnest.llm
 import beliefnest.prompts
+import beliefnest.testing
 from beliefnest import errors
 from beliefnest.cli.app import app
 from beliefnest.scenarios.json_schema import schema
@@ -151,7 +152,8 @@ def modules_page() -> str:
         "`Model`: see [Language models](../models.md).",
         "",
     ]
-    for module in (beliefnest.llm, beliefnest.prompts, beliefnest.frames, beliefnest.env):
+    rooms = (beliefnest.llm, beliefnest.prompts, beliefnest.frames, beliefnest.env)
+    for module in (*rooms, beliefnest.testing):
         lines += [f"## {module.__name__}", "", inspect.getdoc(module) or "", ""]
         lines += _names(module, "###")
     return "\n".join(lines)

@@ -2,13 +2,12 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from tests.servers import serving
 
-from beliefnest.errors import WorldError
+from beliefnest.testing import check_world
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
@@ -100,24 +99,8 @@ def deeds(frames: list[Frame]) -> list[tuple[EventKind, str | None, dict[str, ob
     return [(e.kind, e.actor, dict(e.detail)) for e in told if e.kind not in left_out]
 
 
-def test_a_body_is_what_it_was_filled_with(body):
-    there, wanted = body.snapshot(), start()
-    assert body.tick == wanted.tick
-    assert there.tick >= wanted.tick if body.goes_on else there.tick == wanted.tick
-    assert there.blocks == wanted.blocks
-    assert there.containers == wanted.containers
-    for name, agent in wanted.agents.items():
-        found = there.agents[name]
-        assert found.position == agent.position
-        assert (found.yaw, found.pitch) == pytest.approx((agent.yaw, agent.pitch), abs=0.03)
-        assert found.inventory == agent.inventory
-
-
-def test_ticks_pass_and_nothing_happens_by_itself(body, frames):
-    body.step(5)
-    passed = body.tick - start().tick
-    assert passed >= 5 if body.goes_on else passed == 5
-    assert all(frame.is_empty for frame in frames)
+def test_a_world_passes_the_checks_for_worlds_of_others(world):
+    check_world(world)
 
 
 def test_the_same_acts_are_the_same_facts(body, frames):
@@ -142,70 +125,6 @@ def test_looking_in_is_told_without_what_is_inside(body, frames):
     assert [(e.kind, e.actor, dict(e.detail)) for e in told] == [
         (EventKind.OPEN_CONTAINER, "anne", {"position": CHEST})
     ]
-
-
-def test_ticks_of_frames_rise_up_to_the_body_s_tick(body, frames):
-    do(body, "deposit")
-    do(body, "say")
-    ticks = [frame.tick for frame in frames]
-    assert ticks == sorted(set(ticks))
-    assert start().tick < ticks[0] <= ticks[-1] <= body.tick
-
-
-def test_what_frames_tell_adds_up_to_what_there_is(body, frames):
-    for act in ("deposit", "withdraw"):
-        do(body, act)
-    contents, agents = dict(start().containers), dict(start().agents)
-    for frame in frames:
-        contents.update(frame.containers)
-        agents.update(frame.agents)
-    there = body.snapshot()
-    assert contents == there.containers
-    assert {n: a.inventory for n, a in agents.items()} == {
-        n: a.inventory for n, a in there.agents.items()
-    }
-
-
-def test_a_body_becomes_what_it_is_told_without_a_frame(body, frames):
-    do(body, "deposit")
-    frames.clear()
-    wanted = replace(start(), tick=3)
-    body.set_state(wanted)
-    there = body.snapshot()
-    assert frames == []
-    assert body.tick == 3
-    assert there.tick >= 3 if body.goes_on else there.tick == 3
-    assert there.containers == wanted.containers
-    assert {n: (a.position, a.inventory) for n, a in there.agents.items()} == {
-        n: (a.position, a.inventory) for n, a in wanted.agents.items()
-    }
-
-
-def test_bodies_do_not_know_of_one_another(world, body):
-    others: list[Frame] = []
-    other = world.open_body("/sally", "seed", start(), others.append)
-    do(body, "deposit")
-    do(body, "say")
-    assert others == []
-    assert other.snapshot().containers == start().containers
-    other.close()
-
-
-def test_the_same_seed_tells_the_same_frames(world, body, frames):
-    if body.goes_on:
-        pytest.skip("the time of a server is not repeated")
-    again: list[Frame] = []
-    twin = world.open_body("/twin", "seed", start(), again.append)
-    for act in ("deposit", "withdraw", "open"):
-        do(body, act)
-        do(twin, act)
-    assert again == frames
-    twin.close()
-
-
-def test_a_program_of_an_agent_who_is_not_there_is_refused(body):
-    with pytest.raises(WorldError, match=r"nobody has no bot|nobody is not there"):
-        body.run({"nobody": "await think(bot, 'hm')"}, 20)
 
 
 def test_one_walk_leads_through_two_doors_and_another_into_a_doorway(world, frames):
