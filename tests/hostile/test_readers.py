@@ -7,8 +7,10 @@ refuses the result with an error of the package, or reads it.
 import gzip
 import io
 import json
+import tempfile
 import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -24,12 +26,17 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.studies.archive import damaged_files, unpack
 from beliefnest.studies.bundling import opened
+from beliefnest.studies.participants.answers import read_answers
+from beliefnest.studies.participants.exclusions import read_exclusions
 from beliefnest.studies.plainframe import read_csv_rows
 from beliefnest.suites.stories.data import read_items
 from beliefnest.timeline import codec
+from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.trace import load_trace
+from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
+from beliefnest.world.values import AgentState, Event, EventKind
 
 SCENARIO = b"""\
 name: room
@@ -52,6 +59,26 @@ STORIES = json.dumps(
     [{"story": "1 Ann entered the hall.", "question": "Where is Ann?", "answer": "hall"}]
 ).encode()
 EXCHANGE = b'{"model":"m","messages":[["user","hi"]],"sampling":{},"answer":"x"}'
+PEOPLE = (
+    b"participant,cell,question,options,response,reason,study,started,trial_type\n"
+    b'p1,c0ffee00c0ffee00,1.1,"[""a"", ""b""]",a,so,s,2026-01-01T10:00:00Z,beliefnest-question\n'
+)
+PEOPLE_JSON = json.dumps(
+    [
+        {"participant": "p1", "cell": "c", "question": "1.1", "options": ["a", "b"]}
+        | {"response": "a", "reason": "", "study": "s", "started": "2026-01-01T10:00:00Z"}
+    ]
+).encode()
+FRAMES = [
+    Frame(
+        tick,
+        {"ann": AgentState((2.5, 1.0, tick / 2), yaw=0.5)},
+        {(1, 1, tick): tick},
+        {(3, 1, 3): {"bread": tick}},
+        events=(Event(EventKind.CHAT, "ann", {"text": "hé"}),),
+    )
+    for tick in range(1, 9)
+]
 SUPPLEMENT = {"study.json": b'{"form": "beliefnest study 1", "cells": []}', "cells/a.json": b"{}"}
 
 
@@ -81,7 +108,19 @@ def entries(path: Path) -> None:
 
 def run_file(path: Path) -> None:
     with SqliteJournal.read(path) as journal:
+        for info in journal.timelines():
+            list(journal.entries(info.key, 0, info.entries))
         journal.records.run()
+
+
+def journal() -> bytes:
+    """Return a run file with the frames on a timeline."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "run.bn"
+        with SqliteJournal.create_file(path) as made:
+            made.create(TimelineKey((), "main"), None, 0)
+            made.append(TimelineKey((), "main"), FRAMES, len(FRAMES))
+        return path.read_bytes()
 
 
 def exchange(path: Path) -> None:
@@ -100,7 +139,15 @@ READERS: dict[str, tuple[str, bytes, Callable[[Path], object]]] = {
     "answer": ("model.jsonl", EXCHANGE, exchange),
     "run file": ("run.bn", b"SQLite format 3\0" + bytes(200), run_file),
 }
-READERS["entries"] = ("entries", codec.join([]), entries)
+READERS["entries"] = ("entries", codec.join(map(codec.encode_entry, FRAMES)), entries)
+READERS["journal"] = ("run.bn", journal(), run_file)
+READERS["people"] = ("people.csv", PEOPLE, read_answers)
+READERS["people as JSON"] = ("people.json", PEOPLE_JSON, read_answers)
+READERS["exclusions"] = (
+    "out.csv",
+    b"participant,reason\np1,asleep\n",
+    lambda path: read_exclusions(path, ()),
+)
 
 PIECES = st.sampled_from(
     [
@@ -170,6 +217,42 @@ def test_a_scenario_that_grows_or_is_no_yaml_is_refused(tmp_path, content):
         Scenario.varied(read_yaml(path), None)
     assert len(str(fault.value).replace(str(path), "")) < 400
     assert "\n" not in str(fault.value)
+
+
+TABLES = {
+    "columns without end": ",".join(f"a{n}" for n in range(300_000)),
+    "cells without end": "a," * 9_000_000,
+    "many rows of one cell": ",".join(f"a{n}" for n in range(5000)) + "\nx" * 5000,
+    "a cell of 200,000 characters": "a,b\n" + "x" * 200_000 + ",y",
+    "a column twice": "a,b,a\n1,2,3",
+    "a column of 100,000 characters twice": f"{'x' * 100_000},{'x' * 100_000}",
+    "a quote that does not end": 'a,b\n"x' + "\n" * 100_000,
+    "a separator of its own": "sep=x\n" + "x" * 100_000,
+}
+
+
+@pytest.mark.parametrize("text", TABLES.values(), ids=TABLES)
+def test_a_table_that_grows_or_is_none_is_refused_or_read(tmp_path, text):
+    path = tmp_path / "people.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(BeliefNestError) as fault:
+        read_answers(path)
+    assert len(str(fault.value).replace(str(path), "")) < 400
+    with suppress(BeliefNestError):
+        read_csv_rows(path, {})
+
+
+def test_an_answer_of_any_length_is_cut_in_messages(tmp_path):
+    path = tmp_path / "people.json"
+    for changes in (
+        {"response": ["x" * 100_000]},
+        {"options": "x" * 100_000},
+        {"cell": "1" + "0" * 9999},
+    ):
+        path.write_text(json.dumps([{**json.loads(PEOPLE_JSON)[0], **changes}]), encoding="utf-8")
+        with pytest.raises(BeliefNestError) as fault:
+            read_answers(path)
+        assert len(str(fault.value).replace(str(path), "")) < 400
 
 
 def entry(name: str, mode: int = 0o644, size: int | None = None) -> bytes:
