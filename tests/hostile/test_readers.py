@@ -282,6 +282,7 @@ ZIPS = {
     "a symbolic link": entry("study.json", 0o120777),
     "a file twice": zipped({"Study.json": b"", "study.json": b""}),
     "a damaged file": broken(),
+    "much more than its size": entry("study.json", size=2**28 + 1),
     "half a file": zipped(SUPPLEMENT)[:80],
     "no archive": gzip.compress(b"x"),
 }
@@ -297,6 +298,13 @@ def test_a_supplement_that_is_none_is_refused(tmp_path, content):
     assert {each.name for each in tmp_path.iterdir()} == {"inner"}
 
 
+# A structure of one block, whose number is an empty compound.
+PLACE = (
+    b"\n\0\0\t\0\4size\3\0\0\0\3" + b"\0\0\0\1" * 3 + b"\t\0\7palette\n\0\0\0\0"
+    b"\t\0\6blocks\n\0\0\0\1\t\0\3pos\3\0\0\0\3" + bytes(12) + b"\n\0\5state\0\0\0"
+)
+
+
 @pytest.mark.parametrize(
     ("file", "content", "command"),
     [
@@ -305,8 +313,10 @@ def test_a_supplement_that_is_none_is_refused(tmp_path, content):
         ("s.zip", ZIPS["a damaged file"], ["reproduce", "s.zip"]),
         ("r.bn", b"SQLite format 3\0" + bytes(200), ["show", "r.bn"]),
         ("d.json", b"[" * 100_000, ["suite", "stories", "--data", "d.json"]),
+        ("p.nbt", PLACE, ["capture", "p.nbt", "-o", "p.yaml"]),
+        ("s.yaml", f"scenarios: [{'x' * 3000}]".encode(), ["study", "s.yaml", "--out", "o"]),
     ],
-    ids=["yaml", "jsonl", "zip", "run", "json"],
+    ids=["yaml", "jsonl", "zip", "run", "json", "place", "study"],
 )
 def test_a_command_ends_well(tmp_path, file, content, command):
     (tmp_path / file).write_bytes(content)

@@ -34,7 +34,7 @@ from beliefnest.world.texts import is_well_formed
 __all__ = ["app", "run_command_line"]
 
 _INTERRUPTED = 130
-_LONGEST_MESSAGE = 390
+_LONGEST_MESSAGE = 388
 """Greatest number of characters of a message, so that its line has at most 400."""
 _END = 100
 """Number of characters of the end of a longer message that are shown."""

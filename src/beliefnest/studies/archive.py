@@ -36,6 +36,9 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)
 """Time of all files in a ZIP file, so that equal files give equal bytes."""
 _LARGEST = 4 * 2**30
 """Greatest size of an unpacked supplement in bytes."""
+_MOST_TIMES = 100
+"""Greatest ratio of the unpacked size to the size of an archive that unpacks to `_MUCH` bytes."""
+_MUCH = 2**28
 _MOST_FILES = 200_000
 _BLOCK = 2**20
 _READ_BELOW = ("inputs", "answers", "cells")
@@ -135,6 +138,10 @@ def _unpack_all(archive: zipfile.ZipFile, file: Path, folder: Path) -> None:
         raise InputError(
             f"{file} would unpack to {len(entries):,} files of {size:,} bytes; at most "
             f"{_MOST_FILES:,} files of {_LARGEST:,} bytes are read"
+        )
+    if size > max(_MUCH, _MOST_TIMES * file.stat().st_size):
+        raise InputError(
+            f"{file} would unpack to more than {_MOST_TIMES} times its size; it is no supplement"
         )
     # Names that differ in capitals alone are one file on some systems.
     seen: set[str] = set()
