@@ -1,12 +1,16 @@
 """`beliefnest run` with models: a local server that speaks OpenAI's protocol, and its faults."""
 
 import json
+import subprocess
+import sys
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 from tests.llm.conftest import FakeOpenAI, fake
+from tests.processes import started
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.timeline import codec
@@ -348,3 +352,29 @@ def test_wrong_options_are_one_line(
     (line,) = capsys.readouterr().err.splitlines()
     assert hint in line
     assert not Path("r").exists()
+
+
+def test_a_folder_in_use_is_refused_and_the_first_run_loses_nothing(
+    server: FakeOpenAI, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked, goes_on = threading.Event(), threading.Event()
+
+    def answers_when_told(handler: Any) -> None:
+        asked.set()
+        goes_on.wait()
+        FakeOpenAI.says(GOOD)(handler)
+
+    server.will(answers_when_told)
+    command = ["run", "room.yaml", "--world", "scripted", "--model", MODEL, "--out", "o"]
+    with started([sys.executable, "-m", "beliefnest", *command], stderr=subprocess.PIPE) as first:
+        try:
+            while not asked.wait(timeout=1):
+                assert first.poll() is None, first.communicate()
+            assert run_command_line(command) == 2
+            assert f"in use by process {first.pid}" in capsys.readouterr().err
+        finally:
+            goes_on.set()
+        _, told = first.communicate()
+        assert first.returncode == 0, told
+    assert len(server.requests) == 1
+    assert json.loads(Path("o", "run.json").read_text(encoding="utf-8"))["status"] == "done"

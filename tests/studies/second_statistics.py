@@ -13,6 +13,7 @@ __all__ = [
     "bonett_price",
     "bootstrap_interval",
     "crossed_bootstrap",
+    "difference_width",
     "firth",
     "gee",
     "is_separated",
@@ -20,6 +21,8 @@ __all__ = [
     "linear_mixed_errors",
     "logistic_mixed",
     "mcnemar_power",
+    "newcombe",
+    "rate_widths",
     "sign_exchange_p",
 ]
 
@@ -57,6 +60,58 @@ def bonett_price(only_one, only_other, pairs):
     p12, p21 = (only_one + 1) / (pairs + 2), (only_other + 1) / (pairs + 2)
     half = stats.norm.ppf(0.975) * math.sqrt((p12 + p21 - (p12 - p21) ** 2) / (pairs + 2))
     return max(-1, p12 - p21 - half), min(1, p12 - p21 + half)
+
+
+def newcombe(both, only_one, only_other, neither):
+    """Return Newcombe's interval of paired proportions (1998, method 10)."""
+    n = both + only_one + only_other + neither
+    sides = [(both + only_one) / n, (both + only_other) / n]
+    z = stats.norm.ppf(0.975)
+    limits = []
+    for p in sides:
+        half = z * math.sqrt(p * (1 - p) / n + z**2 / (4 * n**2))
+        limits.append([(p + z**2 / (2 * n) + side * half) / (1 + z**2 / n) for side in (-1, 1)])
+    margins = [both + only_one, only_other + neither, both + only_other, only_one + neither]
+    over = both * neither - only_one * only_other
+    over = max(0, over - n / 2) if over > 0 else over
+    phi = over / math.sqrt(math.prod(margins)) if all(margins) else 0.0
+    (low, high), (below, above) = limits
+
+    def distance(one, other):
+        return math.sqrt(one**2 - 2 * phi * one * other + other**2)
+
+    difference = sides[0] - sides[1]
+    return (
+        difference - distance(sides[0] - low, above - sides[1]),
+        difference + distance(high - sides[0], sides[1] - below),
+    )
+
+
+def rate_widths(rate, count):
+    """Return mean, 90th percentile of widths and coverage of Wilson's interval, by enumeration."""
+    chances = stats.binom.pmf(range(count + 1), count, rate)
+    z = stats.norm.ppf(0.975)
+    middles = [(k + z**2 / 2) / (count + z**2) for k in range(count + 1)]
+    halves = [
+        z / (count + z**2) * math.sqrt(k * (count - k) / count + z**2 / 4) for k in range(count + 1)
+    ]
+    inside = [abs(rate - m) <= h for m, h in zip(middles, halves, strict=True)]
+    widths = 2 * np.array(halves)
+    order = np.argsort(widths)
+    ninth = order[np.searchsorted(np.cumsum(chances[order]), 0.9)]
+    return chances @ widths, widths[ninth], chances @ inside
+
+
+def difference_width(one, other, pairs):
+    """Return the mean width of Bonett and Price's interval of independent pairs."""
+    shares = [one * (1 - other), other * (1 - one)]
+    shares.append(1 - sum(shares))
+    total = 0.0
+    for b in range(pairs + 1):
+        for c in range(pairs + 1 - b):
+            low, high = bonett_price(b, c, pairs)
+            total += stats.multinomial.pmf([b, c, pairs - b - c], pairs, shares) * (high - low)
+    return total
 
 
 def sign_exchange_p(differences):
@@ -145,7 +200,7 @@ def logistic_mixed(y, x, groups):
 
 
 def firth(y, x, weights):
-    """Maximise the penalised likelihood; return estimates and profile intervals."""
+    """Maximise the penalised likelihood; return estimates, profile intervals and tests."""
 
     def negative(beta):
         linear = x @ beta
@@ -183,11 +238,12 @@ def firth(y, x, weights):
                 for side in (-1, 1)
             ]
         )
-    return beta, np.array(bounds)
+    tests = [stats.chi2.sf(2 * (fitted(number)[0] - best), 1) for number in range(x.shape[1])]
+    return beta, np.array(bounds), np.array(tests)
 
 
 def least_squares_bootstrap(y, x, groups, seed, draws=4_000):
-    """Draw groups with replacement, and fit by least squares; return percentiles."""
+    """Draw groups with replacement, and fit by least squares; return the estimates."""
     chance = np.random.default_rng(seed)
     owners = [np.flatnonzero(groups == g) for g in range(groups.max() + 1)]
     found = []
@@ -196,7 +252,7 @@ def least_squares_bootstrap(y, x, groups, seed, draws=4_000):
         beta, _, rank, _ = np.linalg.lstsq(x[rows], y[rows], rcond=None)
         if rank == x.shape[1]:
             found.append(beta)
-    return np.percentile(found, [2.5, 97.5], axis=0)
+    return np.array(found)
 
 
 def is_separated(y, x):

@@ -1,7 +1,9 @@
 """Every figure of a report, held against a second implementation on generated tables.
 
 Tolerances: exact methods agree to rounding; fits to 1e-4 of a standard error or better; bootstraps,
-whose draws differ, to a share of the interval's width.
+whose draws differ, to a share of the interval's width. `FIGURES` lists all figures. Reports hold
+no agreement of raters (Krippendorff's alpha): answers of people are judged, not rated. Newcombe's
+interval is no figure either, and is held against the one that reports give.
 """
 
 import math
@@ -9,13 +11,17 @@ import warnings
 
 import numpy as np
 import pytest
+from scipy import stats
 from tests.profiles import at_night, few_by_day
 from tests.studies import second_statistics as second
 
+from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.counting import count_rows, paired_rows
 from beliefnest.studies.positions import count_positions
 from beliefnest.studies.power import AssumedRates, power_rows
 from beliefnest.studies.regression import fit_rows
+from beliefnest.studies.study_record import COMPARED
+from beliefnest.suites.films.agreement import JudgesAgreement, interval
 
 pytestmark = pytest.mark.extra("statsmodels")
 
@@ -110,6 +116,10 @@ def test_paired_differences(kind, number):
     assert single.p == pytest.approx(min(1.0, mcnemar(counts, exact=True).pvalue), abs=1e-12)
     by_hand = second.bonett_price(single.only_one, single.only_other, single.pairs)
     assert single.interval == pytest.approx(by_hand, abs=1e-12)
+    neither = single.pairs - single.both - single.only_one - single.only_other
+    score = second.newcombe(single.both, single.only_one, single.only_other, neither)
+    # Two methods for one interval; in few pairs they differ.
+    assert np.allclose(single.interval, score, atol=1.2 / single.pairs)
     (pairs,) = paired_rows(rows, "a", identity)
     values = {(row["variation"], row["repeat"], row["a"]): row["ok"] for row in rows}
     differences = {}
@@ -134,6 +144,59 @@ def test_intervals_over_variations_and_people(kind, number):
         columns = ([row[name] for row in rows] for name in ("ok", "variation", "participant"))
         expected = second.crossed_bootstrap(*columns, number, 2_000)
         assert close((found["low"], found["high"]), expected, 0.15)
+    people = [{**row, "participant": f"p{row['repeat']}"} for row in rows]
+    (pairs,) = paired_rows(people, "a", ["a", "b", "variation", "repeat"])
+    differences = {}
+    for row in people:
+        sign = 1 if row["a"] == pairs.one else -1
+        place = row["variation"], row["participant"]
+        differences.setdefault(place, []).append(sign * int(row["ok"]))
+    complete = {place: sum(each) for place, each in differences.items() if len(each) == 2}
+    assert len(complete) == pairs.pairs
+    variations, own = zip(*complete, strict=True)
+    if len(set(own)) > 1:
+        expected = second.crossed_bootstrap(list(complete.values()), variations, own, number, 2_000)
+        assert close(pairs.interval, expected, 0.15)
+
+
+@TABLES
+def test_counts_and_sums(kind, number):
+    chance = np.random.default_rng(number)
+    rows = [
+        {
+            **row,
+            "chance": 1 / int(chance.integers(2, 5)),
+            "outcome": "ok" if row["ok"] else str(chance.choice(OUTCOMES[1:])),
+            "tokens": int(chance.integers(0, 90)),
+            "cost": float(chance.random()),
+        }
+        for row in table(kind, number)
+    ]
+    for group in count_rows(rows, ["a"]):
+        own = [row for row in rows if row["a"] == group["a"]]
+        assert group["chance"] == pytest.approx(np.mean([row["chance"] for row in own]))
+        told = [row["outcome"] for row in own]
+        assert {name: group[name] for name in OUTCOMES} == {n: told.count(n) for n in OUTCOMES}
+        assert group["tokens"] == sum(row["tokens"] for row in own)
+        assert group["cost"] == pytest.approx(math.fsum(row["cost"] for row in own))
+        assert (group["rows"], group["copies"], group["judged"]) == (len(own), 0, len(own))
+        assert group["variations"] == len({row["variation"] for row in own})
+        assert group["right"] == told.count("ok")
+
+
+@TABLES
+def test_correlations_with_people(kind, number):
+    chance = np.random.default_rng([number, len(kind)])
+    films = np.repeat(np.arange(20), 3)
+    model = chance.normal(size=60)
+    people = 0.6 * model + chance.normal(size=60) + chance.normal(size=20)[films]
+    pairs = JudgesAgreement("desires", (), model, people, np.full(60, np.nan), films)
+    assert pairs.r == pytest.approx(stats.pearsonr(model, people).statistic, abs=1e-12)
+    drawn = []
+    for _ in range(3_000):
+        chosen = np.concatenate([np.flatnonzero(films == n) for n in chance.integers(0, 20, 20)])
+        drawn.append(np.corrcoef(model[chosen], people[chosen])[0, 1])
+    assert close(interval(pairs), np.percentile(drawn, [2.5, 97.5]), 0.12)
 
 
 def arrays(rows, *, interaction=False):
@@ -166,6 +229,19 @@ def test_estimating_equations(kind, number):
             )
             assert np.allclose(se, errors, rtol=2e-3)
             assert fit.correlation == pytest.approx(shared, abs=2e-3)
+            are_wald(fit.terms)
+            for term, plain in zip(fit.terms, fit.plain()["terms"], strict=True):
+                if family == "binomial":
+                    assert plain["odds_ratio"] == pytest.approx(math.e**term.estimate)
+
+
+def are_wald(terms):
+    """Check p and intervals of z tests."""
+    for term in terms:
+        normal = stats.norm(term.estimate, term.se)
+        assert term.interval == pytest.approx(normal.interval(0.95), abs=1e-9)
+        two_sided = 2 * stats.norm.sf(abs(term.estimate / term.se))
+        assert term.p == pytest.approx(two_sided, abs=1e-12)
 
 
 @TABLES
@@ -185,8 +261,9 @@ def test_separation_and_penalised_estimates(kind, number):
     from beliefnest.studies.fits import firth
 
     found = firth(y, x, groups)
-    estimates, bounds = second.firth(y, x, firth_weights(y, x, groups, second.firth))
+    estimates, bounds, tests = second.firth(y, x, firth_weights(y, x, groups, second.firth))
     assert np.allclose(found.estimates, estimates, atol=2e-3)
+    assert np.allclose(found.tests, tests, atol=2e-3)
     assert np.allclose(np.column_stack([found.low, found.high]), bounds, atol=5e-3)
 
 
@@ -222,12 +299,14 @@ def test_mixed_models(kind, number):
         expected = second.linear_mixed_errors(x, groups, raw.scale, raw.cov_re.item())
         assert np.allclose(se, expected, rtol=5e-3)
         assert linear.correlation == pytest.approx(math.sqrt(raw.cov_re.item()), rel=1e-2)
+        are_wald(linear.terms)
     logistic = fit_rows(rows, ["a", "b"], "mixed", "binomial")
     if logistic.sound and logistic.correlation > 0.3 and number % 8 == 0 and kind != "balanced":
         estimates, spread = second.logistic_mixed(y, x, groups)
         assert logistic.correlation == pytest.approx(spread, abs=0.02)
         se = np.array([term.se for term in logistic.terms])
         assert np.allclose([t.estimate for t in logistic.terms], estimates, atol=0.03 * se.min())
+        are_wald(logistic.terms)
 
 
 @TABLES
@@ -236,7 +315,12 @@ def test_bootstrap_of_least_squares(kind, number):
 
     y, x, groups = arrays(table(kind, number))
     found = bootstrap(y, x, groups)
-    low, high = second.least_squares_bootstrap(y, x, groups, number, 2_000)
+    drawn = second.least_squares_bootstrap(y, x, groups, number, 2_000)
+    low, high = np.percentile(drawn, [2.5, 97.5], axis=0)
+    assert np.allclose(found.errors, drawn.std(axis=0), rtol=0.15)
+    drawn = np.round(drawn, 10)
+    beyond = np.minimum((drawn <= 0).mean(axis=0), (drawn >= 0).mean(axis=0))
+    assert np.allclose(found.tests, np.minimum(1, 2 * beyond), atol=0.12)
     assert np.allclose(found.low, low, atol=0.15 * (high - low).max())
     assert np.allclose(found.high, high, atol=0.15 * (high - low).max())
     assert np.allclose(found.estimates, np.linalg.lstsq(x, y, rcond=None)[0], atol=1e-9)
@@ -265,7 +349,16 @@ def test_counts_of_positions(kind, number):
         assert [group[f"chosen_{n}"] for n in (1, 2, 3)] == [chosen.count(n) for n in (1, 2, 3)]
         assert (group["asked"], group["none"]) == (len(own), chosen.count(None))
         assert group["accuracy"] == pytest.approx(chosen.count(group["right_at"]) / len(own))
-        assert group["low"] <= group["accuracy"] <= group["high"]
+        clusters = clusters_of(own, lambda each: each["chosen_at"] == each["right_at"])
+        if max(map(len, clusters)) == 1 or len({np.mean(each) for each in clusters}) == 1:
+            count = len(clusters)
+            by_hand = stats.binomtest(round(group["accuracy"] * count), count)
+            wilson = by_hand.proportion_ci(method="wilson")
+            if math.isclose(by_hand.statistic, group["accuracy"]):
+                assert (group["low"], group["high"]) == pytest.approx(wilson)
+        elif len(clusters) > 9:
+            expected = second.bootstrap_interval(clusters, number, 6_000)
+            assert close((group["low"], group["high"]), expected, 0.25)
 
 
 @pytest.mark.parametrize(("difference", "pairs"), [(0.0, 20), (0.25, 30)])
@@ -276,3 +369,68 @@ def test_power_of_independent_pairs(difference, pairs):
     exact = second.mcnemar_power(0.7, 0.7 - difference, pairs)
     # Four standard errors of a share in so many simulations.
     assert abs(found["power"] - exact) < 4 * math.sqrt(exact * (1 - exact) / simulations)
+    width, widest, coverage = second.rate_widths(0.7, pairs)
+    assert found["width"] == pytest.approx(width, rel=0.02)
+    assert found["width_90"] == pytest.approx(widest, rel=0.02)
+    assert abs(found["coverage"] - coverage) < 4 * math.sqrt(
+        coverage * (1 - coverage) / simulations
+    )
+    wanted = second.difference_width(0.7, 0.7 - difference, pairs)
+    assert found["difference_width"] == pytest.approx(wanted, rel=0.03)
+
+
+FIGURES = {
+    test_accuracies_and_means: {"accuracy", "low", "high", "ticks", "ticks_low", "ticks_high"},
+    test_counts_and_sums: {
+        *("rows", "copies", "judged", "variations", "right", "chance", "tokens", "cost"),
+        *OUTCOMES,
+    },
+    test_paired_differences: {
+        *("pairs", "both", "only_one", "only_other", "difference", "low", "high", "p"),
+        "variations",
+    },
+    test_estimating_equations: {
+        *("estimate", "se", "low", "high", "p", "odds_ratio", "correlation", "intercept_sd"),
+        *("rows", "variations"),
+    },
+    test_counts_of_positions: {
+        *("options", "right_at", "asked", "variations", "right", "accuracy", "low", "high"),
+        *("chosen_1", "chosen_2", "none"),
+    },
+    test_power_of_independent_pairs: {
+        *("variations", "simulations", "width", "width_90", "coverage"),
+        *("difference_width", "power"),
+    },
+}
+"""Figures of each kind of report, with the test that holds them against a second implementation."""
+
+
+def numbers_in(*found):
+    return {
+        name
+        for each in found
+        for name, value in each.items()
+        if isinstance(value, int | float) and not isinstance(value, bool)
+    }
+
+
+def test_no_figure_of_a_report_is_left_out():
+    rows = [{**row, "chance": 0.5, "tokens": 1, "cost": 0.1} for row in table("balanced", 0)]
+    counted = count_rows(rows, ["a"], {"ticks": False})
+    assert numbers_in(*counted) == {
+        *FIGURES[test_accuracies_and_means],
+        *FIGURES[test_counts_and_sums],
+    }
+    (pairs,) = paired_rows(rows, "a", ["a", "b", "variation", "repeat"])
+    shown = {name: getattr(pairs, name) for name in COMPARED}
+    low, high = pairs.interval
+    compared = numbers_in({**shown, "low": low, "high": high, "p": pairs.p})
+    assert compared == FIGURES[test_paired_differences]
+    fits = [fit_rows(rows, ["a"], kind, "binomial").plain() for kind in ("gee", "mixed")]
+    terms = [term for fit in fits for term in fit["terms"]]
+    assert numbers_in(*fits, *terms) == FIGURES[test_estimating_equations]
+    choices = [{**row, "options": 2, "right_at": 1, "chosen_at": 1} for row in rows]
+    assert numbers_in(*count_positions(choices, [])) == FIGURES[test_counts_of_positions]
+    source = AssumedRates(accuracy=0.7, difference=0.1, correlation=0.0, rows=1, pairs=1)
+    (power,) = power_rows([("x", source)], [10], 20, 1)
+    assert numbers_in(power) == FIGURES[test_power_of_independent_pairs]

@@ -27,6 +27,7 @@ _NODES = 15
 _FARTHEST = 15.0
 """Log odds, or standard deviation of intercepts, beyond which the likelihood hardly changes."""
 _DRAWS = 2_000
+_ROUNDING = 1e-12
 _MOST_TERMS = 60
 _ERRORS = (np.linalg.LinAlgError, ArithmeticError, ValueError)
 """Errors that numerical libraries raise if the data do not determine a model."""
@@ -389,8 +390,9 @@ def bootstrap(right: Floats, design: Floats, groups: Any) -> Fit:
     found = np.linalg.solve(all_matrices[full], (drawn[full] @ vectors)[:, :, None])[:, :, 0]
     best = np.linalg.solve(matrices.sum(axis=0), vectors.sum(axis=0))
     low, high = np.percentile(found, [2.5, 97.5], axis=0)
-    below = (1 + (found <= 0).sum(axis=0)) / (1 + len(found))
-    above = (1 + (found >= 0).sum(axis=0)) / (1 + len(found))
+    # A draw without an effect is 0 on either side, whatever its rounding.
+    below = (1 + (found <= _ROUNDING).sum(axis=0)) / (1 + len(found))
+    above = (1 + (found >= -_ROUNDING).sum(axis=0)) / (1 + len(found))
     tests = np.minimum(1.0, 2 * np.minimum(below, above))
     return Fit(best, found.std(axis=0, ddof=1), low, high, tests)
 
