@@ -22,7 +22,7 @@ from beliefnest.world.values import Position
 
 PARAMETERS = {"items": (3, 2, 4), "moved": (1, 1, 2), "reach": (20, 20, 26), "agents": (2, 2, 4)}
 
-_SPEECH, _ROUND, _REACH = 8, 10, 3
+_SPEECH, _ROUND, _REACH = 10, 10, 3
 _ITEMS = ("diamond", "emerald", "apple", "compass", "bread")
 _ONLOOKERS = ("ben", "cleo")
 
@@ -55,7 +55,7 @@ def instance(
     # Max hears of the first moved thing before he is at the passages, of another one after.
     ticks = _ROUND + (2 * items - 1) * (reach - 2) + 2 * _ROUND * (moved - 1) + 18
     # Exactly as far as Nora can walk in the time that the needed utterances leave.
-    errand = ticks - _SPEECH * (moved + 1) + 2
+    errand = ticks - _SPEECH * moved - 8
     width = max(2 * reach + 1, errand // 2 + 6)
     book, passage = _passage(width, errand)
     east = wall((2 * reach + 1, 1, 0), (width, 3, 12), WINDOW)
