@@ -32,9 +32,8 @@ def instance(chance: random.Random, chests: int, reach: int, agents: int) -> dic
     """
     width, item = 2 * reach, chance.choice(_ITEMS)
     near, far = chance.sample([1, width - 1], 2)
-    full = [(near, 1, row) for row in sorted(chance.sample(range(1, 9), chests - 1))]
-    empty = (far, 1, chance.randint(1, 8))
-    unopened = chance.choice(full)
+    full = [(near, 1, row) for row in chance.sample(range(1, 9), chests - 1)]
+    empty, unopened = (far, 1, chance.randint(1, 8)), full[0]
     contents = {**{place: {item: 1} for place in full}, empty: {}}
     known = belief("/**", {place: {} for place in full if place != unopened})
     unknown = belief("/**", {unopened: {}, empty: {}}, complete=False)
