@@ -462,8 +462,9 @@ class AgentAt(Fact):
 
     def effort(self, facts: PlanFacts) -> float:
         feet = facts.feet_of(self.agent)
-        is_far = feet is None or self.place is None
-        return 1.0 + (FAR if is_far else math.dist(feet, middle_of(self.place))) * PER_BLOCK
+        if feet is None or self.place is None:
+            return 1.0 + FAR * PER_BLOCK
+        return 1.0 + math.dist(feet, middle_of(self.place)) * PER_BLOCK
 
     def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
         return {self.agent}
