@@ -303,8 +303,8 @@ class HoldingsTable:
             basis: Ground of the new block.
         """
         held = self._holdings[node]
-        for cell in {before, after} - {None} if before != after else ():
-            if self._table.block(node, cell) >= 0:
+        for cell in {before, after} if before != after else ():
+            if cell is None or self._table.block(node, cell) >= 0:
                 continue
             if cell == before:
                 held.drop(cell)

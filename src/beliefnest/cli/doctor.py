@@ -129,7 +129,7 @@ def _kernels() -> str:
 
     kernels = (
         *(kernel.fold, eye_loops.seen_blocks, relaxing.raise_values),
-        *(footpath_kernels.find, footpath_kernels.holds_target),
+        *(footpath_kernels.find, footpath_kernels.next_target),
     )
     folder = kernel_folder(kernel.fold)
     if getattr(numba.config, "DISABLE_JIT", False):

@@ -94,10 +94,10 @@ def noted_warnings() -> Iterator[dict[str, str]]:
     shown = warnings.showwarning
     noted: dict[str, str] = {}
 
-    def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
+    def show(message: Warning | str, category: type[Warning], *place: Any, **where: Any) -> None:
         if _is_own(category):
             noted.setdefault(str(getattr(message, "subject", message)), f"warning: {message}")
-        shown(message, category, *place)
+        shown(message, category, *place, **where)
 
     warnings.showwarning = show
     try:

@@ -8,7 +8,7 @@ import json
 import re
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from beliefnest.errors import ModelError
 from beliefnest.llm.providers import Endpoint
@@ -134,7 +134,8 @@ def _events(body: bytes) -> bytes:
         return body
     match answer:
         case {"choices": [{"message": {**message}, **choice}, *_]}:
-            calls = [{"index": n, **call} for n, call in enumerate(message.get("tool_calls") or ())]
+            made: Any = message.get("tool_calls") or ()
+            calls = [{"index": n, **call} for n, call in enumerate(made)]
             choices = [{**choice, "delta": {**message, "tool_calls": calls or None}}]
             chunk = {**answer, "object": "chat.completion.chunk", "choices": choices}
             return f"data: {json.dumps(chunk)}\n\ndata: [DONE]\n\n".encode()
