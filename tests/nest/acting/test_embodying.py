@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from beliefnest.nest.acting.embodying import Embodying
-from beliefnest.nest.acting.placement import BodySpace
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
+from beliefnest.worlds.scripted.footpaths import Ground
 
 REGISTRY = Registry.load()
 
@@ -30,9 +30,9 @@ def test_it_is_the_nearest_free_place_of_all(seed):
     terrain = Terrain.of(grid)
     agents = [tuple(generator.uniform(box.low, box.high)) for _ in range(seed % 3)]
     middle = np.mean(agents or [box.low, box.high], axis=0)
-    space = BodySpace(REGISTRY, box, terrain)
+    ground = Ground(REGISTRY, box, terrain)
     taken = {tuple(np.floor(at).astype(int).tolist()) for at in agents}
-    free = [at for at in box.positions() if at not in taken and space.heights(at)]
+    free = [at for at in box.positions() if at not in taken and ground.stands(at)]
     nearest = min(free, key=lambda at: float(np.linalg.norm(np.array(at) + 0.5 - middle)))
     assert stand(box, terrain, agents) == nearest
 

@@ -175,12 +175,15 @@ class Embodying:
             (a, b, c), (d, e, f) = low - box.low, np.maximum(high + 1, low) - box.low
             part = reading.terrain.cut((a, b, c), (d, e, f))
             cells = np.argwhere(~np.isin(part, cubes)) + low
+            first, last = tuple(low.tolist()), tuple(np.maximum(high, low).tolist())
+            ground = space.ground(first, last)
             distances = np.linalg.norm(cells + 0.5 - middle, axis=1)
             for number in distances.argsort(kind="stable"):
                 if distances[number] > radius:
                     break
                 x, y, z = map(int, cells[number])
-                if (x, y, z) not in taken and space.heights((x, y, z)):
+                is_free = (x, y, z) not in taken and ground.stands((x, y, z))
+                if is_free and space.has_floor(ground.feet((x, y, z))):
                     return x, y, z
         return block_at(middle)
 

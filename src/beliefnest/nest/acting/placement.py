@@ -4,7 +4,8 @@ A belief may be physically impossible: an agent in a doorway whose door is now b
 agents in one place, a floor that is unknown (semantics, section 7). Every function here is a pure
 function of the believed blocks, -1 unknown, and the believed agents, so that a body opened again is
 the same. A place is the middle of an agent's feet. An agent takes up 0.6 by 1.8 by 0.6 blocks.
-Unknown blocks stop nobody.
+Unknown blocks stop nobody. `geometry` says where agents stand and walk; the boxes of blocks say
+whether an agent fits at a place between cells, such as beside the leaf of a shut door.
 """
 
 import math
@@ -17,6 +18,7 @@ from beliefnest.world.doors import is_open
 from beliefnest.world.registry import BoxBounds, Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import HALF_WIDTH, AgentState, Box, Point, Position, block_at
+from beliefnest.worlds.scripted.footpaths import Ground, Near
 
 __all__ = ["FARTHEST", "BodySpace", "PlacedBodies", "moved_agents", "placed", "unknown_floors"]
 
@@ -30,10 +32,9 @@ _HEIGHT = 1.8
 _TOUCH = 1e-3
 # Greatest height above a floor, in blocks, from which an agent settles on it without a fall.
 _SETTLES = 0.5
-_JUMP = 1.25
-_DROP = 3.0
 _AROUND = 4
-_SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1))
+_BEYOND = 3
+"""Cells beyond a part at which its steps look."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,16 +100,19 @@ class BodySpace:
                 return None
         return None
 
-    def heights(self, cell: Position) -> list[float]:
-        """Return the heights in a cell at which an agent can stand in its middle on known floors.
-
-        The lowest comes first.
-        """
-        x, y, z = cell
-        column = (x + 0.5 - HALF_WIDTH, y - 1.0, z + 0.5 - HALF_WIDTH)
-        room = (*column, x + 0.5 + HALF_WIDTH, y + 1.0, z + 0.5 + HALF_WIDTH)
-        tops = {box[4] for box in self.hits(room) if y <= box[4] < y + 1}
-        return [top for top in sorted(tops) if self.is_free((x + 0.5, top, z + 0.5))]
+    def ground(self, low: Position, high: Position) -> Ground:
+        """Return the ground between two corners, for steps up to some cells beyond them."""
+        corners = [
+            tuple(
+                min(max(at + far, first), last)
+                for at, first, last in zip(corner, self.box.low, self.box.high, strict=True)
+            )
+            for corner, far in ((low, -_BEYOND), (high, _BEYOND))
+        ]
+        (a, b, c), (d, e, f) = corners
+        i, j, k = self.box.index((d, e, f))
+        part = self.blocks.cut(self.box.index((a, b, c)), (i + 1, j + 1, k + 1))
+        return Ground(self.registry, Box((a, b, c), (d, e, f)), part)
 
     def is_doorway(self, place: Point) -> bool:
         """Return True if the feet are in the block of a shut door."""
@@ -192,55 +196,51 @@ def _is_taken(place: Point, taken: Sequence[Point]) -> bool:
 
 
 def _nearest(space: BodySpace, place: Point, taken: Sequence[Point]) -> Point | None:
-    near = _walkable(space, block_at(place))
+    low, high = (_moved(block_at(place), far) for far in (-_AROUND, _AROUND))
+    ground = space.ground(low, high)
+    cells = {
+        ground.feet(cell): cell for cell in _cells_near(block_at(place)) if ground.stands(cell)
+    }
+    goals = _ends(space, ground, place, cells)
     found = [
-        (block_at(to) not in near, not space.has_floor(to), math.dist(place, to), to)
-        for to in _places(space, place)
-        if math.dist(place, to) <= FARTHEST and space.is_clear(to) and not _is_taken(to, taken)
+        (not _leads(ground, cell, goals), not space.has_floor(to), math.dist(place, to), to)
+        for to, cell in cells.items()
+        if math.dist(place, to) <= FARTHEST
+        and space.is_free(to)
+        and space.is_clear(to)
+        and not _is_taken(to, taken)
     ]
     return min(found)[-1] if found else None
 
 
-def _places(space: BodySpace, place: Point) -> Iterator[Point]:
-    """Yield the places near a place where an agent can stand, also on unknown floors."""
-    for x, y, z in _cells_near(block_at(place)):
-        # An agent on the topmost blocks has its feet one cell above the box.
-        if (x, min(y, space.box.high[1]), z) in space.box:
-            for height in _levels(space, (x, y, z)):
-                yield (x + 0.5, height, z + 0.5)
+def _ends(
+    space: BodySpace, ground: Ground, place: Point, cells: Mapping[Point, Position]
+) -> list[Position]:
+    """Return the cell of a place or, where nobody stands there, the cells open towards it.
 
-
-def _levels(space: BodySpace, cell: Position) -> list[float]:
-    """Return the heights of a cell, or its lower face if the floor there is unknown."""
-    x, y, z = cell
-    known = space.heights(cell)
-    if known or space.state((x, y - 1, z)) >= 0 or not space.is_free((x + 0.5, y, z + 0.5)):
-        return known
-    return [float(y)]
-
-
-def _walkable(space: BodySpace, goal: Position) -> set[Position]:
-    """Return the cells near a goal from whose middle an agent can walk to the goal.
-
-    This is a search backwards from the goal, cell by cell. A step is possible if the agent need not
-    jump higher than `_JUMP` or drop deeper than `_DROP`, and if nothing stops it on the straight
-    way at the higher of the two levels. The goal itself is included.
+    The leaf of a shut door stands on one side of its block, and the other side is open.
     """
-    near = set(_cells_near(goal))
-    waiting = [(goal, height) for height in _levels(space, goal)]
-    seen = set(waiting)
-    while waiting:
-        (x, y, z), height = waiting.pop()
-        for (dx, dz), up in product(_SIDES, range(-1, 4)):
-            cell = (x + dx, y + up, z + dz)
-            for other in space.heights(cell) if cell in near else ():
-                higher, step = max(height, other), (cell, other)
-                ends = (x + 0.5, higher, z + 0.5), (cell[0] + 0.5, higher, cell[2] + 0.5)
-                climbs = -_DROP <= height - other <= _JUMP
-                if climbs and step not in seen and space.is_free(*ends):
-                    seen.add(step)
-                    waiting.append(step)
-    return {cell for cell, _ in seen}
+    own = ground.cell_of(place)
+    if ground.stands(own):
+        return [own]
+    x, _, z = own
+    beside = [(to, cell) for to, cell in cells.items() if abs(cell[0] - x) + abs(cell[2] - z) == 1]
+    levels = [(max(to[1], place[1]), to, cell) for to, cell in beside]
+    return [
+        cell
+        for level, to, cell in levels
+        if abs(to[1] - place[1]) <= 1
+        and space.is_free((to[0], level, to[2]), (x + 0.5, level, z + 0.5))
+    ]
+
+
+def _leads(ground: Ground, cell: Position, goals: Sequence[Position]) -> bool:
+    """Return True if an agent can walk from a cell to one of some goals."""
+    return any(ground.way(cell, Near(goal, 0)) is not None for goal in goals)
+
+
+def _moved(cell: Position, by: int) -> Position:
+    return (cell[0] + by, cell[1] + by, cell[2] + by)
 
 
 def _cells_near(cell: Position) -> Iterator[Position]:

@@ -186,8 +186,8 @@ class StateHistory:
     def _keep_past(self, key: TimelineKey, forest: Forest) -> None:
         """Keep a forest of the past as the one used last, and drop others to stay within bounds."""
         pasts = [past for past in self._pasts if past[1] is not forest]
-        sizes = accumulate(past[1].bytes for past in pasts)
-        within = sum(1 for size in sizes if size + forest.bytes <= _PAST_BYTES)
+        sizes, room = accumulate(past[1].bytes for past in pasts), _PAST_BYTES - forest.bytes
+        within = sum(1 for size in sizes if size <= room)
         self._pasts = [(key, forest), *pasts[:within]][:_PASTS]
 
     def _beside(self, key: TimelineKey, position: int) -> Forest | None:
