@@ -282,3 +282,22 @@ def test_a_fork_and_what_happens_in_it_is_read_too():
     after = nest["/ann"].infer(model)
     assert after.mean("utility.G") > forked.mean("utility.G")
     assert nest["/"].infer(model).posterior().tobytes() == before.posterior().tobytes()
+
+
+@pytest.mark.parametrize("cover", ["air", "glass"])
+def test_nothing_is_reached_through_a_block(cover):
+    blocks = {(x, 0, 0): "stone" for x in range(5)} | {(4, 0, 0): "chest", (4, 1, 0): cover}
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (4, 3, 0)),
+        blocks,
+        {"bob": (0.5, 1, 0.5)},
+        containers={(4, 0, 0): {"diamond": 1}},
+    )
+    nest = bn.Nest(world)
+    walk(world, (1, 0))
+    model = bn.MindModel("bob", {"D": {"item": "diamond"}}, {"D": 10})
+    if cover == "air":
+        assert nest["/"].infer(model).impossible is None
+    else:
+        with pytest.raises(bn.BeliefNestError, match="reach"):
+            nest["/"].infer(model)
