@@ -201,3 +201,20 @@ def test_an_unknown_built_in_template_names_all():
 def test_the_reference_in_the_docs_is_what_the_filters_do():
     page = Path(__file__).parents[2] / "docs" / "filters.md"
     assert page.read_text(encoding="utf-8") == filter_reference()
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "{{ 'x' * 10**10 }}",
+        "{{ [1] * 10**9 }}",
+        "{{ '%999999999d' % 1 }}",
+        "{{ 9 ** (9 ** 9) }}",
+        "{{ 'x'.ljust(10**9) }}",
+        "{% set all = namespace(text='x' * 900000) %}{{ all.text + all.text }}",
+        "{" * 100_000,
+    ],
+)
+def test_a_value_without_end_is_refused(source):
+    with pytest.raises(TemplateError, match=r"more than 1,000,000 parts|nested too deeply"):
+        render(source, example_branch(), {})

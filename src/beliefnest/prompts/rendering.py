@@ -1,6 +1,7 @@
 """Rendering of prompts from a template and a simulator."""
 
 import functools
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,8 +10,8 @@ from typing import Any, NoReturn
 
 import jinja2
 from jinja2 import meta, nodes
-from jinja2.runtime import Macro
-from jinja2.sandbox import ImmutableSandboxedEnvironment
+from jinja2.runtime import Context, Macro
+from jinja2.sandbox import ImmutableSandboxedEnvironment, SecurityError
 
 from beliefnest.errors import BeliefNestError, TemplateError
 from beliefnest.prompts.builtin import BUILT_IN
@@ -37,6 +38,9 @@ LAST_ERROR = "$$LAST_ERROR$$"
 _MARKERS = {LAST_CODE: "{{ last_code }}", LAST_ERROR: "{{ last_error }}"}
 _MOST_TEMPLATES = 64
 """Greatest number of compiled templates that a renderer keeps."""
+
+_LARGEST_VALUE = 1_000_000
+_DIGITS = re.compile(r"\d{1,20}")
 
 _PLAIN_TYPES = (str, bytes, int, float, list, tuple, dict, set, frozenset)
 
@@ -178,8 +182,41 @@ def _with_markers(text: str) -> str:
     return text
 
 
+def _check_growth(operator: str, left: object, right: object) -> None:
+    """Raise SecurityError if a value would be too large: Python cannot stop to compute it."""
+    sized = [each for each in (left, right) if isinstance(each, str | bytes | list | tuple)]
+    numbers = [each for each in (left, right) if isinstance(each, int)]
+    match operator:
+        case "*" if sized and numbers:
+            size = len(sized[0]) * numbers[0]
+        case "+" if len(sized) == 2:
+            size = len(sized[0]) + len(sized[1])
+        case "%" if isinstance(left, str):
+            size = max([0, *map(int, _DIGITS.findall(left))])
+        case "**" if len(numbers) == 2:
+            size = numbers[0].bit_length() * max(0, numbers[1])
+        case _:
+            return
+    if size > _LARGEST_VALUE:
+        raise SecurityError(f"a value would have more than {_LARGEST_VALUE:,} parts")
+
+
 class _ReadingEnvironment(ImmutableSandboxedEnvironment):
     """Sandbox in which a template can read simulators but not act through them."""
+
+    intercepted_binops = frozenset({"*", "+", "%", "**"})
+
+    def call_binop(self, context: Context, operator: str, left: Any, right: Any) -> Any:
+        """Compute a value of limited size."""
+        _check_growth(operator, left, right)
+        return super().call_binop(context, operator, left, right)
+
+    def call(self, context: Context, obj: Any, /, *args: Any, **options: Any) -> Any:
+        """Call a function with numbers of limited size, which may be widths."""
+        for each in (*args, *options.values()):
+            if isinstance(each, int):
+                _check_growth("*", "x", each)
+        return super().call(context, obj, *args, **options)
 
     def is_safe_callable(self, obj: object) -> bool:
         """Allow only macros, Jinja's own globals and methods of plain values."""
@@ -224,6 +261,8 @@ def _parse(environment: jinja2.Environment, name: str, text: str) -> nodes.Templ
         tree = environment.parse(text)
     except jinja2.TemplateSyntaxError as error:
         raise TemplateError(f"{name}, line {error.lineno}: {error.message}") from None
+    except RecursionError:
+        raise TemplateError(f"{name} is nested too deeply") from None
     for used in tree.find_all(nodes.Filter):
         if used.name not in environment.filters:
             _refuse(name, used.lineno, "filter", used.name, environment.filters)
