@@ -483,13 +483,9 @@ def _is_label(tokens: Sequence[Token], place: int) -> bool:  # noqa: PLR0911 - a
     if token.raw.isdigit():
         return place == 0 and after is not None and after.raw in ").:"
     at = place + 1
-    while at < len(tokens) and (tokens[at].word in ("first", "most") or _is_adverb(tokens[at])):
+    while at < len(tokens) and tokens[at].word.endswith(("first", "most", "ly")):
         at += 1
     return at >= len(tokens) or not tokens[at].word or tokens[at].word in _LABEL_AFTER
-
-
-def _is_adverb(token: Token) -> bool:
-    return token.word.endswith("ly")
 
 
 def _is_left_open(tokens: Sequence[Token], inside: dict[int, _Mention], mention: _Mention) -> bool:
@@ -503,7 +499,7 @@ def _is_left_open(tokens: Sequence[Token], inside: dict[int, _Mention], mention:
         if place in inside or not (word or tokens[place].raw == ":"):
             break
         hedged = hedged or word in _HEDGES
-        if word and word not in _FILL | _HEDGES | _CONCESSIONS and not _is_adverb(tokens[place]):
+        if word and word not in _FILL | _HEDGES | _CONCESSIONS and not word.endswith("ly"):
             return False
     return hedged
 
