@@ -169,7 +169,7 @@ class _Drawing:
             if len(solid) > 1:
                 raise self._document.fault(path, f"is both {solid[0]} and {solid[1]}; keep one")
             if not any(key in given for key in _THINGS):
-                raise self._document.fault(path, f"shows nothing; give one of {_listed(_THINGS)}")
+                raise self._document.fault(path, f"shows nothing; give one of {', '.join(_THINGS)}")
             for key in given:
                 wanted = _NEEDS.get(key, ())
                 if wanted and not any(each in given for each in wanted):
@@ -484,7 +484,3 @@ def _joined(drawn: YamlNode, written: YamlNode) -> YamlNode:
     if written.value.keys() & {"facing", "yaw", "pitch"}:
         kept = {key: node for key, node in kept.items() if key not in ("facing", "yaw", "pitch")}
     return YamlNode({**kept, **written.value}, written.line)
-
-
-def _listed(keys: Sequence[str]) -> str:
-    return ", ".join(keys)
