@@ -10,8 +10,9 @@ from typing import Any, NoReturn
 
 import jinja2
 from jinja2 import meta, nodes
+from jinja2.exceptions import SecurityError
 from jinja2.runtime import Context, Macro
-from jinja2.sandbox import ImmutableSandboxedEnvironment, SecurityError
+from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from beliefnest.errors import BeliefNestError, TemplateError
 from beliefnest.prompts.builtin import BUILT_IN
