@@ -222,6 +222,14 @@ def test_a_world_that_fails_is_a_row_that_says_why(tmp_path):
     [
         ("scenarios: []\n", "study.yaml:1: scenarios: a study without scenarios has no cells"),
         ("scenarios: [small.yaml]\nrepeats: 0\n", "study.yaml:2: repeats: repeats is 0"),
+        (
+            "scenarios: [small.yaml]\nrepeats: 1000000000\n",
+            "study.yaml:2: repeats: there would be more than 200,000 cells",
+        ),
+        (
+            f"scenarios: [small.yaml]\nvariations: {{a: {[*range(500)]}, b: {[*range(500)]}}}\n",
+            "study.yaml:2: variations: there would be more than 200,000 cells",
+        ),
         ("scenarios: [small.yaml]\nrepeat: 2\n", "study.yaml:2: repeat: unknown key"),
         (
             "scenarios: small.yaml\nmodels: 3\n",

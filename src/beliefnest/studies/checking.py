@@ -14,6 +14,7 @@ from beliefnest.world.words import nearest_or_all
 
 __all__ = [
     "StudyKeyError",
+    "check_cells",
     "check_count",
     "check_once",
     "checked_columns",
@@ -25,6 +26,8 @@ __all__ = [
     "is_whole",
     "several",
 ]
+
+_MOST_CELLS = 200_000
 
 
 class StudyKeyError(InputError):
@@ -89,6 +92,13 @@ def check_once(key: str, values: Sequence[Any], what: str = "") -> None:
     twice = [value for value in values if values.count(value) > 1]
     if twice:
         told = f"{what or key}: {quoted(twice[0])} is named twice; use repeats to do it again"
+        raise StudyKeyError(key, told)
+
+
+def check_cells(key: str, cells: int) -> None:
+    """Raise StudyKeyError if a scenario or task would have too many cells under a condition."""
+    if cells > _MOST_CELLS:
+        told = f"there would be more than {_MOST_CELLS:,} cells; make several studies"
         raise StudyKeyError(key, told)
 
 

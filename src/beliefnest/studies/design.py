@@ -1,5 +1,6 @@
 """Checked design of a study of scenarios: the values that it combines."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,6 +21,7 @@ from beliefnest.scenarios.parameters import declared_in
 from beliefnest.studies.allocation import Allocation
 from beliefnest.studies.checking import (
     StudyKeyError,
+    check_cells,
     check_count,
     check_once,
     checked_lists,
@@ -96,6 +98,10 @@ class Design:
             raise StudyKeyError("seed", f"seed is {quoted(self.seed)}; it must be a whole number")
         check_world(self.world, servers=False)
         self._check_variations()
+        given = self.variations
+        lists = [given] if isinstance(given, int) else [len(each) for each in given.values()]
+        check_cells("variations", math.prod(lists))
+        check_cells("repeats", self.repeats * len(self.models) * math.prod(lists))
 
     def _check_variations(self) -> None:
         variations = self.variations

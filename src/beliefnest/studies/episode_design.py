@@ -8,6 +8,7 @@ from beliefnest.episodes.policies import with_query
 from beliefnest.llm.budget import RunLimits
 from beliefnest.studies.checking import (
     StudyKeyError,
+    check_cells,
     check_count,
     check_once,
     checked_lists,
@@ -123,6 +124,7 @@ class EpisodeDesign:
                     "orders", f"orders has {quoted(order)}; give whole numbers, or 'omniscient'"
                 )
         check_count("repeats", self.repeats)
+        check_cells("repeats", self.repeats * len(self.seeds))
         checked_lists(self.variations)
         check_world(self.world, servers=False)
 
@@ -227,5 +229,6 @@ def seeds_of(seeds: Sequence[int] | int, first: int) -> tuple[int, ...]:
             raise StudyKeyError(
                 "seeds", f"seeds is {quoted(seeds)}; give at least 1, or a list of seeds"
             )
+        check_cells("seeds", seeds)
         return tuple(range(first, first + seeds))
     return tuple(seeds)
