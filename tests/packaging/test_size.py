@@ -90,11 +90,15 @@ def test_a_folder_may_be_a_little_below_its_limit(checked, root):
     assert checked("src/a/b,103,")[0] == 1
 
 
-def test_a_limit_rises_with_a_reason_only(checked, root):
+@pytest.mark.parametrize("arguments", [(), ("why",), ("why", "src/c"), ("", "src/a/b")])
+def test_no_limit_rises_without_a_reason_and_its_folder(checked, root, arguments):
+    assert checked("src/a/b,7,", "--write", *arguments)[0] == 1
+    assert "src/a/b,7," in (root / "table.csv").read_text()
+
+
+def test_a_limit_rises_with_a_reason(checked, root):
     table = root / "table.csv"
-    assert checked("src/a/b,7,", "--write")[0] == 1
-    assert "src/a/b,7," in table.read_text()
-    assert checked("src/a/b,7,", "--write", "it has a door, too")[0] == 0
+    assert checked("src/a/b,7,", "--write", "it has a door, too", "src/a/b")[0] == 0
     assert table.read_text() == 'folder,lines,reason\nsrc/a/b,8,"it has a door, too"\n'
 
 
