@@ -199,7 +199,9 @@ def _check_growth(operator: str, left: object, right: object) -> None:
         case _:
             return
     if size > _LARGEST_VALUE:
-        raise SecurityError(f"a value would have more than {_LARGEST_VALUE:,} parts")
+        raise jinja2.exceptions.SecurityError(
+            f"a value would have more than {_LARGEST_VALUE:,} parts"
+        )
 
 
 class _ReadingEnvironment(ImmutableSandboxedEnvironment):
@@ -215,8 +217,7 @@ class _ReadingEnvironment(ImmutableSandboxedEnvironment):
     def call(self, context: Context, obj: Any, /, *args: Any, **options: Any) -> Any:
         """Call a function with numbers of limited size, which may be widths."""
         for each in (*args, *options.values()):
-            if isinstance(each, int):
-                _check_growth("*", "x", each)
+            _check_growth("*", "x", each)
         return super().call(context, obj, *args, **options)
 
     def is_safe_callable(self, obj: object) -> bool:
