@@ -334,6 +334,12 @@ AMBIGUOUS = (
     "It's probably A but B is also plausible",
     "The red box; alternatively, the blue box.",
     "Maybe A, maybe B",
+    "Answer: A, but I can't rule out B",
+    "Answer: A; runner-up B",
+    "Answer: A oder B",
+    "Answer: A, vielleicht B",
+    "Answer: red box, quizás blue box",
+    "Answer: A；也许 B",
     "Probably the red box, but maybe he does not know.",
 )
 UNREAD = (

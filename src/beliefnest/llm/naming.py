@@ -74,21 +74,30 @@ _ABOUT = frozenset(["from", "about", "unlike", "considering", "regarding", "cons
 _MANIFOLD = frozenset(["left", "right", "last", "kind", "mean"])
 """Words that tell things apart and have other meanings."""
 _CONDITIONS = frozenset(["if", "unless", "whether", "suppose", "supposing"])
-_LABEL_BEFORE = _words(
-    "option choice answer letter is be choose pick select chose picked say and or not but so "
-    "than of with go either both neither nor between thus therefore number would will maybe "
-    "perhaps also otherwise else sometimes then first though although while see for"
+_ABROAD = _words("vielleicht oder ou peut être quizás quizá forse talvez 也许 或 或者")
+"""Words for `maybe` and `or` that models use in English answers, too."""
+_EXCLUDES = _words("rule ruling exclude excluding dismiss")
+_LABEL_BEFORE = (
+    _ABROAD
+    | _EXCLUDES
+    | _words(
+        "option choice answer letter is be choose pick select chose picked say and or not but so "
+        "than of with go either both neither nor between thus therefore number would will maybe "
+        "perhaps also otherwise else sometimes then first though although while see for out up"
+    )
 )
 _LABEL_NOUNS = frozenset(["option", "choice", "letter", "number", "answer"])
-_LABEL_AFTER = _words(
+_LABEL_AFTER = _ABROAD | _words(
     "and or but not nor because since as is are instead rather seems would makes fits for maybe "
     "perhaps also otherwise sometimes then though although unless can could might may too"
 )
-_HEDGES = _words("maybe perhaps possibly alternatively otherwise might could may sometimes second")
+_HEDGES = _ABROAD | _words(
+    "maybe perhaps possibly alternatively otherwise might could may sometimes second runner"
+)
 """Words that name an alternative, also in brackets and after `although`."""
 _CONCESSIONS = _words(
     "although though while but also still well less unless else or yet best guess bet candidate "
-    "see argue consider some one case made"
+    "see argue consider some one case made up out can not"
 )
 _OPEN = re.compile(
     r"(?:also |too )?(?:(?:is|are|seems|remains|stays) (?:(?:also|still|just|equally|as|quite|a"
@@ -446,6 +455,7 @@ def _goes_on(tokens: Sequence[Token], start: int, end: int) -> bool:
 
 _KNOWN = (
     _NEGATORS
+    | _HEDGES
     | _BREAKS
     | _REASONS
     | _CONDITIONS
@@ -493,13 +503,18 @@ def _is_left_open(tokens: Sequence[Token], inside: dict[int, _Mention], mention:
     after = " ".join(t.word or t.raw for t in tokens[mention.end : mention.end + 8])
     if _OPEN.match(after) and "impossible" not in after:
         return True
-    hedged = False
+    hedged, said = False, set()
     for place in range(mention.start - 1, -1, -1):
         word = tokens[place].word
         if place in inside or not (word or tokens[place].raw == ":"):
             break
-        hedged = hedged or word in _HEDGES
-        if word and word not in _FILL | _HEDGES | _CONCESSIONS and not word.endswith("ly"):
+        hedged = hedged or word in _HEDGES or (word == "not" and bool(said & _EXCLUDES))
+        said.add(word)
+        if (
+            word
+            and word not in _FILL | _HEDGES | _CONCESSIONS | _EXCLUDES
+            and not word.endswith("ly")
+        ):
             return False
     return hedged
 
@@ -576,7 +591,7 @@ def _negated(  # noqa: PLR0911, PLR0912 - a rule of grammar each
         if token.word == "no" and between[-1:] in (["longer"], ["way"]):
             return True
         if token.word in _NEGATORS:
-            if between[-1:] == ["only"]:
+            if between[-1:] == ["only"] or not _EXCLUDES.isdisjoint(between):
                 return False
             return None if elliptic and token.word not in ("nor", "neither") else True
         if token.word == "and" and any(w in _SPEECH or w not in _FILL for w in between):
