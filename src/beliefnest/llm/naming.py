@@ -503,7 +503,8 @@ def _is_left_open(tokens: Sequence[Token], inside: dict[int, _Mention], mention:
     after = " ".join(t.word or t.raw for t in tokens[mention.end : mention.end + 8])
     if _OPEN.match(after) and "impossible" not in after:
         return True
-    hedged, said = False, set()
+    hedged = False
+    said: set[str] = set()
     for place in range(mention.start - 1, -1, -1):
         word = tokens[place].word
         if place in inside or not (word or tokens[place].raw == ":"):
