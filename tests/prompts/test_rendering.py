@@ -218,3 +218,13 @@ def test_the_reference_in_the_docs_is_what_the_filters_do():
 def test_a_value_without_end_is_refused(source):
     with pytest.raises(TemplateError, match=r"more than 1,000,000 parts|nested too deeply"):
         render(source, example_branch(), {})
+
+
+def test_numbers_in_texts_are_no_widths():
+    source = (
+        "{{ 'seed 20260101, 90000000 %: %s %05.1f' % ('a', 2.5) }}{{ '%(n)s' % {'n': 9999999} }}"
+    )
+    with pytest.raises(TemplateError, match="ValueError"):
+        render(source, example_branch(), {})
+    right = source.replace("90000000 %:", "90000000 %%:")
+    assert render(right, example_branch(), {}) == "seed 20260101, 90000000 %: a 002.59999999"

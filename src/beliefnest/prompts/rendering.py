@@ -41,7 +41,7 @@ _MOST_TEMPLATES = 64
 """Greatest number of compiled templates that a renderer keeps."""
 
 _LARGEST_VALUE = 1_000_000
-_DIGITS = re.compile(r"\d{1,20}")
+_WIDTHS = re.compile(r"%(?:\([^)]*\))?[-+ #0]*([\d.]{1,20})")
 
 _PLAIN_TYPES = (str, bytes, int, float, list, tuple, dict, set, frozenset)
 
@@ -193,15 +193,15 @@ def _check_growth(operator: str, left: object, right: object) -> None:
         case "+" if len(sized) == 2:
             size = len(sized[0]) + len(sized[1])
         case "%" if isinstance(left, str):
-            size = max([0, *map(int, _DIGITS.findall(left))])
+            size = max(
+                [0, *(int(n) for each in _WIDTHS.findall(left) for n in each.split(".") if n)]
+            )
         case "**" if len(numbers) == 2:
             size = numbers[0].bit_length() * max(0, numbers[1])
         case _:
             return
     if size > _LARGEST_VALUE:
-        raise jinja2.exceptions.SecurityError(
-            f"a value would have more than {_LARGEST_VALUE:,} parts"
-        )
+        raise SecurityError(f"a value would have more than {_LARGEST_VALUE:,} parts")
 
 
 class _ReadingEnvironment(ImmutableSandboxedEnvironment):
