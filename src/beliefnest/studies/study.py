@@ -455,7 +455,7 @@ class Study:
         Args:
             accuracy: Assumed accuracy.
             difference: Assumed difference of accuracy between two levels of `between`.
-            correlation: Assumed correlation of rows of one variation, see `Assumed`.
+            correlation: Assumed correlation of rows of one variation, see `AssumedRates`.
             between: Column to compare; None: the first of condition, model and template that
                 varies, or the policy of episodes.
             sizes: Numbers of variations.

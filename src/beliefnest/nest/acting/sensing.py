@@ -23,7 +23,7 @@ def believer_of(path: BeliefPath, agent: str) -> BeliefPath:
 
 
 class Sensing:
-    """`Sense` that reads an agent's belief from what has been recorded so far.
+    """`SenseSource` that reads an agent's belief from what has been recorded so far.
 
     Args:
         history: History that computes states.
