@@ -51,7 +51,7 @@ def forks(world: Played, path: str) -> object:
         simulator.switch("follow")
 
 
-@door(every=10)
+@door(every=8)
 def programs(world: Played, path: str) -> object:
     """Return what a program of Ann reads and does in the world, by what she perceives."""
     ran = world.nest["/"].run("ann", _program(world.seed), timeout_ticks=400, senses="percepts")
