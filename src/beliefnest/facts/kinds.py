@@ -461,10 +461,9 @@ class AgentAt(Fact):
         return self.agent, "unknown" if feet is None else point_text(feet)
 
     def effort(self, facts: PlanFacts) -> float:
-        feet = facts.feet_of(self.agent)
-        if feet is None or self.place is None:
-            return 1.0 + FAR * PER_BLOCK
-        return 1.0 + math.dist(feet, middle_of(self.place)) * PER_BLOCK
+        feet, place = facts.feet_of(self.agent), self.place
+        far = FAR if feet is None or place is None else math.dist(feet, middle_of(place))
+        return 1.0 + far * PER_BLOCK
 
     def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
         return {self.agent}
