@@ -282,7 +282,7 @@ def order_of(text: str, name: str) -> int:
     Raises:
         InputError: The text is no order.
     """
-    if not text.isdecimal() or int(text) > _HIGHEST:
+    if not text.isdecimal() or len(text) > 9 or int(text) > _HIGHEST:
         raise InputError(f"{quoted(text)} in {quoted(name)} is no order; give 0 to {_HIGHEST}")
     return int(text)
 
