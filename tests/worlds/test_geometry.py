@@ -300,7 +300,7 @@ def test_feet_are_in_one_cell_only() -> None:
     for a, b in np.ndindex(len(shapes), len(shapes)):
         blocks[2 * a, 1, 2 * b], blocks[2 * a, 2, 2 * b] = shapes[a], shapes[b]
     for ground in (Ground(registry, box, blocks), Ground(registry, box, blocks).with_doors_opened):
-        found = [cell for cell in np.ndindex(box.shape) if ground.stands(cell)]
+        found = [at for at in box.positions() if ground.stands(at)]
         assert len(found) > 9_000
         assert {cell for cell in found if ground.cell_of(ground.feet(cell)) != cell} == set()
 

@@ -169,7 +169,8 @@ def _in_reach(place: Position, state: State) -> list[Position]:
     met, box, blocks = InReach(place, REACH, beside=True), state.box, state.blocks.terrain
     around = [(x + dx, y, z + dz) for dx in span for dz in span]
     near = [at for at in around if at in box and met.is_met(at)]
-    stands = Floor(Registry.load(), blocks).stands(np.array([box.index(at) for at in near]))
+    cells = np.array([box.index(at) for at in near], dtype=np.int64).reshape(-1, 3)
+    stands = Floor(Registry.load(), blocks).stands(cells)
     found = [at for at, is_standing in zip(near, stands, strict=True) if is_standing]
     return [at for at in found if can_use(box, blocks, eye_in(at), place)]
 

@@ -175,8 +175,8 @@ class Embodying:
             (a, b, c), (d, e, f) = low - box.low, np.maximum(high + 1, low) - box.low
             part = reading.terrain.cut((a, b, c), (d, e, f))
             cells = np.argwhere(~np.isin(part, cubes)) + low
-            first, last = tuple(low.tolist()), tuple(np.maximum(high, low).tolist())
-            ground = space.ground(first, last)
+            (i, j, k), (u, v, w) = low.tolist(), np.maximum(high, low).tolist()
+            ground = space.ground((i, j, k), (u, v, w))
             distances = np.linalg.norm(cells + 0.5 - middle, axis=1)
             for number in distances.argsort(kind="stable"):
                 if distances[number] > radius:
