@@ -11,9 +11,7 @@ import warnings
 
 import numpy as np
 import pytest
-from scipy import stats
 from tests.profiles import at_night, few_by_day
-from tests.studies import second_statistics as second
 
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.counting import count_rows, paired_rows
@@ -22,6 +20,10 @@ from beliefnest.studies.power import AssumedRates, power_rows
 from beliefnest.studies.regression import fit_rows
 from beliefnest.studies.study_record import COMPARED
 from beliefnest.suites.films.agreement import JudgesAgreement, interval
+
+pytest.importorskip("scipy", reason="comes with the extra `stats`")
+from scipy import stats
+from tests.studies import second_statistics as second
 
 pytestmark = pytest.mark.extra("statsmodels")
 
