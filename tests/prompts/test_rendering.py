@@ -228,3 +228,79 @@ def test_numbers_in_texts_are_no_widths():
         render(source, example_branch(), {})
     right = source.replace("90000000 %:", "90000000 %%:")
     assert render(right, example_branch(), {}) == "seed 20260101, 90000000 %: a 002.59999999"
+
+
+BOX = "{% set box = namespace(it='ab', row=[1]) %}"
+LONG = "{% set long = [1] * 900000 %}"
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "{% for a in range(99999) %}{% for b in range(99999) %}{% endfor %}{% endfor %}",
+        "{% for a in range(99999) %}{% for b in range(99999) if false %}{% endfor %}{% endfor %}",
+        "{% macro f() %}{{ f() }}{{ f() }}{% endmacro %}{{ f() }}",
+        "{% macro f(n) %}{% if n %}{{ f(n - 1) ~ f(n - 1) }}{% endif %}{% endmacro %}{{ f(60) }}",
+        *(
+            f"{BOX}{{% for i in range(99) %}}{{% set box.it = {twice} %}}{{% endfor %}}"
+            for twice in (
+                "box.it ~ box.it",
+                "box.it + box.it",
+                "box.it | replace('a', box.it)",
+                "box.it.replace('a', box.it)",
+                "[box.it, box.it] | join",
+                "box.it.join([box.it, box.it])",
+                "'%s%s' | format(box.it, box.it)",
+                "'%s%s' % (box.it, box.it)",
+                "[box.it, box.it]",
+                "{1: box.it, 2: box.it}",
+            )
+        ),
+        "{% set n = namespace(x=7) %}{% for i in range(99) %}{% set n.x = n.x * n.x %}{% endfor %}",
+        "{% set it = 'ab' %}" + "{% set it %}{{ it }}{{ it }}{% endset %}" * 60,
+        "{% for a in range(99999) %}" + "text " * 1000 + "{% endfor %}",
+        "{% filter upper %}{% for a in range(99999) %}"
+        + "text " * 999
+        + "{% endfor %}{% endfilter %}",
+        "{{ 'x' | center(999999999) }}",
+        "{{ '%999999999d' | format(1) }}",
+        "{{ '%*d' | format(999999999, 1) }}",
+        "{{ '%*d' % (999999999, 1) }}",
+        "{{ 'x' | indent(999999999, true) }}",
+        "{{ ('x\n' * 100000) | indent(900000) }}",
+        "{{ ('x' * 900000) | wordwrap(1) }}",
+        "{{ ([[1]] * 900000) | sum(start=[]) }}",
+        "{{ [1] | batch(999999999, 0) | list }}",
+        "{{ 1 | round(999999999, 'floor') }}",
+        "{{ ('\t' * 100000).expandtabs(100000) }}",
+        "{{ range(99999) | join('x' * 100000) }}",
+        "{{ range(99999) | map('center', 99999) | list }}",
+        "{{ ['x' * 900000] * 900000 }}",
+        f"{LONG}{{% for i in range(99999) %}}{{% if 2 in long %}}{{% endif %}}{{% endfor %}}",
+        f"{LONG}{{% for i in range(99999) %}}{{% set some = long[::-1] %}}{{% endfor %}}",
+        "{% for i in range(99999) %}{% set told = branch | story %}{% endfor %}",
+    ],
+)
+def test_a_template_without_end_is_refused(source):
+    with pytest.raises(TemplateError, match=r"^mine, line \d+: .*(steps|parts|nested too deeply)"):
+        show(Template("mine", source))
+
+
+def test_each_rendering_has_its_own_bound():
+    renderer = Renderer(BUILT_IN)
+    source = "{% for i in range(99999) %}{{ 'many words' }}{% endfor %}"
+    for _ in range(9):
+        assert len(renderer.render(source, example_branch(), {})) == 999_990
+
+
+def test_bounded_templates_are_filled_as_by_jinja():
+    source = (
+        "{% for a, b in {'x': 1}.items() %}{{ a ~ b ~ 'z' }} {{ loop.length }}{% endfor %}"
+        "{% for a in [1, 2, 3] | select('odd') %}{{ loop.index }}/{{ loop.length }} {% endfor %}"
+        "{% for a in [] %}{% else %}none {% endfor %}{{ (1, 2)[:1] }}{{ [1] + [2] }}"
+        "{{ 'a,b'.split(',') | join('-') | center(5) }}{{ '%05.1f%%' | format(2.5) }}"
+        "{{ ('a b ' * 90000) | wordwrap(79) | length }}{{ ([1] * 200000) | sum }} "
+        "{{ {'a': [1]} | tojson }}{{ 7 // 2 - 1 }}{{ 'a' in ('a', 'b') }}{{ 'x' is in ['x'] }}"
+    )
+    expected = 'x1z 11/2 2/2 none (1,)[1, 2] a-b 002.5%359999200000 {"a": [1]}2TrueTrue'
+    assert render(source, example_branch(), {}) == expected

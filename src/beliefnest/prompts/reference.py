@@ -62,6 +62,12 @@ an error that names the line. Templates can read a simulator, but cannot call it
 Values that a template prints without a filter have control characters and marks of text
 direction escaped.
 
+A rendering has at most 10,000,000 steps, and a value in it as many characters and parts of
+lists. A printed character is a step, a part of a list that is worked on 3, a turn of a loop
+10, a call or a filter of Jinja 50, another filter 550. A template that needs more, or whose
+macros call themselves without end, ends with an error that names the line. Jinja's function
+`lipsum` is not available.
+
 `$$LAST_CODE$$` and `$$LAST_ERROR$$` stand for the variables `last_code` and `last_error`:
 the program of the previous round and its error. If these are not set, the markers print
 `No code was executed` and `No error`.

@@ -1,20 +1,19 @@
 """Rendering of prompts from a template and a simulator."""
 
 import functools
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NoReturn
 
 import jinja2
-from jinja2 import meta, nodes
-from jinja2.exceptions import SecurityError
+from jinja2 import meta, nodes, pass_context
 from jinja2.runtime import Context, Macro
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from beliefnest.errors import BeliefNestError, TemplateError
+from beliefnest.prompts.bounds import Meter, check_numbers, metered
 from beliefnest.prompts.builtin import BUILT_IN
 from beliefnest.prompts.filterset import FilterSet, installed_filters
 from beliefnest.prompts.simulator_view import BranchView
@@ -39,9 +38,6 @@ LAST_ERROR = "$$LAST_ERROR$$"
 _MARKERS = {LAST_CODE: "{{ last_code }}", LAST_ERROR: "{{ last_error }}"}
 _MOST_TEMPLATES = 64
 """Greatest number of compiled templates that a renderer keeps."""
-
-_LARGEST_VALUE = 1_000_000
-_WIDTHS = re.compile(r"%(?:\([^)]*\))?[-+ #0]*([\d.]{1,20})")
 
 _PLAIN_TYPES = (str, bytes, int, float, list, tuple, dict, set, frozenset)
 
@@ -79,7 +75,7 @@ def instructions(skills: tuple[object, ...]) -> str:
     Args:
         skills: Skills that a program can call, each with a `signature` and a `description`.
     """
-    compiled = _compiled(_environment(BUILT_IN), built_in_template("instructions"))
+    compiled = _compiled(_ReadingEnvironment(BUILT_IN), built_in_template("instructions"))
     return compiled.template.render(skills=skills)
 
 
@@ -122,6 +118,7 @@ class Renderer:
             "last_code": _or_word(variables.get("last_code"), NO_CODE),
             "last_error": _or_word(variables.get("last_error"), NO_ERROR),
         }
+        self._environment.meter.steps = 0
         try:
             return compiled.template.render(values)
         except Exception as error:
@@ -131,8 +128,8 @@ class Renderer:
             raise TemplateError(f"{compiled.name}, line {line}: {_words(error)}{hint}") from error
 
     @functools.cached_property
-    def _environment(self) -> jinja2.Environment:
-        return _environment(_default_filters() if self._filters is None else self._filters)
+    def _environment(self) -> "_ReadingEnvironment":
+        return _ReadingEnvironment(_default_filters() if self._filters is None else self._filters)
 
     def _ready(self, source: Template) -> _Compiled:
         known = self._compiled.get(source)
@@ -183,42 +180,52 @@ def _with_markers(text: str) -> str:
     return text
 
 
-def _check_growth(operator: str, left: object, right: object) -> None:
-    """Raise SecurityError if a value would be too large: Python cannot stop to compute it."""
-    sized = [each for each in (left, right) if isinstance(each, str | bytes | list | tuple)]
-    numbers = [each for each in (left, right) if isinstance(each, int)]
-    match operator:
-        case "*" if sized and numbers:
-            size = len(sized[0]) * numbers[0]
-        case "+" if len(sized) == 2:
-            size = len(sized[0]) + len(sized[1])
-        case "%" if isinstance(left, str):
-            size = max(
-                [0, *(int(n) for each in _WIDTHS.findall(left) for n in each.split(".") if n)]
-            )
-        case "**" if len(numbers) == 2:
-            size = numbers[0].bit_length() * max(0, numbers[1])
-        case _:
-            return
-    if size > _LARGEST_VALUE:
-        raise SecurityError(f"a value would have more than {_LARGEST_VALUE:,} parts")
-
-
 class _ReadingEnvironment(ImmutableSandboxedEnvironment):
     """Sandbox in which a template can read simulators but not act through them."""
 
-    intercepted_binops = frozenset({"*", "+", "%", "**"})
+    intercepted_binops = frozenset({"*", "+", "-", "/", "//", "%", "**"})
+
+    def __init__(self, filters: FilterSet) -> None:
+        super().__init__(
+            undefined=jinja2.StrictUndefined,
+            autoescape=False,  # a prompt is plain text, not HTML
+            keep_trailing_newline=True,
+            loader=jinja2.FunctionLoader(_built_in_source),
+        )
+        self.filters.update({name: each.function for name, each in filters.filters.items()})
+        self.meter = meter = Meter()
+        plain = self.overlay()  # keeps the functions that do not count
+        self.filters = {name: meter.filter(name, plain) for name in plain.filters}
+        self.filters |= meter.counters()
+        self.tests = {name: meter.test(name, plain) for name in plain.tests}
+        del self.globals["lipsum"]  # a prompt has no chance in it, and no text without end
+
+        @pass_context
+        def printed(_context: Context, value: object) -> object:
+            meter.printed(value)
+            return _printed(value)
+
+        self.finalize = printed
+
+    def _generate(self, source: nodes.Template, *args: Any, **options: Any) -> str:
+        tree = metered(source)
+        tree.set_environment(self)
+        return super()._generate(tree, *args, **options)
 
     def call_binop(self, context: Context, operator: str, left: Any, right: Any) -> Any:
         """Compute a value of limited size."""
-        _check_growth(operator, left, right)
-        return super().call_binop(context, operator, left, right)
+        self.meter.operate(operator, left, right)
+        return self.meter.value(super().call_binop(context, operator, left, right))
 
     def call(self, context: Context, obj: Any, /, *args: Any, **options: Any) -> Any:
         """Call a function with numbers of limited size, which may be widths."""
-        for each in (*args, *options.values()):
-            _check_growth("*", "x", each)
-        return super().call(context, obj, *args, **options)
+        args = tuple(tuple(each) if isinstance(each, Iterator) else each for each in args)
+        given = [*args, *options.values()]
+        check_numbers(given)
+        bound_to = getattr(obj, "__self__", None)
+        receiver = None if isinstance(bound_to, dict) else bound_to  # its methods do not walk it
+        self.meter.call(getattr(obj, "__name__", ""), receiver, given)
+        return self.meter.value(super().call(context, obj, *args, **options))
 
     def is_safe_callable(self, obj: object) -> bool:
         """Allow only macros, Jinja's own globals and methods of plain values."""
@@ -239,18 +246,6 @@ def _printed(value: object) -> object:
     return visible(value)
 
 
-def _environment(filters: FilterSet) -> jinja2.Environment:
-    environment = _ReadingEnvironment(
-        undefined=jinja2.StrictUndefined,
-        autoescape=False,  # a prompt is plain text, not HTML
-        finalize=_printed,
-        keep_trailing_newline=True,
-        loader=jinja2.FunctionLoader(_built_in_source),
-    )
-    environment.filters.update({name: each.function for name, each in filters.filters.items()})
-    return environment
-
-
 def _built_in_source(name: str) -> str | None:
     """Return the source for `{% include "instructions" %}`."""
     if name not in BUILT_IN_TEMPLATES:
@@ -267,7 +262,8 @@ def _parse(environment: jinja2.Environment, name: str, text: str) -> nodes.Templ
         raise TemplateError(f"{name} is nested too deeply") from None
     for used in tree.find_all(nodes.Filter):
         if used.name not in environment.filters:
-            _refuse(name, used.lineno, "filter", used.name, environment.filters)
+            known = filter(str.isidentifier, environment.filters)
+            _refuse(name, used.lineno, "filter", used.name, known)
     for test in tree.find_all(nodes.Test):
         if test.name not in environment.tests:
             _refuse(name, test.lineno, "test", test.name, environment.tests)
@@ -305,4 +301,6 @@ def _words(error: Exception) -> str:
         return error.message or type(error).__name__
     if isinstance(error, BeliefNestError):
         return str(error)
+    if isinstance(error, RecursionError):
+        return "a macro or value is nested too deeply"
     return f"a filter or expression failed: {type(error).__name__}: {error}"
