@@ -12,7 +12,12 @@ from tests.profiles import at_night
 import beliefnest as bn
 from beliefnest.llm.offline.offline_model import OfflineModel
 from beliefnest.scenarios.prose_check import ProseWarning
-from beliefnest.scenarios.prose_reading import UnreadError, read_places
+from beliefnest.scenarios.prose_reading import (
+    UnreadError,
+    read_contents,
+    read_last_seen,
+    read_places,
+)
 from beliefnest.scenarios.running import run_scenario
 
 NAMES = ("ann", "bob", "cat")
@@ -147,10 +152,10 @@ probes:
 """
 
 
-def played(folder: Path, prior: str) -> list[str]:
-    """Return the warnings of a scenario with some initial beliefs."""
-    file = folder / "room.yaml"
-    file.write_text(ROOM.replace("PRIOR", prior))
+def warned(folder: Path, text: str) -> list[str]:
+    """Return the warnings of a scenario."""
+    file = folder / "scenario.yaml"
+    file.write_text(text)
     scenario = bn.Scenario.load(str(file))
     with bn.Nest.open(scenario, "scripted") as nest, warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always", ProseWarning)
@@ -159,10 +164,144 @@ def played(folder: Path, prior: str) -> list[str]:
 
 
 def test_answers_that_do_not_follow_are_named_with_probe_and_line(tmp_path: Path) -> None:
-    assert played(tmp_path, "[]") == []
-    assert played(tmp_path, "[{path: /bob, inventories: {ann: {apple: 1}}}]") == []
+    assert warned(tmp_path, ROOM.replace("PRIOR", "[]")) == []
+    assert (
+        warned(tmp_path, ROOM.replace("PRIOR", "[{path: /bob, inventories: {ann: {apple: 1}}}]"))
+        == []
+    )
     # A narrator does not tell what others take for granted.
     prior = "[{path: /bob, containers: [{at: [2, 1, 2], items: {apple: 1}}]}]"
-    (told,) = played(tmp_path, prior)
-    assert "room.yaml:" in told
+    (told,) = warned(tmp_path, ROOM.replace("PRIOR", prior))
+    assert "scenario.yaml:" in told
     assert "probe 'what Bob thinks': the right answer 'red box' does not follow" in told
+
+
+@pytest.mark.parametrize(
+    ("told", "path", "thing", "found"),
+    [
+        ("Ann stood at the sofa.", ("bob",), "Ann", ""),
+        ("Ann stood at the sofa. At first Bob could see Ann.", ("bob",), "Ann", "the sofa"),
+        (
+            "Ann stood at the sofa. All of them could see one another. Bob could no longer see "
+            "Ann, nor could Ann see Bob. Ann walked to the garden.",
+            ("ann", "bob"),
+            "Ann",
+            "the sofa",
+        ),
+        (
+            "Ann stood at the sofa. At first Bob could see Ann. Ann walked to the garden.",
+            ("bob",),
+            "Ann",
+            "the garden",
+        ),
+        ("On the sign was written: “Go. Now”.", ("bob",), "the sign", ""),
+        (
+            "On the sign was written: “north”. At first Bob could see the sign. Bob could no "
+            "longer see the sign. Ann wrote on the sign: “south”.",
+            ("bob",),
+            "the sign",
+            "north",
+        ),
+        (
+            "Nothing was written on the sign. At first Bob could see the sign.",
+            ("bob",),
+            "the sign",
+            "nothing",
+        ),
+    ],
+)
+def test_what_was_last_seen(told: str, path: tuple[str, ...], thing: str, found: str) -> None:
+    story = f"This is a story about Ann, Bob and Cat. There were the box and the sign. {told}"
+    assert read_last_seen(story, path, thing, "none") == found
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        # Walks to containers are not told.
+        "Ann stood at the sofa. At first Bob could see Ann. Ann opened the box.",
+        # Bob may have seen no more than the beginning of the walk, or its end.
+        "Ann stood at the sofa. At first Bob could see Ann. Ann walked to the garden. Bob could no "
+        "longer see Ann.",
+        "Ann stood at the sofa. Bob could now see Ann. Bob could no longer see Ann. Ann walked to "
+        "the garden.",
+        "Ann stood at the sofa. At first Bob could see Ann. Cat said: “Ann is elsewhere.”",
+        "At first Bob could see Ann.",
+    ],
+)
+def test_what_is_not_clear_of_an_agent_is_not_judged(told: str) -> None:
+    story = f"This is a story about Ann, Bob and Cat. There was the box. {told}"
+    with pytest.raises(UnreadError):
+        read_last_seen(story, ("bob",), "Ann", "accept")
+
+
+def test_contents() -> None:
+    story = (
+        "This is a story about Ann and Bob. There were the box and the bag. In the box were an "
+        "apple and a book. At first Bob could see Ann. Bob opened the box. Ann took an apple out "
+        "of the box."
+    )
+    items = ("apple", "book", "bread")
+    assert read_contents(story, ("bob",), "the box", items, "none") == {"book"}
+    assert read_contents(story, ("bob", "ann"), "the bag", items, "none") == set()
+
+
+HALL = """
+name: hall
+box: [[0, 0, 0], [12, 3, 6]]
+blocks:
+  - {block: stone, fill: [[0, 0, 0], [12, 0, 6]]}
+  - {block: bricks, fill: [[8, 1, 0], [8, 3, 6]]}
+containers: [{at: [5, 1, 5], label: red box, items: {apple: 1, book: 1}}]
+signs: [{at: [5, 1, 1], text: north}]
+places: {sofa: [1, 1, 1], window: [1, 1, 5]}
+agents:
+  ann: {position: [1.5, 1, 1.5]}
+  bob: {position: [5.5, 1, 3.5]}
+  cat: {position: [10.5, 1, 3.5]}
+static_blocks: [stone, bricks, air]
+initial_beliefs:
+  - path: /cat
+    agents: {ann: [1.5, 1, 5.5]}
+    containers: [{at: [5, 1, 5], items: {apple: 1}}]
+    signs: [{at: [5, 1, 1], text: north, block: oak_sign}]
+script:
+  - {agent: ann, program: "await goToPosition(bot, new Vec3(1, 1, 5), 0);"}
+  - {agent: bob, program: "await getItemFromChest(bot, new Vec3(5, 1, 5), {book: 1});"}
+probes:
+  - label: what somebody thinks
+    path: /
+    template: story
+    expect:
+      answers:
+        question: What is it?
+        options: [sofa, window, apple, book, north, south, unknown]
+        right: RIGHT
+"""
+
+
+@pytest.mark.parametrize("kind", ["agent: ann", "container: [5, 1, 5]", "sign: [5, 1, 1]"])
+def test_each_kind_of_question_is_read_back(tmp_path: Path, kind: str) -> None:
+    assert warned(tmp_path, HALL.replace("RIGHT", f"{{path: /bob, {kind}}}")) == []
+    assert warned(tmp_path, HALL.replace("RIGHT", f"{{path: /, {kind}}}")) == []
+    # Cat sees nothing of it: it takes for granted what the narrator does not tell.
+    (told,) = warned(tmp_path, HALL.replace("RIGHT", f"{{path: /cat, {kind}}}"))
+    assert "scenario.yaml:28: " in told
+    assert "does not follow from the story, which says 'unknown'" in told
+
+
+def test_a_name_of_a_place_that_is_no_option_is_not_judged(tmp_path: Path) -> None:
+    near = HALL.replace("window: [1, 1, 5]", "window: [1, 1, 5], curtain: [2, 1, 5]")
+    text = near.replace("[sofa, window,", "[sofa, curtain,")
+    assert warned(tmp_path, text.replace("RIGHT", "{path: /bob, agent: ann}")) == []
+    # That nobody was seen is judged, whatever the options are.
+    assert len(warned(tmp_path, text.replace("RIGHT", "{path: /cat, agent: ann}"))) == 1
+
+
+def test_nobody_who_sees_nothing_counts_as_one_of_all(tmp_path: Path) -> None:
+    file = tmp_path / "scenario.yaml"
+    file.write_text(HALL.replace("RIGHT", "{path: /, agent: ann}"))
+    with bn.Nest.open(bn.Scenario.load(str(file)), "scripted") as nest:
+        told = nest["/"].render("{{ branch | beginning }}")
+    assert "All of them" not in told
+    assert "At first Ann could see Bob, the sign and the red box." in told

@@ -292,7 +292,7 @@ class _Teller:
             len(each.agents) == len(sights) - 1 and len(each.places) == len(places)
             for each in sights
         ]
-        if len(sights) > 1 and all(full) and viewers >= {n for e in sights for n in e.agents}:
+        if len(sights) > 1 and all(full) and viewers == {*self._agents}:
             things = " and all of these things" if places else ""
             yield _sentence(f"All of them could see one another{things}")
             return

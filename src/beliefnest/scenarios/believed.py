@@ -1,7 +1,7 @@
 """Right answers that the nest computes: what a simulator believes about one thing."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
@@ -22,7 +22,7 @@ from beliefnest.world.texts import quoted
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import listed, point_words
 
-__all__ = ["Believed", "BelievedEntry", "StateOf", "bare_words"]
+__all__ = ["Believed", "BelievedEntry", "StateOf", "bare_words", "content_names"]
 
 StateOf = Callable[[str], State]
 """Function from a belief path to the state after the script."""
@@ -244,12 +244,16 @@ def _contained(state: State, at: Position) -> Iterator[_Found]:
     held = state.containers.get(at)
     if held is None or not (held.items or held.complete):
         return
-    if not held.items:
-        yield _Found(_EMPTY)
-        return
-    words = [name.replace("_", " ") for name in sorted(held.items)]
+    yield _Found(content_names(held.items))
+
+
+def content_names(items: Collection[str]) -> tuple[str, ...]:
+    """Return texts that name what is in a container, the best first."""
+    if not items:
+        return _EMPTY
+    words = [name.replace("_", " ") for name in sorted(items)]
     plural = [f"{word}s" for word in words]
-    yield _Found((listed(words), listed(plural), *(held.items if len(words) == 1 else ())))
+    return (listed(words), listed(plural), *(items if len(words) == 1 else ()))
 
 
 def _stated(state: State, at: Position) -> Iterator[_Found]:

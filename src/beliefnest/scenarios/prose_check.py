@@ -3,16 +3,27 @@
 import warnings
 from collections.abc import Iterator, Sequence
 
+from beliefnest.belief.view import State
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import built_in_template
-from beliefnest.scenarios.believed import Believed, bare_words
+from beliefnest.scenarios.believed import Believed, bare_words, content_names
 from beliefnest.scenarios.content import Probe, ScenarioWarning
 from beliefnest.scenarios.expected_answers import Answers
-from beliefnest.scenarios.prose_reading import UnreadError, read_places
+from beliefnest.scenarios.naming import titled
+from beliefnest.scenarios.prose_reading import (
+    UnreadError,
+    read_contents,
+    read_last_seen,
+    read_places,
+)
 from beliefnest.world.paths import parse_path
-from beliefnest.world.words import listed
+from beliefnest.world.values import Position
+from beliefnest.world.words import listed, with_the
 
 __all__ = ["ProseWarning", "warn_of_prose"]
+
+_ELSEWHERE = "another place"
+"""Place of somebody who walked to no named place, in stories."""
 
 _STORY = "{{ branch | beginning }} {{ branch | story }}"
 
@@ -24,8 +35,8 @@ class ProseWarning(ScenarioWarning):
 def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
     """Warn of each question whose computed answer does not follow from its story.
 
-    Checked are questions about an item that the built-in template `story` puts to a narrator's
-    story.
+    Checked are questions about an item, an agent, a container or a sign that the built-in template
+    `story` puts to a narrator's story.
 
     Args:
         nest: The nest after the script.
@@ -37,7 +48,7 @@ def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
         for number, probe in enumerate(probes, 1)
         if probe.path == "/" and probe.template == told
         for question in probe.questions
-        if question.believed is not None and question.believed.kind == "item"
+        if question.believed is not None and question.believed.kind != "block"
     ]
     story = nest["/"].render(_STORY) if asked else ""
     for number, probe, question, believed in asked:
@@ -49,19 +60,79 @@ def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
 
 
 def _faults(nest: Nest, story: str, question: Answers, believed: Believed) -> Iterator[str]:
-    path = parse_path(believed.path, nest.agents)
-    testimony = nest.setting.perception.testimony
+    right = {_key(each) for each in question.right}
     try:
-        places = read_places(story, path, str(believed.thing), testimony)
+        read = _read(nest, story, believed)
     except UnreadError:
         return
-    found = places or {believed.unknown}
-    if {_key(each) for each in found} != {_key(each) for each in question.right}:
-        right, read = (listed(sorted(map(repr, each)), "or") for each in (question.right, found))
+    named = {each for names in read for each in names}
+    told = {_key(each) for each in named}
+    if believed.kind == "item":
+        follows = told == right
+    else:
+        # A place may have several names, of which the options have another one than the story.
+        options = {_key(each) for each in question.options}
+        is_named = believed.kind == "agent" and not named <= {_ELSEWHERE, believed.unknown}
+        follows = bool(told & right) or (is_named and bool(options) and not told & options)
+    if not follows:
+        said, best = (
+            listed(sorted(map(repr, each)), "or")
+            for each in (question.right, {names[0] for names in read})
+        )
         yield (
-            f"the right answer {right} does not follow from the story, which says {read}; let the "
+            f"the right answer {said} does not follow from the story, which says {best}; let the "
             "story show it, by what is seen or said, or ask otherwise"
         )
+
+
+def _read(nest: Nest, story: str, believed: Believed) -> Sequence[tuple[str, ...]]:
+    """Return the answers that a story tells, each with all its names.
+
+    Raises:
+        UnreadError: The story does not make it clear.
+    """
+    perception = nest.setting.perception
+    path, told = parse_path(believed.path, nest.agents), perception.testimony
+    if perception.containers == "transparent" and believed.kind in ("item", "container"):
+        raise UnreadError("the story does not tell what is seen in containers")
+    match believed.kind, believed.thing:
+        case "item", str(item):
+            return [(each,) for each in read_places(story, path, item, told) or {believed.unknown}]
+        case "container", (int(), int(), int()) as at:
+            states = [nest[each].state for each in ("/", believed.path)]
+            items = {item for each in states for item in _items(each)}
+            held = read_contents(story, path, _name(nest, at), sorted(items), told)
+            # Whether somebody knows that a container is empty, stories seldom make clear.
+            return [content_names(held) if held else (believed.unknown, *content_names(()))]
+        case "agent", str(name):
+            if perception.negative_evidence:
+                raise UnreadError("the story does not tell which empty places are seen")
+            seen = read_last_seen(story, path, titled(name), told)
+        case _, (int(), int(), int()) as at:
+            seen = read_last_seen(story, path, _name(nest, at), told)
+        case _:
+            raise AssertionError(believed.kind)
+    return [(seen, "blank") if seen == "nothing" else (seen or believed.unknown,)]
+
+
+def _name(nest: Nest, at: Position) -> str:
+    """Return the words of a narrator for a thing.
+
+    Raises:
+        UnreadError: It has no name of its own.
+    """
+    names = nest["/"].names
+    if at not in names or list(names.values()).count(names[at]) > 1:
+        raise UnreadError(str(at))
+    return with_the(names[at])
+
+
+def _items(state: State) -> Iterator[str]:
+    """Yield the names of all items of a state that agents or containers have."""
+    for container in state.containers.values():
+        yield from container.items
+    for agent in state.agents.values():
+        yield from agent.inventory
 
 
 def _key(name: str) -> tuple[str, ...]:

@@ -1,16 +1,16 @@
-"""Reading of narrated stories: what their sentences alone say of beliefs about an item.
+"""Reading of narrated stories: what their sentences alone say of beliefs.
 
 The reader knows the sentences of `prompts.story_filters`, and nothing of the nest. It follows one
-item along one belief path: an agent knows of an act if the text lets it see the actor, and credits
-another with that if the text lets it see the other as well.
+item, agent or sign along one belief path: an agent knows of an act if the text lets it see the
+actor, and credits another with that if the text lets it see the other as well.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-__all__ = ["UnreadError", "read_places"]
+__all__ = ["UnreadError", "read_contents", "read_last_seen", "read_places"]
 
 _SENTENCE = re.compile(r"(?:[^.“]|“[^”]*[^.!?”]”)*(?:“[^”]*[.!?]”|[.])")
 
@@ -52,8 +52,7 @@ class _Reader:
     def read(self, text: str) -> set[str]:
         """Return the places of the item in the belief after a whole story."""
         self.places = [set() for _ in range(len(self.path) + 1)]
-        sentences = [each.strip().removesuffix(".") for each in _SENTENCE.findall(text)]
-        for sentence in filter(None, sentences):
+        for sentence in _sentences(text):
             told = re.fullmatch(r"(?:.* )?(heard it|knew that)", sentence)
             if told is None:
                 self._everybody_hears()
@@ -150,7 +149,11 @@ class _Reader:
                 heard = {self.said[0], *self._those(told[1], self.said[0])}
                 self._hear(frozenset(heard), is_common=False)
         elif re.search(rf"(?<!\w){re.escape(self.item)}s?(?!\w)", sentence) and not re.search(
-            "(thought|whispered|wrote|written|now said|looks as if)", sentence
+            # Whoever believes claims may believe those of whispers and signs.
+            "(thought|looks as if)"
+            if self.takes_up
+            else "(thought|whispered|wrote|written|now said|looks as if)",
+            sentence,
         ):
             raise UnreadError(sentence)
 
@@ -262,6 +265,93 @@ class _Reader:
         return re.search(rf"(^|, | and )(an? |the )?{item}($|, | and )", words) is not None
 
 
+@dataclass
+class _Watcher(_Reader):
+    """Reader that follows what each belief along the path last saw of the agent or sign `item`.
+
+    Attributes:
+        now: Where the agent is or what the sign says, in the story's words; None: it is not clear.
+        seen: The same as last seen, in reality and each belief along the path; empty: never seen.
+        glimpsed: Depths at which the thing has come into sight since the last act with it.
+        fresh: Depths that saw the last act, if it was with it: whoever loses sight of it at once
+            may have seen no more than how it began.
+    """
+
+    now: str | None = None
+    seen: list[str | None] = field(default_factory=list)
+    glimpsed: set[int] = field(default_factory=set)
+    fresh: set[int] = field(default_factory=set)
+
+    def watch(self, text: str) -> str | None:
+        """Return what is last seen in the belief after a whole story; None: it is not clear.
+
+        Raises:
+            UnreadError: Somebody says something that hearers may believe.
+        """
+        self.seen = ["" for _ in range(len(self.path) + 1)]
+        watching: set[int] = set()
+        for sentence in _sentences(text):
+            if self.takes_up and re.search(r"\b(said|whispered to .*): “", sentence):
+                raise UnreadError(sentence)
+            before = watching
+            known = self._beginning(sentence) or self._sight(sentence)
+            watching = set(self._watching())
+            if not known:
+                self.fresh = set()
+                self._change(sentence, watching)
+            for depth in self.fresh & before - watching:
+                self.seen[depth] = None
+            if known and not sentence.startswith(("At first", "All of them")):
+                self.glimpsed |= watching - before
+            for depth in watching:
+                self.seen[depth] = self.now
+            self._imagine(watching)
+        return self.seen[-1]
+
+    def _imagine(self, watching: set[int]) -> None:
+        """Give up what an agent in sight may be believed to see where the thing was last seen."""
+        for depth, name in enumerate(self.path[1:], 2):
+            in_sight = all(name == other or name in self.sees[other] for other in self.path[:depth])
+            before = self.seen[depth - 1]
+            if depth - 1 not in watching and in_sight and before not in ("", self.seen[depth]):
+                self.seen[depth] = None
+
+    def _watching(self) -> Iterator[int]:
+        """Yield the depths along the path at which the thing is seen; 0 is reality."""
+        yield 0
+        yield from self._depths(self._seeing({self.item}), is_common=False)
+
+    def _change(self, sentence: str, watching: set[int]) -> None:
+        """Read a sentence that may be about an act with the thing."""
+        first = f"[{re.escape(self.item[0])}{re.escape(self.item[0].upper())}]"
+        thing = f"{first}{re.escape(self.item[1:])}"
+        is_person = self.item in self.people
+        inert = rf"{thing} (?:said|thought|made a gesture|whispered)\b.*|.* heard it"
+        mention = rf"{thing}\b.*" if is_person else rf"(?:.*\W)?{thing}\b.*"
+        if not re.fullmatch(mention, sentence) or (is_person and re.fullmatch(inert, sentence)):
+            return
+        told = re.fullmatch(
+            rf"{thing} (?:stood at|stood near|walked to) (.*)"
+            if is_person
+            else rf"(?:On {thing} was written|{thing} now said|(?:{self._who}) wrote on {thing})"
+            ": “(.*)”",
+            sentence,
+        )
+        blank = rf"Nothing was written on {thing}|{self._who} wiped {thing} clean"
+        self.now = told[1] if told else "nothing" if re.fullmatch(blank, sentence) else None
+        # Not told is what the thing was like at a glimpse before, or what an act shows of it.
+        actors = {name for name in self.people if sentence.startswith(f"{name} ")}
+        unclear = self.glimpsed | set(self._depths(self._seeing(actors), is_common=False))
+        for depth in unclear - watching:
+            self.seen[depth] = None
+        self.glimpsed, self.fresh = set(), watching
+
+
+def _sentences(text: str) -> Iterator[str]:
+    """Yield the sentences of a story without their full stops."""
+    return filter(None, (each.strip().removesuffix(".") for each in _SENTENCE.findall(text)))
+
+
 def _bare(thing: str) -> str:
     """Return the name of a thing without its article, in small letters."""
     return thing.removeprefix("the ").casefold()
@@ -283,6 +373,56 @@ def read_places(
     """
     if testimony == "informed":
         raise UnreadError("the reader does not weigh claims")
-    titled = tuple(name[:1].upper() + name[1:] for name in path)
-    reader = _Reader(titled, item.replace("_", " "), testimony == "accept")
+    reader = _Reader(_titled(path), item.replace("_", " "), testimony == "accept")
     return frozenset(reader.read(text))
+
+
+def read_contents(
+    text: str,
+    path: Sequence[str],
+    container: str,
+    items: Iterable[str],
+    testimony: Literal["none", "accept", "informed"],
+) -> frozenset[str]:
+    """Return those of some items that an agent believes in a container, as a story alone says it.
+
+    Args:
+        text: The story of a narrator, with its beginning.
+        path: Agents of the belief path; empty: reality.
+        container: The container in the words of the story, with its article.
+        items: Names of items.
+        testimony: How hearers take claims.
+
+    Raises:
+        UnreadError: This reader does not understand what the story says of an item.
+    """
+    return frozenset(
+        item for item in items if container in read_places(text, path, item, testimony)
+    )
+
+
+def read_last_seen(
+    text: str, path: Sequence[str], thing: str, testimony: Literal["none", "accept", "informed"]
+) -> str:
+    """Return where an agent was last seen, or what a sign was last seen to say, in a belief.
+
+    Args:
+        text: The story of a narrator, with its beginning.
+        path: Agents of the belief path; empty: reality.
+        thing: The agent's name with a capital letter, or the sign in the words of the story.
+        testimony: How hearers take claims.
+
+    Returns:
+        The place or the text in the words of the story; empty: the belief does not know it.
+
+    Raises:
+        UnreadError: The story does not make it clear.
+    """
+    seen = _Watcher(_titled(path), thing, testimony != "none").watch(text)
+    if seen is None:
+        raise UnreadError(thing)
+    return seen
+
+
+def _titled(path: Sequence[str]) -> tuple[str, ...]:
+    return tuple(name[:1].upper() + name[1:] for name in path)
