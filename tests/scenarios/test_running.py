@@ -147,6 +147,7 @@ probes:
     ("expectation", "ok"),
     [
         ({"path": "/ann", "agent": "bob", "at": [4.5, 1, 7.5], "within": 0.5}, True),
+        ({"path": "/ann", "agent": "bob", "at": [4.5, 1, 7.5], "within": 0}, True),
         ({"path": "/ann", "agent": "bob", "at": [4.5, 1, 5.5], "within": 0.5}, False),
         ({"path": "/", "container": list(BLUE), "items": {"apple": 1}}, True),
         ({"path": "/ann", "container": list(BLUE), "items": {"apple": 1}}, False),

@@ -35,5 +35,5 @@ _Whole = Annotated[int, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
 _Number = Annotated[float, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
 WrittenPosition = tuple[_Whole, _Whole, _Whole]
 WrittenPoint = tuple[_Number, _Number, _Number]
-Within = Annotated[float, msgspec.Meta(gt=0, le=FARTHEST)]
-"""Distance in blocks."""
+Within = Annotated[float, msgspec.Meta(ge=0, le=FARTHEST)]
+"""Distance in blocks; 0: exactly there."""
