@@ -158,7 +158,7 @@ def test_what_a_child_inherits_keeps_neither_node_nor_the_lock_alive(tmp_path: P
             os.write(begin, b".")
             sys.stdin.read()
             os._exit(0)
-        # What a child inherits it gives up when it begins.
+        # A child gives up all that it inherits when it begins.
         os.read(begun, 1)
         print(nest._engine.world.pid, flush=True)
         os.kill(os.getpid(), signal.SIGKILL)

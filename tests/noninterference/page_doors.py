@@ -31,7 +31,7 @@ def pages(world: Played, path: str) -> object:
     page = RunData(reader, About("pair", labels=reader.setting.labels, paths=(asked,)), 0).update()
     line = page["timelines"]["0"]
     track, (_, events) = line["tracks"][path], line.get("events", (0, []))
-    # Whether a claim is false or a lie is for the reader of the page.
+    # Verdicts (false, a lie) are for the reader of the page.
     told = [{**event, "claims": [c[0] for c in event.get("claims", [])]} for event in events]
     heard = [told[number] for number in track.get("heard", (0, []))[1]]
     verdicts = [(told[number], *more) for number, *more in track.get("claims", (0, []))[1]]

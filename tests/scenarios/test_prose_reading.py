@@ -294,7 +294,7 @@ def test_a_name_of_a_place_that_is_no_option_is_not_judged(tmp_path: Path) -> No
     near = HALL.replace("window: [1, 1, 5]", "window: [1, 1, 5], curtain: [2, 1, 5]")
     text = near.replace("[sofa, window,", "[sofa, curtain,")
     assert warned(tmp_path, text.replace("RIGHT", "{path: /bob, agent: ann}")) == []
-    # That nobody was seen is judged, whatever the options are.
+    # An answer "nobody was seen" is judged with any options.
     assert len(warned(tmp_path, text.replace("RIGHT", "{path: /cat, agent: ann}"))) == 1
 
 

@@ -144,6 +144,7 @@ class Fact(ABC):
 
     def written(self) -> dict[str, Any]:
         """Return plain values with the keys of files."""
+        # Subclasses are dataclasses; their base is none.
         values = zip((*self.keys, *self.more), astuple(self), strict=True)  # type: ignore[call-overload]
         usual = {"within": WITHIN, "property": ""}
         return {

@@ -102,7 +102,7 @@ def _read(nest: Nest, story: str, believed: Believed) -> Sequence[tuple[str, ...
             states = [nest[each].state for each in ("/", believed.path)]
             items = {item for each in states for item in _items(each)}
             held = read_contents(story, path, _name(nest, at), sorted(items), told)
-            # Whether somebody knows that a container is empty, stories seldom make clear.
+            # Stories seldom make clear if somebody knows that a container is empty.
             return [content_names(held) if held else (believed.unknown, *content_names(()))]
         case "agent", str(name):
             if perception.negative_evidence:

@@ -119,7 +119,7 @@ class TrackRecorder:
         self.claims: list[tuple[int, Claim, str]] = []
         self._onlooker = onlooker
         self._reader, self._book, self._fills = reader, book, fills
-        # Whether a claim is a lie is judged by the belief of its speaker.
+        # The belief of its speaker tells if a claim is a lie.
         speakers = [normalised((*key.path, agent)) for agent in reader.agents if fills]
         self._forest = reader.walk(key, [*dict.fromkeys([*paths, *speakers])])
         self._numbers = [self._forest.node(path) for path in paths]
