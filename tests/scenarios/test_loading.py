@@ -261,6 +261,21 @@ def test_a_fault_in_a_condition_is_named_where_the_condition_is_written(tmp_path
         Scenario.load_all(file)
 
 
+def test_an_empty_mapping_of_a_condition_replaces_a_mapping(tmp_path: Path) -> None:
+    emptied = """\
+  2:
+    agents: {ann: {inventory: {}}}
+    expectations: {e: {items: {}}}
+    script: {}
+"""
+    file = write(tmp_path, BASE.partition("  2:\n")[0] + emptied)
+    one, two = Scenario.load_all(file)
+    assert one.setting.snapshot.agents["ann"].inventory["apple"] == 3
+    assert "apple" not in two.setting.snapshot.agents["ann"].inventory
+    assert two.expectations[0].fact == ItemsIn((4, 1, 4), ())
+    assert two.setting.script == one.setting.script
+
+
 def test_a_condition_can_only_change_labels_that_are_there(tmp_path: Path) -> None:
     file = write(tmp_path, BASE.replace("script: {ann looks:", "script: {ann loks:"))
     with pytest.raises(ScenarioError, match=r"small.yaml:31: .*'ann looks', 'both'"):

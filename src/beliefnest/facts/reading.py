@@ -194,6 +194,8 @@ def check_entry(entry: FactEntry, path: Where, scene: FactScene) -> FactEntry:
                     scene.inside(where, place)
             case "items", _ if entry.container is None:
                 scene.possessions(where, value)
+            case "item", _:
+                scene.possessions(where, {value: 1})
             case "wanted", _:
                 scene.state(where, value)
     return entry

@@ -11,7 +11,7 @@ from jinja2.filters import FILTERS
 from jinja2.runtime import Context
 from jinja2.visitor import NodeTransformer
 
-__all__ = ["Meter", "check_numbers", "metered"]
+__all__ = ["StepMeter", "check_numbers", "metered"]
 
 _TEXT = "count text"
 _TURNS = "count turns"
@@ -48,7 +48,7 @@ _SPACES = re.compile(r"[\t\n\v\f\r ]+")
 _GIVEN_WIDTHS = re.compile(r"%[^a-zA-Z%]*\*")
 
 
-class Meter(threading.local):
+class StepMeter(threading.local):
     """Count of the steps of a thread's rendering; its methods raise SecurityError above a bound."""
 
     steps = 0

@@ -13,7 +13,7 @@ from jinja2.runtime import Context, Macro
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from beliefnest.errors import BeliefNestError, TemplateError
-from beliefnest.prompts.bounds import Meter, check_numbers, metered
+from beliefnest.prompts.bounds import StepMeter, check_numbers, metered
 from beliefnest.prompts.builtin import BUILT_IN
 from beliefnest.prompts.filterset import FilterSet, installed_filters
 from beliefnest.prompts.simulator_view import BranchView
@@ -193,7 +193,7 @@ class _ReadingEnvironment(ImmutableSandboxedEnvironment):
             loader=jinja2.FunctionLoader(_built_in_source),
         )
         self.filters.update({name: each.function for name, each in filters.filters.items()})
-        self.meter = meter = Meter()
+        self.meter = meter = StepMeter()
         plain = self.overlay()  # keeps the functions that do not count
         self.filters = {name: meter.filter(name, plain) for name in plain.filters}
         self.filters |= meter.counters()

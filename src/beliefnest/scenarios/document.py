@@ -158,7 +158,7 @@ def wrapped(value: object, depth: int = 0) -> YamlNode:
 def merged(document: Document, condition: int) -> Document:
     """Return the document with the overrides of a condition merged in.
 
-    Mappings are merged key by key, anything else replaces. Where the base has a list of
+    Mappings are merged key by key, anything else and `{}` replaces. Where the base has a list of
     labelled entries and the override a mapping, the entries with these labels are merged.
 
     Raises:
@@ -218,7 +218,8 @@ def _merge(base: YamlNode, over: YamlNode) -> YamlNode:
     if isinstance(base.value, dict) and isinstance(over.value, dict):
         value = dict(base.value)
         for key, child in over.value.items():
-            value[key] = _merge(value[key], child) if key in value else child
+            is_emptied = child.value == {} and isinstance(value.get(key, child).value, dict)
+            value[key] = _merge(value[key], child) if key in value and not is_emptied else child
         return YamlNode(value, over.line)
     if isinstance(base.value, list) and isinstance(over.value, dict):
         changes = over.value

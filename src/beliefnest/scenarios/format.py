@@ -474,8 +474,9 @@ class _File(_Entry, frozen=True, kw_only=True):
     conditions: Annotated[
         dict[int, dict[str, Any]],
         note(
-            "Overrides by number: a mapping is merged key by key, any other value replaces. For a "
-            "list of labelled entries, a mapping changes the entries with these labels."
+            "Overrides by number: a mapping is merged key by key, any other value and `{}` "
+            "replaces. For a list of labelled entries, a mapping changes the entries with these "
+            "labels."
         ),
     ] = {}
 
