@@ -216,10 +216,10 @@ def _label(entry: YamlNode) -> object:
 
 def _merge(base: YamlNode, over: YamlNode) -> YamlNode:
     if isinstance(base.value, dict) and isinstance(over.value, dict):
-        value = dict(base.value)
-        for key, child in over.value.items():
-            is_emptied = child.value == {} and isinstance(value.get(key, child).value, dict)
-            value[key] = _merge(value[key], child) if key in value and not is_emptied else child
+        value = base.value | over.value
+        for key in base.value.keys() & over.value.keys():
+            if over.value[key].value != {} or isinstance(base.value[key].value, list):
+                value[key] = _merge(base.value[key], over.value[key])
         return YamlNode(value, over.line)
     if isinstance(base.value, list) and isinstance(over.value, dict):
         changes = over.value
