@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from beliefnest.errors import ModelError
 from beliefnest.llm import Answer, AnswerLimits, Connection, Sampling, open_model, resolve_model
 from beliefnest.llm.messages import Message
+from tests.profiles import at_night
 
 ASK = (Message("user", "Get a diamond."),)
 MOST_TOKENS = 10**9
@@ -247,7 +248,7 @@ def sends_raw(events):
     return behave
 
 
-@pytest.mark.parametrize("step", [211, pytest.param(1, marks=pytest.mark.long)])
+@pytest.mark.parametrize("step", [211, pytest.param(at_night(1, 7), marks=pytest.mark.long)])
 def test_half_an_answer_is_none(neighbour, step):
     for count in range(0, len(WHOLE) + 1, step):
         neighbour.will(sends_raw(WHOLE[:count]))
