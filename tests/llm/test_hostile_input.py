@@ -5,11 +5,11 @@ import json
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.profiles import at_night
 
 from beliefnest.errors import ModelError
 from beliefnest.llm import Answer, AnswerLimits, Connection, Sampling, open_model, resolve_model
 from beliefnest.llm.messages import Message
-from tests.profiles import at_night
 
 ASK = (Message("user", "Get a diamond."),)
 MOST_TOKENS = 10**9
