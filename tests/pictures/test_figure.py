@@ -233,3 +233,12 @@ def test_a_sign_is_drawn_with_what_is_known_to_be_written_on_it():
         assert "“food”" in drawn
         assert "“a long text that does n…”" in drawn
         assert ">sign<" in drawn
+
+
+def test_a_plan_of_a_part_of_the_box_says_which_part() -> None:
+    ground = {(x, 0, z): "stone" for x in range(60) for z in range(8)}
+    world = bn.ScriptedWorld(((0, 0, 0), (59, 4, 7)), ground, {"ann": (30.5, 1, 4.5)})
+    with bn.Nest(world) as nest:
+        said = " ".join(texts(nest.figure(["/"]).drawing()))
+    assert "tick 0, x 26 to 34 of 0 to 59" in said
+    assert "z 0" not in said

@@ -331,7 +331,7 @@ def read_scene(
         sights=tuple(AgentSight(name, seen) for name, seen in ground.sights.items()),
         wrong=len(wrong),
         against=against,
-        note=note,
+        note=", ".join(filter(None, (note, _cut(state, window)))),
         relief=ground.relief,
     )
 
@@ -412,6 +412,17 @@ def _window(state: State, places: Mapping[str, Position]) -> ReliefWindow:
             for at, first in zip(high, (x0, z0), strict=True)
         ]
     return ((max(x0, low[0]), max(z0, low[1])), (min(x1, high[0]), min(z1, high[1])))
+
+
+def _cut(state: State, window: ReliefWindow) -> str:
+    """Return which part of the box is shown, in words; empty if all of it is."""
+    shown = zip("xz", *window, state.box.low[::2], state.box.high[::2], strict=True)
+    parts = (
+        f"{x} {a} to {b} of {low} to {high}"
+        for x, a, b, low, high in shown
+        if (a, b) != (low, high)
+    )
+    return ", ".join(parts)
 
 
 def _cell(state: State, at: Position, wrong: Mapping[Position | str, Wrong]) -> PlanColumn:
