@@ -28,7 +28,7 @@ import beliefnest.testing
 from beliefnest import errors
 from beliefnest.cli.app import app
 from beliefnest.scenarios.json_schema import schema
-from beliefnest.world.values import EventKind
+from beliefnest.world.event_kinds import EventKind
 
 ROOT = Path(__file__).parents[1]
 PAPERS = ("CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "LICENSE", "THIRD_PARTY_NOTICES.md")
@@ -371,7 +371,7 @@ def errors_page() -> str:
         "| error | status | when |",
         "|---|---|---|",
     ]
-    for name in errors.__all__:
+    for name in filter(re.compile(r"\w+Error").fullmatch, sorted(vars(errors))):
         error = getattr(errors, name)
         when = " ".join((inspect.getdoc(error) or "").partition("\n\n")[0].split())
         home = "bn" if hasattr(beliefnest, name) else "bn.errors"

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from beliefnest.errors import BodyError
 from beliefnest.nest.face.nest import Nest
-from beliefnest.nest.past.setting import Senses
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.timeline.run_records import Senses
 from beliefnest.world.values import TICKS_PER_SECOND
 from beliefnest.worlds.minecraft.node_files import node_command
 from beliefnest_benchmarks import restore

@@ -4,27 +4,6 @@ A message says what is wrong, where, and what to do. `exit_status` is the exit s
 command line after the error.
 """
 
-__all__ = [
-    "BeliefNestError",
-    "BodyError",
-    "BodyLostError",
-    "BranchError",
-    "ForkedError",
-    "InputError",
-    "MissingExtraError",
-    "ModelError",
-    "PathError",
-    "PositionError",
-    "ProgramError",
-    "ScenarioError",
-    "StoreError",
-    "TemplateError",
-    "TickError",
-    "TooLargeError",
-    "UnknownNameError",
-    "WorldError",
-]
-
 
 class BeliefNestError(Exception):
     """Base of all errors of the package."""

@@ -15,16 +15,6 @@ from typing import BinaryIO, TypeVar
 
 import msgspec
 
-__all__ = [
-    "decode_json",
-    "new_file",
-    "open_regular",
-    "read_regular",
-    "read_regular_text",
-    "replace_file",
-    "replacing",
-]
-
 _T = TypeVar("_T")
 _LONGEST = 64 * 2**20
 _LONGEST_STEM = 200

@@ -12,8 +12,6 @@ from typing import Any
 
 from beliefnest.errors import InputError
 
-__all__ = ["imported_object", "is_importable", "is_object_name", "part", "text_of_object"]
-
 _SUFFIX = ".py"
 _PARTS = "beliefnest.parts"
 """Group of entry points that `pyproject.toml` declares."""

@@ -20,8 +20,6 @@ from filelock import SoftFileLock, Timeout, lock_descriptor
 from beliefnest.errors import InputError
 from beliefnest.owned import Owned
 
-__all__ = ["Holder", "LockHeldError", "ProcessLock", "holding", "is_lock"]
-
 _FOLDER_LOCK = ".in-use"
 """Name of the lock file of a folder of results, while a process writes there."""
 

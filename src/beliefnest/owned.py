@@ -12,8 +12,6 @@ from weakref import WeakSet
 
 from beliefnest.errors import ForkedError
 
-__all__ = ["Barred", "Owned", "is_own"]
-
 
 def _refusal(what: str, owner: int) -> ForkedError:
     return ForkedError(

@@ -16,10 +16,11 @@ from beliefnest.episodes.task import Task
 from beliefnest.errors import WorldError
 from beliefnest.prompts import PromptFilter
 from beliefnest.prompts.example import example_branch
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import AgentState, Box, EventKind
+from beliefnest.world.values import AgentState, Box
 from beliefnest.worlds.protocol import Body, World
 
 __all__ = ["check_filter", "check_policy", "check_world"]

@@ -43,3 +43,17 @@ def test_the_glossary_names_types_that_are_there():
     named = set(re.findall(r"`([A-Z]\w+)`", words))
     assert len(named) > 20
     assert named - homes_of_types().keys() == set()
+
+
+def test_only_what_users_import_lists_its_names():
+    public = {"env.py", "frames.py", "programs.py", "testing.py"}
+    listing = {
+        str(module.relative_to(SOURCES))
+        for module in SOURCES.rglob("*.py")
+        if "node_modules" not in module.parts
+        and module.name != "__init__.py"
+        and re.search(r"^__all__ = \[", module.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    # The names of `frames` and of Inspect's registry are listed where they are defined.
+    origins = {"adapters/dataframes/tables.py", "adapters/inspect_ai/registry.py"}
+    assert listing <= public | origins

@@ -12,8 +12,6 @@ from beliefnest.viewer.page.posteriors import told_inference
 from beliefnest.viewer.page.run import About
 from beliefnest.viewer.page.static import still_page
 
-__all__ = ["PageView"]
-
 # Notebooks remove frames of untrusted content; only this text then remains.
 _UNTRUSTED = "The page is shown once this notebook is trusted: File, Trust Notebook."
 

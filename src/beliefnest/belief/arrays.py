@@ -16,24 +16,6 @@ from beliefnest.world.array_types import Flags, Floats, Ints, States
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Beam
 
-__all__ = [
-    "NOBODY",
-    "READ",
-    "SOURCE_SEEN",
-    "UNKNOWN",
-    "Bases",
-    "Changes",
-    "EntryFacts",
-    "Grids",
-    "Looks",
-    "Nodes",
-    "Poses",
-    "Space",
-    "Span",
-    "Weighing",
-]
-
-
 UNKNOWN = -1
 """Value of a block state, a pose id or a cell that is unknown or absent."""
 

@@ -18,19 +18,6 @@ from beliefnest.perception.rays import GridCell, RayScene, code_at, is_inside, n
 from beliefnest.world.array_types import Codes, States
 from beliefnest.world.terrain import VOLUME, ChunkCounts
 
-__all__ = [
-    "block_at",
-    "chunk_at",
-    "grid_cell",
-    "grids_of",
-    "line_of",
-    "place_of",
-    "put_block",
-    "scene_of",
-    "share",
-    "whole",
-]
-
 _Number = int | np.signedinteger[Any]
 
 

@@ -14,8 +14,6 @@ from beliefnest.world.array_types import Codes, Ints, States
 from beliefnest.world.terrain import SIDE, VOLUME, Terrain, chunks_of
 from beliefnest.world.values import Position
 
-__all__ = ["NOTHING", "ChunkPool", "CutGrids", "changed_lines", "cut_grids", "lines_of_sight"]
-
 Blocks = npt.NDArray[np.signedinteger[Any]]
 
 

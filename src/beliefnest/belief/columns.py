@@ -13,8 +13,6 @@ from beliefnest.world.event_kinds import Sense
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import Box, Event, Position, Sign
 
-__all__ = ["Columns", "cell_of", "cells_between", "place_of"]
-
 
 def cell_of(box: Box, place: Position) -> int:
     """Return the flat cell of a block position of a box."""

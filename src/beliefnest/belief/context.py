@@ -17,13 +17,12 @@ from beliefnest.perception.sight import Sight
 from beliefnest.world import terrain
 from beliefnest.world.claims import Claim, claims_from_plain
 from beliefnest.world.double_chests import holds_items
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.memory import MemoryLimit, memory_limit
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, is_sign, plain_state
 from beliefnest.world.terrain import Terrain, chunks_of
-from beliefnest.world.values import Block, Box, EventKind, Position, Sign
-
-__all__ = ["BeliefContext", "SavedWriting"]
+from beliefnest.world.values import Block, Box, Position, Sign
 
 _NUMBERS = 2**15 - 1
 """Limit of block numbers, as arrays are int16: block states first, then signs with texts."""

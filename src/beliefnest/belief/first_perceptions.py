@@ -17,8 +17,6 @@ import numpy.typing as npt
 
 from beliefnest.belief.arrays import Changes, EntryFacts, Nodes, Poses, Space, Span, Weighing
 
-__all__ = ["FirstPerceptions"]
-
 _MOST_BYTES = 16 << 20
 """Bytes that the cache holds at most; the oldest results are dropped first."""
 _LARGEST = 1 << 20

@@ -26,8 +26,6 @@ from beliefnest.belief.testimony import EntryTestimony, Verdict
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Event, Items, Point
 
-__all__ = ["EventHistory", "Forest", "ForestState", "NodeState"]
-
 _BATCH = 4096
 _OBJECTS = 40_000
 """Bytes of a forest besides the arrays of its nodes, measured with few nodes."""

@@ -5,18 +5,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import Block, EventKind, Items, Point, Position
-
-__all__ = [
-    "SOURCES",
-    "AgentBelief",
-    "Basis",
-    "ContainerBelief",
-    "InitialBelief",
-    "PerceivedEvent",
-    "Source",
-]
+from beliefnest.world.values import Block, Items, Point, Position
 
 
 class Source(StrEnum):

@@ -11,18 +11,6 @@ from typing import Literal, NamedTuple
 from beliefnest.belief.grounds import Basis, Source
 from beliefnest.world.values import DroppedItem, Event, Items
 
-__all__ = [
-    "Content",
-    "Holdings",
-    "SignTold",
-    "Sole",
-    "Whereabouts",
-    "changed_items",
-    "follow_acts",
-    "replaced_block",
-    "witness",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Content:

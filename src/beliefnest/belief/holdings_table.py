@@ -30,8 +30,6 @@ from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import DroppedItem, Event, Items, Position
 
-__all__ = ["HoldingsTable", "RootFacts", "SavedHoldings"]
-
 _ITEM_HEIGHT = 0.125
 
 Vitals = tuple[float | None, float | None]

@@ -24,8 +24,6 @@ from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Position, Sign
 
-__all__ = ["Beginning", "forked_forest", "initial_forest"]
-
 
 class Beginning:
     """Real world at its first tick, and the blocks that everybody knows from the start.

@@ -56,15 +56,13 @@ from beliefnest.belief.cells import (
     whole,
 )
 from beliefnest.belief.seeing import eye_of, sees_agent, sees_cell
+from beliefnest.perception.beams import Eye
 from beliefnest.perception.chunks import chunk_in, place_at
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
-from beliefnest.perception.eyes import Eye
 from beliefnest.perception.options import HEAR_ALL, HEAR_SEEN, SenseLimits
 from beliefnest.perception.rays import GridCell, RayScene, lower, upper
 from beliefnest.world.event_kinds import Sense
 from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
-
-__all__ = ["fold", "put", "put_all"]
 
 _WORD = 64
 _ABSENT, _STILL, _MOVED = 0, 1, 2

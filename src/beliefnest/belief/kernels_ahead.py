@@ -4,8 +4,6 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 
-__all__ = ["kernels_ahead"]
-
 
 @contextmanager
 def kernels_ahead() -> Iterator[None]:

@@ -13,16 +13,6 @@ from beliefnest.world.memory import MEGABYTE
 from beliefnest.world.paths import BeliefPath, path_text, paths_below
 from beliefnest.world.terrain import chunks_of
 
-__all__ = [
-    "NodeColumn",
-    "check_depth",
-    "check_room",
-    "columns_of",
-    "most_nodes",
-    "node_bytes",
-    "paths_with_room",
-]
-
 _OBJECTS = 1_000
 """Bytes of the Python objects of a node that knows nothing: path, number and holdings."""
 

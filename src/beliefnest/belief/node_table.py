@@ -18,8 +18,6 @@ from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import SIDE, VOLUME, Terrain
 from beliefnest.world.values import Point
 
-__all__ = ["NodeTable", "SavedNode"]
-
 NodeRow = npt.NDArray[Any]
 
 _POSE_IDS = ("pose", "equipment", "eye", "tried", "met")

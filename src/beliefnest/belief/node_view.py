@@ -15,12 +15,11 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.perception.sight import ChunkGeometry, Geometry, SightLines
 from beliefnest.world.double_chests import ByEitherHalf, believed_container_at, states_in
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, EventKind, Position
-
-__all__ = ["NodeView", "Part"]
+from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, Position
 
 T = TypeVar("T")
 

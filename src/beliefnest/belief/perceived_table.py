@@ -3,8 +3,6 @@
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["PerceivedEventTable"]
-
 
 class PerceivedEventTable:
     """Bit table of perceived events: one row for each event, one bit for each node of a forest."""

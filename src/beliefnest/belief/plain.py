@@ -6,8 +6,6 @@ from beliefnest.belief.grounds import Basis
 from beliefnest.belief.view import State
 from beliefnest.world.values import Position
 
-__all__ = ["belief_json", "place_key", "state_json"]
-
 
 def state_json(state: State) -> dict[str, object]:
     """Return a state as the STATE object of the public surface."""

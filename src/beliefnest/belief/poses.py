@@ -11,8 +11,6 @@ from beliefnest.belief.arrays import NOBODY, Poses
 from beliefnest.world.array_types import Ints
 from beliefnest.world.values import AgentState, Items, Point
 
-__all__ = ["Growing", "PoseDetails", "PoseTable", "SavedPoses"]
-
 
 class Growing:
     """Array that grows by rows. New rows wait in a list until the array is read."""

@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from beliefnest.belief.grounds import InitialBelief
 from beliefnest.world.paths import AND_BELOW, BeliefPath
 
-__all__ = ["merged_belief"]
-
 
 def merged_belief(initial: Sequence[InitialBelief], node: BeliefPath) -> InitialBelief:
     """Return the initial beliefs of a node, merged from all that apply to it.

@@ -5,21 +5,13 @@ import numpy.typing as npt
 
 from beliefnest.belief.arrays import UNKNOWN, Nodes, Poses, Space
 from beliefnest.belief.cells import grid_cell, line_of, scene_of, whole
+from beliefnest.perception.beams import Eye, eye_at
 from beliefnest.perception.chunks import Rows
 from beliefnest.perception.compiling import allocating, compiled, inlined, inner
-from beliefnest.perception.eyes import Eye, eye_at, eye_sees_agent, eye_sees_block, eye_sees_point
+from beliefnest.perception.eyes import eye_sees_agent, eye_sees_block, eye_sees_point
 from beliefnest.perception.rays import GridCell, RayScene
 from beliefnest.world.array_types import Codes
 from beliefnest.world.values import EYE_HEIGHT
-
-__all__ = [
-    "eye_of",
-    "sees_agent",
-    "sees_cell",
-    "sees_cells",
-    "sees_place",
-    "sees_point",
-]
 
 
 @inlined

@@ -23,10 +23,9 @@ from beliefnest.belief.holdings_table import HoldingsTable
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.array_types import Flags
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.signs import plain_state, text_of
-from beliefnest.world.values import Event, EventKind, Items, Sign
-
-__all__ = ["EntryTestimony", "Verdict", "believe_absent", "believe_located", "stated"]
+from beliefnest.world.values import Event, Items, Sign
 
 Numbers = npt.NDArray[np.int64]
 

@@ -10,8 +10,6 @@ from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, DroppedItem, Position
 
-__all__ = ["BlockView", "FixedState", "State"]
-
 
 class BlockView(Protocol):
     """Believed blocks of a box, as a mapping from position to block state text or None."""

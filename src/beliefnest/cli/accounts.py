@@ -8,8 +8,6 @@ from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.world.event_words import happens, is_lid
 from beliefnest.world.values import Position
 
-__all__ = ["accounts"]
-
 _MOST = 40
 """Greatest number of events listed for a probe; earlier ones are left out."""
 

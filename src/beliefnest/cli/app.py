@@ -31,8 +31,6 @@ from beliefnest.version import VERSION
 from beliefnest.world.shell_limits import low_limits
 from beliefnest.world.texts import is_well_formed
 
-__all__ = ["app", "run_command_line"]
-
 _INTERRUPTED = 130
 _LONGEST_MESSAGE = 388
 """Greatest number of characters of a message, so that its line has at most 400."""

@@ -26,8 +26,6 @@ from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
 from beliefnest.version import VERSION
 
-__all__ = ["page_of", "run_baselines"]
-
 _POLICIES, _ORDERS = ("random", "search", "omniscient:search"), (0, 1, 2)
 """Policies and orders of the players; all other agents follow the task's script."""
 _HIDDEN_POLICIES, _HIDDEN_ORDERS = ("random", "search", "infer", "omniscient:search"), (0, 1)

@@ -15,8 +15,6 @@ from beliefnest.timeline.journal import TimelineInfo, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import path_text
 
-__all__ = ["show_branches"]
-
 
 def show_branches(run: Path, *, as_json: bool) -> None:
     """Print every branch of a run below the branch it was forked from.

@@ -11,8 +11,6 @@ from beliefnest.studies.bundling import bundled, facts_of, opened
 from beliefnest.studies.methods import MethodsForm, methods_text
 from beliefnest.world.words import counted
 
-__all__ = ["print_methods", "write_bundle"]
-
 
 def print_methods(folder: Path, form: MethodsForm) -> None:
     """Print the paragraph for a methods section; raise InputError if there are no results."""

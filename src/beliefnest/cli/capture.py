@@ -15,8 +15,6 @@ from beliefnest.world.values import Box
 from beliefnest.worlds.servers.address import ServerAddress, is_server
 from beliefnest.worlds.servers.capturing import Captured, Unknown, capture_file, capture_server
 
-__all__ = ["write_capture"]
-
 _LARGEST_FILE = 64 * 2**20
 _SUFFIX = ".yaml"
 _NO_NAME = re.compile(r"[^A-Za-z0-9_-]+")

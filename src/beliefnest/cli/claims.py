@@ -18,8 +18,6 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.claims import Claim, ClaimKind
 from beliefnest.world.paths import parse_path, path_text
 
-__all__ = ["claims_json", "claims_table", "paths_of_beliefs", "print_claims"]
-
 
 def claims_json(claims: Sequence[MadeClaim], paths: Collection[str]) -> list[dict[str, object]]:
     """Return claims as plain data.

@@ -17,8 +17,6 @@ from beliefnest.cli.terminal_text import printable
 if TYPE_CHECKING:  # Importing nests takes long, and many commands need none.
     from beliefnest.nest.acting.script import OnProgress
 
-__all__ = ["folded", "print_table", "progress_on", "stdout"]
-
 _PLAIN_WIDTH = 140
 _PIPE_WIDTH = 280
 _NARROWEST = 20

@@ -14,8 +14,6 @@ from beliefnest.cli.terminal_text import say
 from beliefnest.errors import BeliefNestError, BodyError, InputError, ModelError
 from beliefnest.worlds.servers.address import ServerAddress, is_server
 
-__all__ = ["Finding", "examine"]
-
 _FAILED = 3
 _SECONDS = 30
 _HIGH = 200

@@ -18,8 +18,6 @@ from beliefnest.viewer.page.run import About, RunData
 from beliefnest.world.registry import Registry
 from beliefnest.world.texts import is_well_formed
 
-__all__ = ["FileEditor"]
-
 _SUFFIXES = (".yaml", ".yml")
 _LARGEST = 200_000
 """Greatest number of blocks of a scene that is edited."""

@@ -21,8 +21,6 @@ from beliefnest.timeline.trace import load_trace
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.registry import Registry
 
-__all__ = ["export_run", "import_run"]
-
 
 def export_run(options: ExportOptions) -> None:
     """Write a run as tables, and print the number of rows of each.

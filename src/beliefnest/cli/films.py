@@ -23,8 +23,6 @@ from beliefnest.suites.films.film import ABOUT, Film, FilmParameters, JudgedPart
 from beliefnest.suites.films.film_files import read_films
 from beliefnest.suites.films.film_inference import LESIONS, Judgment, Lesion, judge
 
-__all__ = ["run_films"]
-
 _MODELS: tuple[Lesion | None, ...] = (None, *LESIONS)
 _WORDS: Mapping[Lesion | None, str] = {
     None: "inverse planning",

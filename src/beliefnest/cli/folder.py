@@ -28,16 +28,6 @@ from beliefnest.scenarios.yaml_reading import templates_file
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.timeline.lock import writer_lock
 
-__all__ = [
-    "PICTURE",
-    "STORE",
-    "ConditionFolder",
-    "RunFolder",
-    "kept_scenario_file",
-    "store_in",
-    "stores_in",
-]
-
 STORE = "run.bn"
 PICTURE = "picture.png"
 PAGE = "report.html"

@@ -17,8 +17,6 @@ from beliefnest.suites import SUITES
 from beliefnest.worlds.names import WORLDS
 from beliefnest.worlds.servers.address import SCHEME
 
-__all__ = ["print_installed", "print_template"]
-
 
 def print_installed(*, as_json: bool) -> None:
     """Print all names that commands accept, by kind."""

@@ -9,8 +9,6 @@ from tempfile import TemporaryDirectory
 from beliefnest.errors import BodyError, InputError
 from beliefnest.world.shell_limits import low_limits
 
-__all__ = ["MACHINE_CHECKS"]
-
 _KEY = "_API_KEY"
 
 

@@ -12,8 +12,6 @@ from beliefnest.cli.report import cost_text, count_outcomes
 from beliefnest.scenarios.judging import unanswered_words
 from beliefnest.scenarios.scoring import wilson_interval
 
-__all__ = ["ConditionScore", "score_runs", "score_table", "scores_json"]
-
 
 @dataclass(frozen=True, slots=True)
 class ConditionScore:

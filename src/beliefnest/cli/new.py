@@ -9,8 +9,6 @@ from beliefnest.errors import InputError
 from beliefnest.files import new_file
 from beliefnest.scenarios.sources import builtin_names
 
-__all__ = ["write_starter"]
-
 _NAME = re.compile(r"[A-Za-z0-9_-]{1,64}", re.ASCII)
 
 

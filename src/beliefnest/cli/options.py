@@ -17,25 +17,6 @@ from beliefnest.skills.manifests import SkillDetail
 if TYPE_CHECKING:  # Models take long to import.
     from beliefnest.llm.model_settings import ModelSettings
 
-__all__ = [
-    "CaptureOptions",
-    "ExportOptions",
-    "Json",
-    "MethodsFormat",
-    "ModelOptions",
-    "ParticipantsOptions",
-    "PlayOptions",
-    "PowerOptions",
-    "RunOptions",
-    "ServeOptions",
-    "ShowOptions",
-    "StatsOptions",
-    "StudyOptions",
-    "SuiteOptions",
-    "joining_address",
-    "with_options",
-]
-
 Options = TypeVar("Options")
 Status = TypeVar("Status")
 

@@ -18,8 +18,6 @@ from beliefnest.viewer.page.run import About
 from beliefnest.viewer.page.static import write_still_page
 from beliefnest.world.paths import parse_path, path_text
 
-__all__ = ["about_run", "write_page"]
-
 _STEPS = 5
 """Actions after which posteriors predict places."""
 

@@ -12,8 +12,6 @@ from beliefnest.errors import InputError
 from beliefnest.studies.study import Study
 from beliefnest.world.words import counted, listed
 
-__all__ = ["run_participants"]
-
 _OF_PAGE = ("instructions", "ending", "post")
 
 

@@ -24,8 +24,6 @@ from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.words import listed, with_the
 
-__all__ = ["read_condition", "read_trails"]
-
 
 def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> ConditionPicture:
     """Return the picture of a condition at the end of its script.

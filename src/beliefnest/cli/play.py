@@ -16,9 +16,10 @@ from beliefnest.cli.console import print_table, progress_on, stdout
 from beliefnest.cli.options import PlayOptions, joining_address
 from beliefnest.cli.terminal_text import printable
 from beliefnest.episodes.considered import considered_lines
-from beliefnest.episodes.episode import Budget, Episode
+from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.helping import Help
 from beliefnest.episodes.policies import with_query
+from beliefnest.episodes.record import Budget
 from beliefnest.episodes.task import Task
 from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, ModelError, NotBegunError
@@ -28,8 +29,6 @@ from beliefnest.locking import holding
 from beliefnest.scenarios.judging import unanswered_words
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import check_world
-
-__all__ = ["play_task"]
 
 _RUN = "run.bn"
 

@@ -20,8 +20,6 @@ from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.servers.address import is_server
 from beliefnest.worlds.servers.listening import is_hosted
 
-__all__ = ["replay_runs"]
-
 
 def replay_runs(run: Path, *, as_json: bool) -> int:
     """Run all programs of a run or a study again, in a fresh world with the same seeds.

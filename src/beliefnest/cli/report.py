@@ -28,17 +28,6 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.values import Placements, Point, Position
 from beliefnest.world.words import point_text
 
-__all__ = [
-    "OutcomeRow",
-    "cost_text",
-    "count_outcomes",
-    "outcome_json",
-    "outcome_table",
-    "placed_lines",
-    "report_json",
-    "usage_json",
-]
-
 _WIDEST = 6
 
 

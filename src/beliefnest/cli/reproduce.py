@@ -19,8 +19,6 @@ from beliefnest.files import replace_file
 from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
 
-__all__ = ["run_reproduction"]
-
 
 @dataclass(frozen=True, slots=True)
 class _Claim:

@@ -43,7 +43,8 @@ from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.pictures.overview import ConditionPicture, overview
-from beliefnest.scenarios.running import Asking, run_scenario
+from beliefnest.scenarios.probing import Asking
+from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.nameable import ClaimsFrom
@@ -51,8 +52,6 @@ from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.names import check_world
-
-__all__ = ["run_scenarios"]
 
 _MOST_TIMES = 10_000
 """Greatest number of repeats, and of attempts for one probe."""

@@ -7,8 +7,6 @@ from pathlib import Path
 
 from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["RunCell", "plan_run_cells"]
-
 
 @dataclass(frozen=True, slots=True)
 class RunCell:

@@ -12,8 +12,6 @@ from markupsafe import Markup
 
 from beliefnest.world.texts import visible
 
-__all__ = ["command_of", "report_html"]
-
 
 def report_html(
     report: Mapping[str, Any],

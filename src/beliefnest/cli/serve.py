@@ -28,8 +28,6 @@ from beliefnest.viewer.serving.host import Host, OpenRun
 if TYPE_CHECKING:  # Starlette is an optional dependency: `serve` imports it when it runs.
     from starlette.applications import Starlette
 
-__all__ = ["listening", "serve"]
-
 _PORT = 8642
 
 

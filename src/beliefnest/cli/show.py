@@ -45,8 +45,6 @@ from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.words import items_words
 
-__all__ = ["print_prompt", "show_run"]
-
 _FRAMES = 120
 """Greatest number of pictures in an animation."""
 

@@ -23,8 +23,6 @@ from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study import Study
 from beliefnest.world.words import counted
 
-__all__ = ["run_power", "run_stats"]
-
 _Rows = Sequence[Mapping[str, Any]]
 
 

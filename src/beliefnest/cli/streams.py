@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING, Any, TextIO
 if TYPE_CHECKING:  # There is no such module when the program runs.
     from _typeshed import ReadableBuffer
 
-__all__ = ["noted_warnings", "open_streams", "print_warnings_as_lines"]
-
 _STANDARD = (0, 1, 2)
 _ERRORS = 2
 

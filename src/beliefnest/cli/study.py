@@ -27,8 +27,6 @@ from beliefnest.studies.result import StudyResult
 from beliefnest.studies.study import Study, checked_shard
 from beliefnest.world.words import counted
 
-__all__ = ["run_study", "write_files"]
-
 _MOST_TOLD = 10
 _MANY = 100
 """Number of variations whose check takes no time that needs a report."""

@@ -32,8 +32,6 @@ from beliefnest.worlds.names import check_world
 if TYPE_CHECKING:  # Importing models takes long, and few suites use one.
     from beliefnest.llm.claim_reader import ClaimsFromModel
 
-__all__ = ["run_suite"]
-
 _ROWS = re.compile(r"(?P<first>[0-9]{1,7})(?:\s*-\s*(?P<last>[0-9]{1,7}))?")
 
 _REPORTS = 20

@@ -37,8 +37,6 @@ from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import WORLDS
 
-__all__ = ["reproduce_supplement"]
-
 _MOST_TOLD = 20
 _OF_MACHINE = ("seconds", "run_dir", "model", "table")
 """Keys of results that differ between machines, name the model that replays answers, or repeat

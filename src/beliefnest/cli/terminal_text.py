@@ -4,8 +4,6 @@ import sys
 
 from beliefnest.world.texts import escaped
 
-__all__ = ["printable", "say"]
-
 
 def printable(text: str) -> str:
     """Return a foreign text with its control characters escaped; line breaks stay."""

@@ -11,8 +11,6 @@ from beliefnest.worlds.minecraft.launching import MINECRAFT
 from beliefnest.worlds.servers.address import is_server
 from beliefnest.worlds.servers.listening import is_hosted
 
-__all__ = ["check_visits", "visited"]
-
 _DAY_S = 24 * 60 * 60.0
 
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:  # Importing models and tasks takes long.
     from beliefnest.minds.inference import Inference
     from beliefnest.minds.mind_model import MindModel
 
-__all__ = ["GO_ON", "AgentView", "Brief", "Policy", "RoundFacts"]
-
 GO_ON = "go on"
 """Text that a policy returns instead of a program to continue its last one, which was cut."""
 

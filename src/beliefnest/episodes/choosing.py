@@ -13,8 +13,6 @@ from beliefnest.world.texts import quoted
 if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.resolve import Connection
 
-__all__ = ["check_resumable", "chosen", "name_of"]
-
 _OBJECT = "object:"
 
 

@@ -5,8 +5,6 @@ from typing import Any, Literal
 
 import msgspec
 
-__all__ = ["CourseOutcome", "SearchTrace", "TriedCourse", "considered_lines", "told_trace"]
-
 _COURSES_SHOWN = 5
 
 CourseOutcome = Literal["reached", "open", "violated", "expected"]

@@ -10,8 +10,6 @@ from beliefnest.errors import ModelError
 if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
-__all__ = ["CountedModel"]
-
 
 @dataclass(frozen=True)
 class CountedModel:

@@ -9,19 +9,6 @@ import msgspec
 from beliefnest.episodes.considered import SearchTrace
 from beliefnest.worlds.protocol import ProgramPast
 
-__all__ = [
-    "Decision",
-    "Ended",
-    "Failure",
-    "HowEnded",
-    "RoundPart",
-    "Spent",
-    "failures_in",
-    "latest_end",
-    "programs_of",
-    "spent_in",
-]
-
 HowEnded = Literal["none", "ok", "cut", "no_way", "failed", "lost"]
 _FAILED = ("no_way", "failed", "lost")
 

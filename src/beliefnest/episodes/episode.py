@@ -48,8 +48,6 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import path_text
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = ["Budget", "Episode", "RoundStart"]
-
 _ON_FOOT = 4
 """Ticks per block for Minecraft's players, who run 5.6 blocks a second; rounded up."""
 

@@ -22,9 +22,7 @@ from beliefnest.episodes.shares import Share, shares_of
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.goals import Progress
-from beliefnest.world.values import EventKind
-
-__all__ = ["Help", "HelpingAct", "help_in"]
+from beliefnest.world.event_kinds import EventKind
 
 _GAVE = EventKind.GIVE_ITEM_TO_OTHER
 

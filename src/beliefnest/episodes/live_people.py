@@ -15,8 +15,6 @@ from beliefnest.worlds.names import world_name
 from beliefnest.worlds.protocol import ProgramPast, ProgramResult
 from beliefnest.worlds.servers.listening import is_hosted
 
-__all__ = ["RealRound", "check_repeats", "people_in", "played_by_people", "world_of_people"]
-
 _LONGEST = 20
 """Number of round lengths after which the episode no longer waits for an idle person."""
 

@@ -7,9 +7,7 @@ from typing import Any, Protocol
 from beliefnest.episodes.decided import Failure, RoundPart, Spent
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
-from beliefnest.world.values import EventKind
-
-__all__ = ["Measures", "false_beliefs", "measured"]
+from beliefnest.world.event_kinds import EventKind
 
 
 @dataclass(frozen=True, slots=True)

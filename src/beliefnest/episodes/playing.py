@@ -9,8 +9,6 @@ from beliefnest.episodes.record import cut_in, ended_as, reasons_in
 from beliefnest.nest.face.nest import Nest
 from beliefnest.worlds.protocol import ProgramPast, ProgramResult
 
-__all__ = ["look_around", "play_part", "play_part_with_people"]
-
 
 def play_part(nest: Nest, parts: Sequence[RoundPart], ticks: int, end: int) -> RoundPart:
     """Run the decided programs of the last part in virtual time.

@@ -10,22 +10,6 @@ from beliefnest.errors import BranchError, InputError, NotBegunError, StoreError
 from beliefnest.world.texts import quoted
 from beliefnest.worlds.protocol import NO_WAY, Fault, ProgramPast, ProgramResult
 
-__all__ = [
-    "Branch",
-    "Budget",
-    "EpisodeStart",
-    "Keeps",
-    "branch_of",
-    "cut_in",
-    "ended_as",
-    "holds_episode",
-    "keep_begins",
-    "keep_branch",
-    "keep_start",
-    "kept_in",
-    "reasons_in",
-]
-
 _BEGINS, _START, _BRANCHES = "episode begins", "episode", "episode branches"
 
 

@@ -5,8 +5,6 @@ from typing import Generic, Protocol, Self, TypeVar
 
 from beliefnest.episodes.agent_view import Policy
 
-__all__ = ["RoundStart"]
-
 
 class Branchable(Protocol):
     """Protocol of an episode that can be branched."""

@@ -15,8 +15,6 @@ from beliefnest.llm.asking import NoUsableProgramError
 from beliefnest.llm.failures import UnavailableModelError, UnusableAnswerError
 from beliefnest.world.texts import is_well_formed
 
-__all__ = ["Asker", "ReplayedPolicy", "replayed", "slots_of"]
-
 _LONGEST = 100_000
 """Greatest length of a program in characters."""
 _OF_ANSWERS = (NoUsableProgramError, UnusableAnswerError)

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.scenarios.goals import Goal, Progress
 
-__all__ = ["Share", "shares_of"]
-
 _NEVER = float("inf")
 
 

@@ -11,8 +11,6 @@ from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.policies.rules import linear_key
 from beliefnest.episodes.task import Task
 
-__all__ = ["CHANCE", "rules_of", "success_of", "trained_rule"]
-
 CHANCE = "any"
 """Key of the rule that draws among the places."""
 _KEYS = ("nearest", "farthest", "first", "last", "last-seen", "copy", CHANCE)

@@ -23,8 +23,6 @@ from beliefnest.version import VERSION
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Position
 
-__all__ = ["Task"]
-
 _NO_RULES = ("name", "description", "scenario", "pace")
 """Keys of a task that are not keys of `episode` in a scenario."""
 

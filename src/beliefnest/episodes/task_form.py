@@ -6,8 +6,6 @@ import msgspec
 
 from beliefnest.scenarios.rules import EpisodeEntry, GoalEntry
 
-__all__ = ["TaskForm"]
-
 
 class TaskForm(EpisodeEntry, frozen=True, kw_only=True):
     """A task: a scenario, the goals of its agents, and the rules of play."""

@@ -14,8 +14,6 @@ from beliefnest.errors import BeliefNestError, StoreError
 from beliefnest.scenarios.goals import Goal
 from beliefnest.scenarios.rules import goal_of
 
-__all__ = ["goal_rows", "round_rows", "told_episode"]
-
 
 def told_episode(run: Keeps) -> dict[str, Any] | None:
     """Return the episode in a run as plain values; None: there is none.

@@ -10,8 +10,6 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.goals import Progress
 from beliefnest.world.paths import BeliefPath, path_text
 
-__all__ = ["Watch"]
-
 
 class Watch:
     """Tracker of a task's goals on one branch.

@@ -10,8 +10,6 @@ from beliefnest.facts.states import PlanFacts
 from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.values import Point, Position, feet_in
 
-__all__ = ["FAR", "PER_BLOCK", "to_agent", "to_block", "to_container", "walk"]
-
 PER_BLOCK = 0.01
 """Effort of a block of the way."""
 FAR = 80.0

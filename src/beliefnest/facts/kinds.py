@@ -20,34 +20,13 @@ from beliefnest.facts.effort import FAR, PER_BLOCK, to_agent, to_block, to_conta
 from beliefnest.facts.states import Facts, Look, PlanFacts, StateFacts
 from beliefnest.world import forms
 from beliefnest.world.claims import Claim
-from beliefnest.world.event_kinds import AT_CONTAINERS
+from beliefnest.world.event_kinds import AT_CONTAINERS, EventKind
 from beliefnest.world.forms import note
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry, block_name, parse_state
 from beliefnest.world.signs import sign_words
-from beliefnest.world.values import EYE_HEIGHT, EventKind, Items, Point, Position, block_at
+from beliefnest.world.values import EYE_HEIGHT, Items, Point, Position, block_at
 from beliefnest.world.words import items_words, point_text, point_words
-
-__all__ = [
-    "KINDS",
-    "WITHIN",
-    "AgentAt",
-    "BlockIs",
-    "BlocksAlike",
-    "Fact",
-    "FactEntry",
-    "GoalCondition",
-    "Heard",
-    "ItemsIn",
-    "ItemsWith",
-    "Lacks",
-    "LeversHeld",
-    "Named",
-    "Pursuit",
-    "SignSays",
-    "agrees",
-    "middle_of",
-]
 
 WITHIN = 1.0
 """Distance in blocks within which an agent counts as being at a place, if no other is given."""

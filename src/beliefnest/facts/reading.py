@@ -13,17 +13,6 @@ from beliefnest.world.paths import BeliefPath, parse_path
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Items, Position, block_at
 
-__all__ = [
-    "FactScene",
-    "PlainScene",
-    "check_entry",
-    "conditions_of",
-    "edits_of",
-    "fact_entry",
-    "fact_in",
-    "plain_entry",
-]
-
 _SCENE_KINDS = scene_kinds(FactEntry)
 
 Where = tuple[str | int, ...]

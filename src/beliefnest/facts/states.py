@@ -8,8 +8,6 @@ from beliefnest.belief.view import State
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = ["Facts", "Look", "PlanFacts", "StateFacts", "ViewFacts", "looking_at"]
-
 
 class Facts(Protocol):
     """Protocol of a state that facts are about."""

@@ -19,25 +19,6 @@ import numpy.typing as npt
 from beliefnest.world.doors import is_doorway, is_open, moves_by_hand, passage
 from beliefnest.world.registry import Registry
 
-__all__ = [
-    "ALONG_X",
-    "ALONG_Z",
-    "FLOOR",
-    "FULL",
-    "HARMFUL",
-    "LADDER",
-    "LIQUID",
-    "OPENS",
-    "ROOM",
-    "SIDES",
-    "TOP_SHIFT",
-    "UNKNOWN",
-    "UPPER",
-    "BodyCodes",
-    "Doorways",
-    "body_codes",
-]
-
 BodyCodes = npt.NDArray[np.uint32]
 
 

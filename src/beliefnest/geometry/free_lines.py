@@ -16,9 +16,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position, feet_in
 
-__all__ = ["can_touch", "can_use", "eye_in"]
-
-
 _TOUCH = 1e-9
 """Length of a line inside a box that still counts as touching, not as entering."""
 _CUBE = ((0.0, 0.0, 0.0, 1.0, 1.0, 1.0),)

@@ -26,26 +26,6 @@ from beliefnest.geometry.bodies import (
 from beliefnest.perception.compiling import compiled, inlined, inner
 from beliefnest.world.array_types import Cells, Flags, Ints
 
-__all__ = [
-    "DEEPEST_DIVE",
-    "DEEPEST_DROP",
-    "FARTHEST_JUMP",
-    "MOST_JUMPS",
-    "NOWHERE",
-    "climb",
-    "code_at",
-    "descent",
-    "feet_above",
-    "feet_height",
-    "jumps",
-    "landing",
-    "stands",
-    "stands_at",
-    "step_cost",
-    "write_neighbours",
-    "write_standing",
-]
-
 Sizes = tuple[int, int, int]
 Grid = npt.NDArray[np.uint32]
 Sides = npt.NDArray[np.int64]

@@ -8,15 +8,6 @@ from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 from beliefnest.llm.reading_programs import ProgramReading, read_program
 
-__all__ = [
-    "Check",
-    "NoUsableProgramError",
-    "ProgramAnswer",
-    "Prompt",
-    "Round",
-    "ask_for_program",
-]
-
 Check = Callable[[str], str | None]
 """Function that returns the fault of a program in words for the model, or None."""
 

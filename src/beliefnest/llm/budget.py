@@ -7,9 +7,6 @@ from beliefnest.errors import InputError
 from beliefnest.llm.failures import LimitReachedError, UnusableAnswerError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
-__all__ = ["MeteredModel", "RunLimits", "RunSpending", "tokens_of_free"]
-
-
 _TOKENS = 1_000_000
 
 

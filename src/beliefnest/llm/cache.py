@@ -19,8 +19,6 @@ from beliefnest.llm.stored_exchange import (
     request_key,
 )
 
-__all__ = ["CacheMode", "CachedModel"]
-
 CacheMode = Literal["read", "only", "write", "off"]
 """Mode of the cache. `read`: use cached answers, ask for the others and store them. `only`:
 use cached answers, and ask for no others. `write`: always ask, and store the answers. `off`:

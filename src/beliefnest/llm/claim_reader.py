@@ -17,8 +17,6 @@ if TYPE_CHECKING:  # Claims check blocks and items with NumPy; most who import m
     from beliefnest.world.nameable import Nameable
     from beliefnest.world.values import Position
 
-__all__ = ["ClaimsFromModel", "claims_from_model"]
-
 _FENCED = re.compile(r"\s*```(?:json)?[ \t]*\n(.*)\n[ \t]*```\s*", re.DOTALL)
 _MOST = 8
 """Greatest number of claims in one utterance. An answer with more is not a sensible reading."""

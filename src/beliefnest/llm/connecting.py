@@ -17,9 +17,6 @@ from beliefnest.llm.routes import SECONDS_TO_CONNECT, is_loopback
 if TYPE_CHECKING:  # An extra, imported when a provider is asked.
     import httpx2
 
-__all__ = ["ByteCount", "TooManyBytesError", "bounded_client"]
-
-
 _END = re.compile(rb"(?:^|[\r\n])data: ?\[DONE\]")
 """Mark with which a stream of OpenAI's protocol ends; within its JSON no line ends."""
 _LONGEST_END = 16

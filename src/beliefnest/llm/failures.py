@@ -4,15 +4,6 @@ from beliefnest.errors import ModelError
 from beliefnest.llm.messages import Usage
 from beliefnest.world.texts import on_one_line
 
-__all__ = [
-    "NOT_ASKED",
-    "LimitReachedError",
-    "TransientModelError",
-    "UnavailableModelError",
-    "UnusableAnswerError",
-    "excerpt",
-]
-
 _LONGEST_EXCERPT = 300
 
 

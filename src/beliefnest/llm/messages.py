@@ -6,18 +6,6 @@ from typing import Literal, Protocol
 
 from beliefnest.world.texts import visible
 
-__all__ = [
-    "Answer",
-    "AnswerForm",
-    "ChoiceSampling",
-    "Finish",
-    "Message",
-    "Model",
-    "Role",
-    "Sampling",
-    "Usage",
-]
-
 Role = Literal["system", "user", "assistant"]
 
 AnswerForm = Literal["text", "schema", "tool"]

@@ -13,8 +13,6 @@ from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.llm.remote import AnswerLimits
 from beliefnest.skills.manifests import SkillDetail
 
-__all__ = ["AskedForm", "ModelSettings", "WithSystem", "query_of"]
-
 AskedForm = Literal["text", "structured"]
 _NUMBERS = ("answer_seconds", "first_token_seconds", "max_output_tokens", "retry_unread")
 

@@ -5,8 +5,6 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-__all__ = ["NamedOptions", "Names", "Token", "plain_words", "sentences", "tokens_of"]
-
 _LONGEST = 1000
 """Greatest number of words of a sentence. Longer ones tell nothing clearly."""
 _QUOTES = str.maketrans(

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from beliefnest.llm.messages import Answer, Message, Sampling
 
-__all__ = ["OPTION_MODELS", "OptionModel"]
-
 _OPTION = re.compile(r"^([A-Z])\) ", re.MULTILINE)
 _NOT_KNOWN = "I do not know"
 

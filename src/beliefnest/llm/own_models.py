@@ -11,8 +11,6 @@ from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 from beliefnest.world.texts import quoted
 
-__all__ = ["MODEL_GROUP", "OwnModel", "installed_models", "names_own_model", "own_model"]
-
 MODEL_GROUP = "beliefnest.models"
 """Group of entry points, each of which names a class or function that makes a model."""
 

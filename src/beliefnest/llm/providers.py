@@ -10,8 +10,6 @@ from urllib.parse import unquote, urlsplit, urlunsplit
 from beliefnest.errors import ModelError
 from beliefnest.llm.secrets import Secrets, secrets_in, without_password
 
-__all__ = ["PROVIDERS", "Endpoint", "Provider", "endpoint"]
-
 Protocol = Literal["openai", "compatible", "anthropic", "google"]
 
 

@@ -19,15 +19,6 @@ from beliefnest.llm.statements import (
 )
 from beliefnest.llm.thinking import separate_thinking
 
-__all__ = [
-    "AnswerReading",
-    "ReadOutcome",
-    "is_refusal",
-    "named_in_words",
-    "read_answer",
-    "read_words",
-]
-
 ReadOutcome = Literal["read", "ambiguous", "unread", "cut"]
 """Outcome of reading. `read`: there is an answer. `ambiguous`: it names several options. `unread`:
 it names none. `cut`: it was cut off before its end."""

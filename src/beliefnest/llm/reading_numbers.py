@@ -10,8 +10,6 @@ from beliefnest.llm.reading_answers import ReadOutcome, is_refusal, withheld
 from beliefnest.llm.statements import unfenced
 from beliefnest.llm.thinking import separate_thinking
 
-__all__ = ["NumbersReading", "read_numbers"]
-
 _BETWEEN = r"[\s_\"'\u2018\u2019)\]]*(?:[:=|\u2013\u2014]|-(?=\s))[\s_\"'(\[|]*"
 _NUMBER = r"(?P<number>[-+]?\d+(?:[.,]\d+)?)"
 _SEVERAL = re.compile(r"\s*(?:-|\u2013|\u2014|\bto\b|\bor\b|\band\b)\s*[-+]?\d", re.IGNORECASE)

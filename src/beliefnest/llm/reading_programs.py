@@ -15,8 +15,6 @@ from beliefnest.llm.thinking import separate_thinking
 if TYPE_CHECKING:  # tree-sitter is imported only when an answer is read.
     from tree_sitter import Parser
 
-__all__ = ["PLACEHOLDER", "ProgramReading", "read_program"]
-
 PLACEHOLDER = "// the body of an async function"
 """Comment in place of a program in our instructions."""
 

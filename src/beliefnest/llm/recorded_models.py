@@ -18,8 +18,6 @@ from beliefnest.llm.stored_exchange import (
     exchange_of,
 )
 
-__all__ = ["FileRecordingModel", "ReplayModel", "ScriptedModel", "load_replay", "load_script"]
-
 _Question = tuple[Message, ...]
 
 

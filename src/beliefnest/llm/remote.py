@@ -37,8 +37,6 @@ if TYPE_CHECKING:  # Extras, imported when a provider is asked.
     from pydantic_ai.profiles import ModelProfile
     from pydantic_ai.settings import ModelSettings
 
-__all__ = ["AnswerLimits", "RemoteModel"]
-
 _CHARACTERS_PER_TOKEN = 4
 """Characters per token, to estimate usage if a server does not report it. A low estimate would
 let a run exceed its limits."""

@@ -19,17 +19,6 @@ from beliefnest.llm.remote import AnswerLimits, RemoteModel
 from beliefnest.llm.retrying import RetryingModel, RetryPolicy, TellWait, tell_on_stderr
 from beliefnest.world.texts import quoted
 
-__all__ = [
-    "Connection",
-    "can_vary",
-    "check_model",
-    "is_free",
-    "is_of_provider",
-    "model_names",
-    "open_model",
-    "resolve_model",
-]
-
 _KINDS = ("replay", "scripted", *PROVIDERS)
 """Words before the colon that are no names of modules."""
 

@@ -11,8 +11,6 @@ from beliefnest.llm.clock import Clock
 from beliefnest.llm.failures import TransientModelError, UnavailableModelError
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
 
-__all__ = ["RetryPolicy", "RetryingModel", "TellWait", "tell_on_stderr"]
-
 TellWait = Callable[[str], None]
 """Function that tells the user a line about a long wait."""
 

@@ -14,8 +14,6 @@ from urllib.request import proxy_bypass_environment  # type: ignore[attr-defined
 from beliefnest.llm.failures import UnavailableModelError
 from beliefnest.llm.secrets import without_password
 
-__all__ = ["SECONDS_TO_CONNECT", "check_listening", "check_route", "is_loopback", "proxy_variable"]
-
 SECONDS_TO_CONNECT = 4.0
 """Longest wait for a connection, in seconds."""
 

@@ -12,8 +12,6 @@ import re
 from collections.abc import Iterable, Iterator
 from urllib.parse import parse_qsl, quote, quote_plus, unquote, urlsplit, urlunsplit
 
-__all__ = ["MASK", "Secrets", "secrets_in", "without_password"]
-
 MASK = "***"
 
 _SHORTEST_IN_ANSWERS = 6

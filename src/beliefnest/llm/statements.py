@@ -9,8 +9,6 @@ from typing import Any, Literal
 
 from beliefnest.llm.naming import plain_words
 
-__all__ = ["Statement", "afterthoughts", "given_reason", "statements", "without_made_up_turns"]
-
 StatementKind = Literal["mark", "line", "prose"]
 
 _SPACE = r"(?:[^\w\n]|_)"

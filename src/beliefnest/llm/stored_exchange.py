@@ -8,8 +8,6 @@ import msgspec
 from beliefnest.files import decode_json
 from beliefnest.llm.messages import Answer, AnswerForm, Finish, Message, Sampling, Usage
 
-__all__ = ["Exchange", "decode_exchange", "encode_exchange", "exchange_of", "request_key"]
-
 
 class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     """A request to a model and its answer; it never contains a key.

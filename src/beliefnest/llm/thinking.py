@@ -3,8 +3,6 @@
 import re
 from dataclasses import dataclass
 
-__all__ = ["Said", "separate_thinking"]
-
 _NAMES = "think|thinking|thought|thoughts|reasoning|reflection|scratchpad|analysis|seed:think"
 _TAG = re.compile(
     rf"<(?P<close>/)?\s*(?:{_NAMES})(?:\s[^<>\n]{{0,100}})?>"

@@ -20,8 +20,6 @@ from beliefnest.world.array_types import Cells
 from beliefnest.world.terrain import SIDE, VOLUME, Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Items, Point, Position
 
-__all__ = ["AgentPose", "AlternativeWorld", "AlternativeWorlds"]
-
 AgentPose = tuple[Point, float, float]
 """Feet, yaw and pitch."""
 

@@ -13,8 +13,6 @@ from beliefnest.pictures.posterior import PosteriorPanel, posterior_plot
 from beliefnest.pictures.time_axis import NotedAct
 from beliefnest.world.values import Position
 
-__all__ = ["bars_of", "heat_of", "panels_of", "plot_of", "titles"]
-
 _MOST_NOTES = 3
 _LEAST_BITS = 0.3
 _TITLES: Mapping[str, str] = {

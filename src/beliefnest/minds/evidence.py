@@ -6,8 +6,6 @@ from beliefnest.minds.alternatives import AgentPose
 from beliefnest.minds.surroundings import Surroundings
 from beliefnest.world.values import Position
 
-__all__ = ["EvidenceMoment"]
-
 
 @dataclass(frozen=True, eq=False)
 class EvidenceMoment:

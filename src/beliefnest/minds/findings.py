@@ -6,8 +6,6 @@ from typing import Any
 
 from beliefnest.world.values import Position
 
-__all__ = ["EvidenceEffect", "Impossible", "SampledPath"]
-
 
 @dataclass(frozen=True, slots=True)
 class Impossible:

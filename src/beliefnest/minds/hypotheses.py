@@ -16,20 +16,6 @@ from beliefnest.minds.stage import Stage
 from beliefnest.world.array_types import Floats
 from beliefnest.world.values import Position
 
-__all__ = [
-    "Action",
-    "Hypotheses",
-    "Layer",
-    "Sums",
-    "WalkState",
-    "WalkStates",
-    "conditioned",
-    "joined",
-    "log_sum",
-    "told",
-]
-
-
 WalkState = tuple[Position, int, int, bool]
 """Cell, knowledge (possible, believed), and True if the course has ended."""
 

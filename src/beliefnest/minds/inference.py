@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from beliefnest.errors import InputError, TickError
 from beliefnest.minds.findings import EvidenceEffect, Impossible, SampledPath
-from beliefnest.minds.hypotheses import log_sum
 from beliefnest.minds.looking_back import sampled_cells, smoothed_steps
 from beliefnest.minds.mind_model import MindModel
+from beliefnest.minds.planner import log_sum
 from beliefnest.minds.tracking import FilterStep, Tracker
 from beliefnest.world.array_types import Floats
 from beliefnest.world.values import Position
@@ -22,8 +22,6 @@ if TYPE_CHECKING:  # Few results become tables or figures.
     import pandas as pd
 
     from beliefnest.pictures.figure import Figure
-
-__all__ = ["EvidenceEffect", "Impossible", "Inference", "SampledPath", "reported_credence"]
 
 
 def reported_credence(row: Floats, possible: int, believed: int, lapse: float) -> Floats:

@@ -9,12 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from beliefnest.minds.hypotheses import Action, Hypotheses, Layer, WalkState, log_sum
+from beliefnest.minds.hypotheses import Action, Hypotheses, Layer, WalkState
+from beliefnest.minds.planner import log_sum
 from beliefnest.minds.tracking import FilterStep, Tracker
 from beliefnest.world.array_types import Floats
 from beliefnest.world.values import Position
-
-__all__ = ["sampled_cells", "smoothed_steps"]
 
 
 def smoothed_steps(tracker: Tracker) -> list[FilterStep]:

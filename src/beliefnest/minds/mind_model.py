@@ -19,15 +19,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = [
-    "MOST_ALTERNATIVES",
-    "Alternative",
-    "MindModel",
-    "PossibleGoal",
-    "read_doubt",
-    "simplex_grid",
-]
-
 MOST_ALTERNATIVES = 62
 """Sets of alternatives are bits of a 64-bit number."""
 

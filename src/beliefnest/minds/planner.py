@@ -19,17 +19,6 @@ from beliefnest.minds.relaxing import relax
 from beliefnest.minds.stage import Stage, numbers_in
 from beliefnest.world.array_types import Floats
 
-__all__ = [
-    "Knowledge",
-    "PlanRules",
-    "StagePlanner",
-    "count_doubtful",
-    "count_values",
-    "log_sum",
-    "planner_for",
-]
-
-
 Knowledge = tuple[int, int]
 """Alternatives that percepts leave possible, and the believed ones among them, as bits."""
 

@@ -12,9 +12,6 @@ import numpy.typing as npt
 from beliefnest.perception.compiling import compiled, inner
 from beliefnest.world.array_types import Floats
 
-__all__ = ["raise_values", "relax"]
-
-
 _WIDTH = 64
 """Number of hypotheses processed at a time, so that their values fit the processor's cache."""
 

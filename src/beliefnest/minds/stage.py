@@ -14,8 +14,6 @@ import numpy.typing as npt
 
 from beliefnest.world.values import Position
 
-__all__ = ["DIAGONALS", "SIDES", "Masks", "Stage", "numbers_in", "shortest"]
-
 SIDES = ((1, 0), (0, 1), (-1, 0), (0, -1))
 """Steps to the four neighbours: change of x and z."""
 

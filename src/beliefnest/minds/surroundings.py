@@ -19,8 +19,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position, feet_in
 
-__all__ = ["Surroundings"]
-
 _MOST_STAGES = 64
 
 _MOST_CELLS = 1 << 18

@@ -22,9 +22,9 @@ from beliefnest.minds.hypotheses import (
     WalkStates,
     conditioned,
     joined,
-    log_sum,
     told,
 )
+from beliefnest.minds.planner import log_sum
 from beliefnest.minds.stage import Stage, shortest
 from beliefnest.minds.surroundings import Surroundings
 from beliefnest.minds.transitions import (
@@ -40,9 +40,6 @@ from beliefnest.minds.transitions import (
 )
 from beliefnest.world.array_types import Floats
 from beliefnest.world.values import Position
-
-__all__ = ["FilterStep", "Tracker"]
-
 
 # Reasons why no hypothesis explains a piece of evidence.
 _DISAGREES = "no alternative agrees with what the observer's node holds"

@@ -15,19 +15,6 @@ from beliefnest.minds.surroundings import Surroundings
 from beliefnest.world.array_types import Floats
 from beliefnest.world.values import EYE_HEIGHT, Position, feet_in
 
-__all__ = [
-    "act",
-    "arrive",
-    "by_stage",
-    "goal_acts",
-    "known_after",
-    "learn",
-    "look_round",
-    "spread",
-    "stage_of",
-    "unseen",
-]
-
 Weights = Mapping[WalkState, Floats]
 
 

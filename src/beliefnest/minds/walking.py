@@ -17,8 +17,6 @@ from beliefnest.perception.sight import Sight
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position
 
-__all__ = ["Draw", "Open", "Strategy", "WalkAct", "WalkChanges", "WalkStep", "Walker"]
-
 
 @dataclass(frozen=True, slots=True)
 class Draw:

@@ -20,9 +20,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
-__all__ = ["Floor", "Ways", "bodies_in", "ways_from"]
-
-
 _MARGIN = (1, 2, 1)
 """Cells around a dense box, so that every neighbour of a cell has an index."""
 _BELOW, _ABOVE, _ASIDE = 2, 3, 2

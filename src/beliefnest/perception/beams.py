@@ -32,19 +32,6 @@ from beliefnest.perception.rays import (
 )
 from beliefnest.perception.shadows import ROOM, Shadows
 
-__all__ = [
-    "Beam",
-    "Eye",
-    "beam_room",
-    "eye_at",
-    "eye_of",
-    "in_field",
-    "in_reach",
-    "new_beam",
-    "sees_block",
-    "sees_past",
-]
-
 Eye = tuple[Vector, Vector, float, float]
 """Place of the eye, unit vector of its look, cosine of half its field of view (-2: all
 directions), and greatest visible distance (infinite: no limit)."""

@@ -18,8 +18,6 @@ import numpy.typing as npt
 from beliefnest.perception.compiling import inlined
 from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
 
-__all__ = ["Rows", "chunk_in", "index_at", "part", "place_at", "stride"]
-
 _EDGE = SIDE.bit_length() - 1
 _INSIDE = 3 * _EDGE
 

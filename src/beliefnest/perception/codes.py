@@ -10,18 +10,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = [
-    "EMPTY",
-    "FIRST_SHAPE",
-    "FULL",
-    "INTRUDED",
-    "LIMIT_SLACK",
-    "OWN",
-    "CodeGrid",
-    "Reaches",
-    "code_grid",
-]
-
 CodeGrid = npt.NDArray[np.uint16]
 Reaches = npt.NDArray[np.uint8]
 """Sides at which shapes reach out of their cells, indexed by code without `INTRUDED`.

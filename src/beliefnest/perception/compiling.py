@@ -26,18 +26,6 @@ from numba.core.runtime.nrt import rtsys
 from beliefnest.locking import LockHeldError, ProcessLock
 from beliefnest.perception.sealed_files import DamagedFileError, SealedFiles
 
-__all__ = [
-    "KernelWarning",
-    "allocating",
-    "compiled",
-    "inlined",
-    "inlined_allocating",
-    "inner",
-    "is_compiled",
-    "kernel_folder",
-    "merged",
-]
-
 F = TypeVar("F", bound=Callable[..., Any])
 
 _KERNEL: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}

@@ -12,8 +12,6 @@ from beliefnest.perception.eyes import eye_sees_agent, eye_sees_block, eye_sees_
 from beliefnest.perception.rays import RayScene, at
 from beliefnest.perception.shadows import CLEAR, HIDDEN, Shadows
 
-__all__ = ["seen_agents", "seen_blocks", "seen_grid", "seen_points"]
-
 
 @allocating
 def seen_grid(scene: RayScene, eye: Eye, shadows: Shadows) -> npt.NDArray[np.bool_]:

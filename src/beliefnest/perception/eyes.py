@@ -5,7 +5,7 @@ Coordinates and codes are those of `rays`, an `Eye` is that of `beams`.
 
 import numpy as np
 
-from beliefnest.perception.beams import Beam, Eye, eye_at, in_field, in_reach, sees_block
+from beliefnest.perception.beams import Beam, Eye, in_field, in_reach, sees_block
 from beliefnest.perception.codes import FULL, INTRUDED, OWN, Reaches
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.perception.rays import (
@@ -20,16 +20,6 @@ from beliefnest.perception.rays import (
 )
 from beliefnest.world.array_types import Codes
 from beliefnest.world.values import AGENT_SAMPLE_HEIGHTS, BODY_CENTRE_HEIGHT
-
-__all__ = [
-    "Eye",
-    "change_code",
-    "eye_at",
-    "eye_sees_agent",
-    "eye_sees_block",
-    "eye_sees_point",
-    "set_code",
-]
 
 _MARGIN = 1e-3
 _HEIGHTS = np.array(AGENT_SAMPLE_HEIGHTS)

@@ -17,8 +17,6 @@ from beliefnest.perception.compiling import allocating, inlined, inner
 from beliefnest.perception.rays import GridCell, RayScene, Vector, turned
 from beliefnest.world.array_types import Flags
 
-__all__ = ["lit_cells"]
-
 Light = npt.NDArray[np.float64]
 SlopeBounds = tuple[float, float, float, float]
 """Least and greatest slope along b, then along c; b and c are the axes after the main axis."""

@@ -12,19 +12,6 @@ from beliefnest.world.forms import note
 from beliefnest.world.limits import FARTHEST
 from beliefnest.world.texts import quoted
 
-__all__ = [
-    "HEAR_ALL",
-    "HEAR_NEAR",
-    "HEAR_SEEN",
-    "ContainerMode",
-    "Hearing",
-    "Perception",
-    "Radius",
-    "SenseLimits",
-    "Testimony",
-    "sight_limits",
-]
-
 ContainerMode = Literal["opaque", "transparent"]
 Testimony = Literal["none", "accept", "informed"]
 

@@ -21,29 +21,6 @@ from beliefnest.perception.compiling import compiled, inlined, inner, merged
 from beliefnest.world.array_types import Codes, Ints
 from beliefnest.world.terrain import ChunkCounts
 
-__all__ = [
-    "LEAST_LENGTH",
-    "NOWHERE",
-    "GridCell",
-    "RayScene",
-    "Vector",
-    "at",
-    "blocker",
-    "cell_at",
-    "code_at",
-    "hidden_by",
-    "is_inside",
-    "lower",
-    "main_axis",
-    "may_lie_in_face",
-    "neighbour",
-    "sloped",
-    "span",
-    "turned",
-    "turned_back",
-    "upper",
-]
-
 N = TypeVar("N", int, float)
 GridCell = tuple[int, int, int]
 Vector = tuple[float, float, float]

@@ -10,8 +10,6 @@ from typing import Any, BinaryIO
 
 from numba.core import caching
 
-__all__ = ["DamagedFileError", "SealedFiles"]
-
 _SEAL = 16
 """Length of a checksum in bytes; it stands at the beginning of a file."""
 

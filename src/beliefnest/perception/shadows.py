@@ -17,15 +17,6 @@ from beliefnest.perception.codes import EMPTY, FIRST_SHAPE, FULL, OWN, Reaches
 from beliefnest.perception.compiling import allocating, compiled, inlined, inlined_allocating
 from beliefnest.perception.rays import GridCell, RayScene, Vector, at, turned
 
-__all__ = [
-    "CLEAR",
-    "HIDDEN",
-    "ROOM",
-    "UNSURE",
-    "Shadows",
-    "cast_shadows",
-]
-
 N = TypeVar("N", int, float)
 RayPart = tuple[float, float]
 """Part of a ray, from one fraction of its length to another."""

@@ -33,8 +33,6 @@ if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.perception.beams import Eye
     from beliefnest.perception.rays import RayScene
 
-__all__ = ["ChunkGeometry", "Geometry", "Sight", "SightLines"]
-
 BoolArray = npt.NDArray[np.bool_]
 Points = npt.NDArray[np.float64]
 

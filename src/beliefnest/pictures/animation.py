@@ -9,8 +9,6 @@ from beliefnest.errors import InputError
 from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.palette import PAPER
 
-__all__ = ["check_animated", "save_animation"]
-
 _FORMS: Mapping[str, str] = {".gif": "GIF", ".webp": "WEBP"}
 _DPI = 110
 

@@ -8,8 +8,6 @@ from beliefnest.pictures.marks import XY, Lines, Rectangle, Text
 from beliefnest.pictures.palette import INK, PAPER, QUIET, mix
 from beliefnest.pictures.panel import PanelBlock, paragraph
 
-__all__ = ["BarChart", "BarGroup", "draw_bars", "number_text"]
-
 
 @dataclass(frozen=True)
 class BarGroup:

@@ -18,8 +18,6 @@ from beliefnest.pictures.svg import svg_text
 if TYPE_CHECKING:  # Most figures are drawn without it.
     from PIL import Image
 
-__all__ = ["MARGIN", "TEXT_SIZE", "Figure", "Size", "columns_for", "figure_of"]
-
 Size = float | tuple[float, float] | Literal["one column", "two columns"]
 """Width, or greatest width and height, in millimetres; or the column width of a paper."""
 

@@ -10,8 +10,6 @@ from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, MARKS, PAPER, AgentLook, Mark, mix
 from beliefnest.pictures.scene import Device, Store
 
-__all__ = ["agent", "container", "device", "false_sign", "hearsay", "item", "letters", "verdict"]
-
 _WOOD, _WOOD_DARK, _WOOD_LIGHT = "#b07a42", "#704822", "#ce9c62"
 _STONE, _STONE_DARK = "#8d8a88", "#4c4a4a"
 _GOOD = "#007a58"

@@ -7,8 +7,6 @@ from beliefnest.pictures.lettering import ASCENT, DESCENT
 from beliefnest.pictures.marks import XY, Bounds
 from beliefnest.pictures.room import Room, near
 
-__all__ = ["LINE", "Label", "PlacedLabel", "leader", "put_labels"]
-
 LINE = ASCENT + DESCENT
 """Distance between the lines of a label, relative to the text size."""
 _MANY = 1000

@@ -11,8 +11,6 @@ from beliefnest.pictures.panel import PanelBlock
 from beliefnest.pictures.plan import hatching, heat_colour
 from beliefnest.pictures.scene import Device, Store
 
-__all__ = ["draw_legend"]
-
 _GROUND = "#f0ece3"
 
 

@@ -13,18 +13,6 @@ from PIL import ImageFont
 
 from beliefnest.world.texts import on_one_line
 
-__all__ = [
-    "ASCENT",
-    "DESCENT",
-    "FAMILIES",
-    "ellipsis",
-    "font",
-    "font_bytes",
-    "lettered",
-    "text_width",
-    "wrap",
-]
-
 ASCENT, DESCENT = 0.74, 0.22
 """Height of letters above and depth below the base line, relative to the text size."""
 

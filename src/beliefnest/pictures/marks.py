@@ -11,21 +11,6 @@ from typing import Any, Literal
 
 from beliefnest.pictures.lettering import ASCENT, DESCENT, text_width
 
-__all__ = [
-    "XY",
-    "Bounds",
-    "Circle",
-    "Drawing",
-    "DrawnMark",
-    "Lines",
-    "MarkRole",
-    "Pixels",
-    "Polygon",
-    "Rectangle",
-    "Text",
-    "scaled",
-]
-
 XY = tuple[float, float]
 Bounds = tuple[float, float, float, float]
 """Left, top, right, bottom."""

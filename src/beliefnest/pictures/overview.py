@@ -13,8 +13,6 @@ from beliefnest.pictures.panel import PanelBlock, paragraph
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Scene, Store
 
-__all__ = ["Card", "ConditionPicture", "Note", "overview"]
-
 _GAP = 12.0
 _LEAST = 148.0
 """Least width of a condition, in points."""

@@ -15,27 +15,6 @@ from itertools import cycle
 from beliefnest.belief.grounds import Source
 from beliefnest.world.words import counted
 
-__all__ = [
-    "AGENT_COLOURS",
-    "HYPOTHESIS_COLOURS",
-    "INK",
-    "MARKS",
-    "PAPER",
-    "QUIET",
-    "AgentLook",
-    "Mark",
-    "MarkLook",
-    "age_text",
-    "agent_looks",
-    "colours_of",
-    "hypothesis_colours",
-    "mix",
-    "parts",
-    "seen_text",
-    "shades",
-    "told_text",
-]
-
 INK = "#2b2a33"
 PAPER = "#fcfbf8"
 QUIET = "#6a6870"

@@ -20,8 +20,6 @@ from beliefnest.pictures.palette import (
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Device, DrawnAgent, Scene, Store
 
-__all__ = ["PanelBlock", "belief_words", "draw_body", "draw_panel", "draw_title", "paragraph"]
-
 _LINE = 1.32
 _MOST = 12
 """Number of containers that are listed; further ones are only counted."""

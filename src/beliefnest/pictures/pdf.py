@@ -17,8 +17,6 @@ from beliefnest.pictures.marks import (
 from beliefnest.pictures.raster import fields
 from beliefnest.world.texts import on_one_line
 
-__all__ = ["pdf_bytes"]
-
 _NAMES = {False: "LiberationSans", True: "LiberationSans-Bold"}
 
 

@@ -32,8 +32,6 @@ from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, S
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import is_sign
 
-__all__ = ["LEAST_HEAT", "DrawnPlan", "draw_plan", "hatching", "heat_colour"]
-
 LEAST_HEAT = 0.005
 """Least probability that is drawn."""
 

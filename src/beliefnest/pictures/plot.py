@@ -14,8 +14,6 @@ from beliefnest.pictures.panel import PanelBlock, paragraph
 from beliefnest.pictures.plan import hatching
 from beliefnest.pictures.time_axis import NotedAct, TimeAxis
 
-__all__ = ["Band", "NotedAct", "NotedClaim", "PlotRow", "belief_plot"]
-
 _HIGH = 15.0
 _STEP = 21.0
 _BALLOON = 2.1

@@ -13,8 +13,6 @@ from beliefnest.pictures.palette import INK, PAPER, QUIET, mix
 from beliefnest.pictures.panel import PanelBlock, paragraph
 from beliefnest.pictures.time_axis import NotedAct, TimeAxis
 
-__all__ = ["PosteriorPanel", "posterior_plot"]
-
 _HIGH = 46.0
 """Least height of a panel, in points."""
 _LINE = TEXT_SIZE * 1.22

@@ -22,8 +22,6 @@ from beliefnest.pictures.marks import (
 )
 from beliefnest.pictures.palette import PAPER
 
-__all__ = ["fields", "png_bytes", "raster"]
-
 _FINER = 2
 """Factor of supersampling. Pillow draws hard edges, so the image is drawn larger and scaled
 down."""

@@ -11,16 +11,6 @@ from beliefnest.belief.view import State
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
 
-__all__ = [
-    "NOWHERE",
-    "UNKNOWN",
-    "Relief",
-    "ReliefWindow",
-    "is_wide",
-    "read_relief",
-    "standing_columns",
-]
-
 WIDE = 64
 """Width or depth in blocks from which plans show the ground in place of one storey. The page has
 the same limit (`web/src/run.js`)."""

@@ -5,8 +5,6 @@ from collections.abc import Iterator
 
 from beliefnest.pictures.marks import XY, Bounds
 
-__all__ = ["Room", "near"]
-
 _GAP = 1.1
 _BESIDE = 1.2
 """Distance between an icon and its label, in points."""

@@ -12,8 +12,6 @@ from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import AGENT_COLOURS, INK, PAPER, QUIET, mix
 from beliefnest.pictures.panel import PanelBlock, paragraph
 
-__all__ = ["Dot", "ScatterPanel", "ScatterRow", "scatter_figure"]
-
 _PANEL = 104.0
 """Least width of a panel, in points."""
 _GAP = 12.0

@@ -20,21 +20,6 @@ from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Items, Point, Position
 from beliefnest.world.words import contents_words, told_apart
 
-__all__ = [
-    "DEVICES",
-    "AgentSight",
-    "Device",
-    "DrawnAgent",
-    "Labels",
-    "PlanColumn",
-    "Scene",
-    "Store",
-    "Wrong",
-    "best_height",
-    "read_scene",
-    "read_stores",
-]
-
 DEVICES = (
     *("door", "lever", "button", "furnace", "smoker", "crafting_table", "gate", "plate"),
     "_sign",

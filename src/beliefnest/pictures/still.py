@@ -13,8 +13,6 @@ from beliefnest.pictures.panel import draw_body
 from beliefnest.pictures.scene import AgentSight, Device, PlanColumn, Scene, Store
 from beliefnest.world.values import Point, Position
 
-__all__ = ["draw_still"]
-
 _WIDTH = 260.0
 """Width of a still, in points."""
 _WORDS: Mapping[str, str] = {

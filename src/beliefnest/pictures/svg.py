@@ -16,8 +16,6 @@ from beliefnest.pictures.marks import (
 )
 from beliefnest.world.texts import on_one_line
 
-__all__ = ["svg_text"]
-
 _MILLIMETRES = 25.4 / 72
 
 

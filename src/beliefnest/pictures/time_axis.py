@@ -10,8 +10,6 @@ from beliefnest.pictures.marks import XY, Lines, Text
 from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, QUIET
 
-__all__ = ["NotedAct", "TimeAxis"]
-
 _ACT = TEXT_SIZE * 0.95
 
 

@@ -9,13 +9,6 @@ from beliefnest.world.texts import visible
 from beliefnest.world.values import Point
 from beliefnest.world.words import contents_words, point_words
 
-__all__ = [
-    "html_lines",
-    "html_table",
-    "state_words",
-    "where_words",
-]
-
 _MOST = 6
 """Number of containers that are listed; further ones are only counted."""
 

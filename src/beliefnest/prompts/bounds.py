@@ -11,8 +11,6 @@ from jinja2.filters import FILTERS
 from jinja2.runtime import Context
 from jinja2.visitor import NodeTransformer
 
-__all__ = ["StepMeter", "check_numbers", "metered"]
-
 _TEXT = "count text"
 _TURNS = "count turns"
 _VALUE = "count value"

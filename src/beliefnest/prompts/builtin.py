@@ -24,8 +24,6 @@ from beliefnest.world.double_chests import is_left_half
 from beliefnest.world.registry import Registry, block_name, parse_state
 from beliefnest.world.values import EQUIPMENT_SLOTS, Position
 
-__all__ = ["BUILT_IN"]
-
 _AIRS = frozenset({"air", "cave_air", "void_air"})
 _CHESTS = frozenset({"chest", "trapped_chest", "barrel"})
 _EVENT_HEADER = "time;action;agent_name;description"

@@ -8,8 +8,6 @@ from beliefnest.prompts import text
 from beliefnest.world.event_words import EVENT_WORDS, skill_of
 from beliefnest.world.signs import sign_words
 
-__all__ = ["description", "row"]
-
 _FIELDS: Mapping[str, Callable[[Any], str]] = {
     "block": str,
     "position": text.position,

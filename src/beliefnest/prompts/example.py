@@ -15,13 +15,12 @@ from beliefnest.belief.grounds import (
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import PathError, PositionError
 from beliefnest.prompts.observations import Found, Happened, Observation, Outset, Read, SightChange
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import Box, EventKind, Position
-
-__all__ = ["ExampleBlocks", "ExampleBranch", "example_branch"]
+from beliefnest.world.values import Box, Position
 
 _BOX = Box((-11, -52, -11), (11, -49, 11))
 _LEFT: Position = (-2, -51, -4)

@@ -9,8 +9,6 @@ from typing import Any, Generic, ParamSpec
 
 from beliefnest.errors import InputError
 
-__all__ = ["FILTER_GROUP", "FilterSet", "PromptFilter", "filter", "installed_filters"]
-
 FILTER_GROUP = "beliefnest.filters"
 """Group of entry points for installed filters. Each entry point is a `PromptFilter`; it is
 loaded when a prompt is rendered."""

@@ -11,8 +11,6 @@ from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import TICKS_PER_SECOND, Position
 
-__all__ = ["FILTERS", "memory"]
-
 
 @filter("containers")
 def containers(branch: BranchView) -> str:

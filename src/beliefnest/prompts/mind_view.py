@@ -8,8 +8,6 @@ from beliefnest.prompts.observations import Observation
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import Position
 
-__all__ = ["MindView", "ToldMind"]
-
 
 @dataclass(frozen=True, slots=True)
 class ToldMind:

@@ -13,8 +13,6 @@ from beliefnest.world.signs import is_sign
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Position
 
-__all__ = ["apart", "believed_names", "is_named", "kind_name", "known_places"]
-
 _SIDES: Final = (("western", "eastern"), ("northern", "southern"), ("lower", "upper"))
 """Words for two objects that differ in x, else z, else y."""
 _AXES: Final = (0, 2, 1)

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = ["Assumed", "Found", "Happened", "Lying", "Observation", "Outset", "Read", "SightChange"]
-
 
 @dataclass(frozen=True, slots=True)
 class Outset:

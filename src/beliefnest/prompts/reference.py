@@ -14,8 +14,6 @@ from beliefnest.prompts.filterset import PromptFilter
 from beliefnest.prompts.rendering import render
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 
-__all__ = ["EXAMPLES", "filter_reference"]
-
 EXAMPLES: Mapping[str, tuple[str, ...]] = {
     "beginning": ("{{ branch | beginning }}", "{{ branch | beginning(narrated=true) }}"),
     "block_property": ('{{ branch | block_property("lever") }}',),

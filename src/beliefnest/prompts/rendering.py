@@ -26,8 +26,6 @@ from beliefnest.prompts.templates import (
 from beliefnest.prompts.text import nearest
 from beliefnest.world.texts import quoted, visible
 
-__all__ = ["LAST_CODE", "LAST_ERROR", "NO_CODE", "NO_ERROR", "Renderer", "instructions", "render"]
-
 NO_CODE = "No code was executed"
 NO_ERROR = "No error"
 

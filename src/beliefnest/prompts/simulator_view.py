@@ -12,8 +12,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Position
 
-__all__ = ["BranchView", "belief_of", "believed_agent", "blocks_named", "blocks_where", "owner_of"]
-
 
 class BranchView(Protocol):
     """A simulator as prompts see it: `branch` in a template."""

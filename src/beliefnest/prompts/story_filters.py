@@ -16,14 +16,13 @@ from beliefnest.prompts.observations import (
     SightChange,
 )
 from beliefnest.prompts.simulator_view import BranchView
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.event_words import happened
 from beliefnest.world.near import BESIDE, names_near
 from beliefnest.world.registry import block_name
 from beliefnest.world.signs import sign_words
-from beliefnest.world.values import EventKind, Items, Point, Position, block_at, feet_in
+from beliefnest.world.values import Items, Point, Position, block_at, feet_in
 from beliefnest.world.words import listed, point_words, things_words, with_the
-
-__all__ = ["FILTERS", "captions"]
 
 _ROW_HEADER = "time;what;agent_name;description"
 _AT_CONTAINER = (EventKind.GET_ITEM_FROM_CHEST, EventKind.DEPOSIT_ITEM_INTO_CHEST)

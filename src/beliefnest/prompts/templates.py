@@ -11,8 +11,6 @@ from beliefnest.errors import TemplateError
 from beliefnest.files import read_regular_text
 from beliefnest.world.texts import quoted
 
-__all__ = ["BUILT_IN_TEMPLATES", "Template", "built_in_template", "load_template"]
-
 BUILT_IN_TEMPLATES: Mapping[str, str] = MappingProxyType(
     {
         "answering": "the system message for questions: the form of the answer",

@@ -8,22 +8,6 @@ from typing import Final
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
 
-__all__ = [
-    "CANNOT_BE_SEEN",
-    "EMPTY",
-    "NOT_OBSERVED",
-    "NO_CHATS",
-    "NO_DATA",
-    "NO_THOUGHT",
-    "as_json",
-    "mapping",
-    "nearest",
-    "number",
-    "one_line",
-    "point",
-    "position",
-]
-
 NO_DATA: Final = "No data"
 CANNOT_BE_SEEN: Final = "Cannot be seen"
 NOT_OBSERVED: Final = "Not observed"

@@ -11,8 +11,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, EYE_HEIGHT, AgentState, Box, Point, block_at
 
-__all__ = ["build_agents"]
-
 _WIDTH = 0.6
 _HEIGHT = 1.8
 _SLACK = 1e-6

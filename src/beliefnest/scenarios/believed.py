@@ -22,8 +22,6 @@ from beliefnest.world.texts import quoted
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import listed, point_words
 
-__all__ = ["Believed", "BelievedEntry", "StateOf", "bare_words", "content_names"]
-
 StateOf = Callable[[str], State]
 """Function from a belief path to the state after the script."""
 

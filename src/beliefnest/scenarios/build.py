@@ -53,8 +53,6 @@ from beliefnest.world.signs import plain_state, written
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Block, Items, Point, Position, block_at
 
-__all__ = ["build_scenario"]
-
 _WORKED_IN = ("conditions", "parameters", "constraints", "instances")
 """Keys that are resolved before the scenario is built."""
 

@@ -12,8 +12,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Items, Position
 
-__all__ = ["Checks", "check_inside", "check_items"]
-
 
 def check_items(
     document: Document, path: KeyPath, items: Items, registry: Registry, slots: int, holder: str

@@ -4,15 +4,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from beliefnest.nest.past.setting import Senses, Setting
+from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.expected import Expected
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry
+from beliefnest.timeline.run_records import Senses
 from beliefnest.world.values import Position
-
-__all__ = ["Probe", "ScenarioContent", "ScenarioWarning"]
 
 
 class ScenarioWarning(UserWarning):

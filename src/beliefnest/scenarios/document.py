@@ -13,20 +13,6 @@ from typing import Any
 from beliefnest.errors import BeliefNestError, ScenarioError
 from beliefnest.world.texts import quoted, shortened
 
-__all__ = [
-    "LABELLED",
-    "MAX_CHARACTERS",
-    "MAX_DEPTH",
-    "MAX_VALUES",
-    "Document",
-    "KeyPath",
-    "YamlNode",
-    "merged",
-    "plain",
-    "under",
-    "wrapped",
-]
-
 MAX_DEPTH = 40
 """Greatest nesting depth of lists and mappings."""
 

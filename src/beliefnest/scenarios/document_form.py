@@ -11,8 +11,6 @@ from beliefnest.scenarios.json_schema import allowed_keys, allowed_values
 from beliefnest.world.texts import is_well_formed, quoted, shortened
 from beliefnest.world.words import nearest_or_all
 
-__all__ = ["check_form", "check_written"]
-
 _FAULT = re.compile(r"(?P<what>.*?)(?: - at (?P<key>`key` in )?`(?P<path>\$.*)`)?", re.DOTALL)
 _FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\])")
 _UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)

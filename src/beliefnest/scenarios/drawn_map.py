@@ -23,8 +23,6 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Position
 
-__all__ = ["with_map"]
-
 _KEY = "map"
 _AIR = "air"
 _EMPTY = "."

@@ -26,8 +26,6 @@ from beliefnest.scenarios.yaml_reading import parse_yaml
 from beliefnest.world.texts import quoted, shortened
 from beliefnest.world.values import Position
 
-__all__ = ["drawn_starter", "edited"]
-
 _AIR = "."
 _WIDTH = 10_000
 _WALL = 3

@@ -24,20 +24,6 @@ from beliefnest.world import forms
 from beliefnest.world.forms import note
 from beliefnest.world.values import Point, Position
 
-__all__ = [
-    "Answered",
-    "AnswersEntry",
-    "Deed",
-    "ExpectEntry",
-    "Expected",
-    "InferredEntry",
-    "Judgement",
-    "ProbeFacts",
-    "as_list",
-    "expected_json",
-    "source_of",
-]
-
 T = TypeVar("T")
 
 

@@ -26,20 +26,10 @@ from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.functions import NamedFunction, function_of
 from beliefnest.scenarios.naming import Naming, container_name, named_place
 from beliefnest.scenarios.trial import Trial
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.limits import AGENT_SLOTS
-from beliefnest.world.values import EventKind, Items, Point, Position, block_at
+from beliefnest.world.values import Items, Point, Position, block_at
 from beliefnest.world.words import items_words, point_text, point_words, with_the
-
-__all__ = [
-    "Arrives",
-    "Awaited",
-    "Believes",
-    "Intends",
-    "Judge",
-    "Opens",
-    "Says",
-    "Takes",
-]
 
 
 @dataclass(frozen=True, slots=True)

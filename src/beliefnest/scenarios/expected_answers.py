@@ -23,10 +23,6 @@ from beliefnest.scenarios.naming import Naming
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import listed
 
-__all__ = [
-    "Answers",
-]
-
 _MOST_OPTIONS = 26
 """Greatest number of options: one for each letter."""
 

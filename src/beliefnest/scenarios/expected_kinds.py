@@ -20,13 +20,6 @@ from beliefnest.scenarios.expected_acts import (
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.world.texts import quoted
 
-__all__ = [
-    "KINDS",
-    "Infers",
-    "read_expected",
-    "read_inferred",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Infers(Expected):

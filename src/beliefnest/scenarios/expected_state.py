@@ -9,8 +9,6 @@ from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.world.forms import note
 
-__all__ = ["Expectation", "ExpectationEntry"]
-
 
 class ExpectationEntry(FactEntry, frozen=True, kw_only=True):
     """An expected fact about a simulator."""

@@ -12,8 +12,6 @@ from collections.abc import Callable, Mapping
 from beliefnest.errors import InputError
 from beliefnest.world.texts import quoted
 
-__all__ = ["evaluate", "names_in"]
-
 _LONGEST = 300
 _BINARY: Mapping[type[ast.operator], Callable[..., object]] = {
     ast.Add: operator.add,

@@ -16,30 +16,6 @@ from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world import values as world
 from beliefnest.world.forms import WrittenPoint, WrittenPosition, note
 
-__all__ = [
-    "AgentEntry",
-    "BelievedSignEntry",
-    "BlockEntry",
-    "ContainerEntry",
-    "EquipmentEntry",
-    "FloorEntry",
-    "GridEntry",
-    "InferEntry",
-    "InitialBeliefEntry",
-    "InstanceEntry",
-    "LegendEntry",
-    "LevelsEntry",
-    "MapEntry",
-    "ParameterEntry",
-    "ProbeEntry",
-    "ScenarioFile",
-    "SignEntry",
-    "StepEntry",
-    "TerrainEntry",
-    "WrittenFile",
-]
-
-
 _WIDEST = 1_000
 """Greatest angle in radians, in both directions."""
 _LONGEST_TIMEOUT = 10_000_000

@@ -8,8 +8,6 @@ from beliefnest.importing import imported_object
 from beliefnest.scenarios.trial import Trial
 from beliefnest.world.texts import quoted
 
-__all__ = ["NamedFunction", "function_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class NamedFunction:

@@ -7,8 +7,6 @@ from beliefnest.facts.kinds import GoalCondition
 from beliefnest.facts.states import Look
 from beliefnest.world.paths import BeliefPath
 
-__all__ = ["Goal", "Progress"]
-
 
 @dataclass(frozen=True, slots=True)
 class Goal:

@@ -26,14 +26,6 @@ if TYPE_CHECKING:
     from beliefnest.minds.inference import Inference
     from beliefnest.nest.face.shown import ShownSimulator
 
-__all__ = [
-    "MOST_HYPOTHESES",
-    "Inferred",
-    "Inferring",
-    "build_inferring",
-    "means_text",
-]
-
 MOST_HYPOTHESES = 2_000_000
 """Greatest number of combinations of utilities, credences and alternatives."""
 

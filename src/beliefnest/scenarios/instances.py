@@ -38,8 +38,6 @@ from beliefnest.world.words import counted
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH
 
-__all__ = ["drawn_instance", "has_instances"]
-
 _KEY = "instances"
 _MOST_DRAWS = 2_000
 """Height above the feet that is in the cell in which an agent stands, also on slabs."""

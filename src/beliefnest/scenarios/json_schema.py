@@ -9,8 +9,6 @@ import msgspec
 from beliefnest.scenarios.document import LABELLED
 from beliefnest.scenarios.format import ScenarioFile, WrittenFile
 
-__all__ = ["allowed_keys", "allowed_values", "schema"]
-
 _HOLE = {
     "description": "A parameter, which its value replaces, or an expression of parameters.",
     "type": "string",

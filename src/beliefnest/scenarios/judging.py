@@ -5,8 +5,6 @@ from collections.abc import Mapping, Sequence
 from beliefnest.scenarios.expected import Judgement
 from beliefnest.worlds.protocol import NO_WAY, ProgramResult
 
-__all__ = ["LOST", "NOT_ANSWERED", "OUTCOMES", "outcome_of", "unanswered_words"]
-
 NOT_ANSWERED = ("ambiguous", "unread", "cut", "refused", "no_answer")
 """Outcomes without an answer to judge. Each counts as not right, and reports show how many."""
 

@@ -13,13 +13,6 @@ from beliefnest.scenarios.older_spellings import respelled
 from beliefnest.scenarios.parameters import text_of, with_parameters
 from beliefnest.world.texts import quoted
 
-__all__ = [
-    "DocumentChange",
-    "condition_number",
-    "condition_numbers",
-    "scenario_in",
-]
-
 DocumentChange = Callable[[Document], Document]
 """Function from a document to a changed document."""
 

@@ -11,8 +11,6 @@ from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import point_text
 
-__all__ = ["Naming", "container_name", "named_place", "titled"]
-
 
 @dataclass(frozen=True, slots=True)
 class Naming:

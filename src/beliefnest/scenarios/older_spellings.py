@@ -6,8 +6,6 @@ from typing import Any, TypeVar
 
 from beliefnest.scenarios.document import Document, YamlNode
 
-__all__ = ["respelled"]
-
 _OLD_WITHIN = 2.0
 """Distance that expectations had where none was given."""
 

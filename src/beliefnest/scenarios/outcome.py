@@ -16,8 +16,6 @@ from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.values import Point, Position
 from beliefnest.worlds.protocol import Fault, ProgramResult
 
-__all__ = ["ExpectationOutcome", "Outcome", "ProbeOutcome", "Reply"]
-
 
 @dataclass(frozen=True, slots=True)
 class Reply:

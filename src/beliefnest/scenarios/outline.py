@@ -8,8 +8,6 @@ from ruamel.yaml.nodes import MappingNode, Node
 
 from beliefnest.scenarios.sources import builtin_file
 
-__all__ = ["Outline", "builtin_outline"]
-
 
 @dataclass(frozen=True, slots=True)
 class Outline:

@@ -31,15 +31,6 @@ from beliefnest.scenarios.expressions import evaluate, names_in
 from beliefnest.scenarios.format import ParameterEntry
 from beliefnest.world.texts import quoted, shortened
 
-__all__ = [
-    "broken_constraint",
-    "check_declared",
-    "choices",
-    "declared_in",
-    "text_of",
-    "with_parameters",
-]
-
 _HOLE = re.compile(r"\$\{([^{}]*)\}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,63}", re.ASCII)
 _PROGRAMS = ("program", "programs")

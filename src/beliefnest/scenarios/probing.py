@@ -30,8 +30,6 @@ from beliefnest.scenarios.questioning import ask_question
 from beliefnest.scenarios.trial import Trial
 from beliefnest.skills import SkillDetail, skills_at
 
-__all__ = ["Asking", "naming_for", "resolved", "run_probe"]
-
 
 @dataclass(frozen=True, slots=True)
 class Asking:

@@ -20,8 +20,6 @@ from beliefnest.world.paths import parse_path
 from beliefnest.world.values import Position
 from beliefnest.world.words import listed, with_the
 
-__all__ = ["ProseWarning", "warn_of_prose"]
-
 _ELSEWHERE = "another place"
 """Place of somebody who walked to no named place, in stories."""
 

@@ -10,8 +10,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-__all__ = ["UnreadError", "read_contents", "read_last_seen", "read_places"]
-
 _SENTENCE = re.compile(r"(?:[^.“]|“[^”]*[^.!?”]”)*(?:“[^”]*[.!?]”|[.])")
 
 

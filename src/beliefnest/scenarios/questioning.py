@@ -18,8 +18,6 @@ from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.outcome import Reply
 from beliefnest.world.values import Position
 
-__all__ = ["ask_question", "shuffled"]
-
 
 def ask_question(
     nest: Nest,

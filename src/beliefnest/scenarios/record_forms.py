@@ -11,8 +11,6 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 
-__all__ = ["ExpectationForm", "ProbeForm", "UsageForm", "checked_form", "read_json", "read_lines"]
-
 T = TypeVar("T")
 _Place = tuple[float, float, float]
 

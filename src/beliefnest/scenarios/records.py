@@ -11,8 +11,6 @@ from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.outcome import ExpectationOutcome, ProbeOutcome, Reply
 from beliefnest.world.values import Placements, Point
 
-__all__ = ["expectation_json", "placed_json", "probe_json", "usage_json"]
-
 
 def usage_json(usage: Usage) -> dict[str, object]:
     """Return the usage of answers as plain values."""

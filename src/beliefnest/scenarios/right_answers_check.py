@@ -15,8 +15,6 @@ from beliefnest.scenarios.prose_check import warn_of_prose
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import listed
 
-__all__ = ["warn_of_answers", "warn_of_scene"]
-
 _KIND = re.compile(r"\b(true|false)[- ]beliefs?\b", re.IGNORECASE)
 
 

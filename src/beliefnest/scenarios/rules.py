@@ -13,15 +13,6 @@ from beliefnest.world.forms import note
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
 
-__all__ = [
-    "EpisodeEntry",
-    "GoalEntry",
-    "RewardEntry",
-    "check_rules",
-    "goal_of",
-    "rule_faults",
-]
-
 
 class _Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
     """Base of all parts; unknown keys are errors."""

@@ -4,15 +4,14 @@ import time
 
 from beliefnest.facts.states import StateFacts
 from beliefnest.llm.messages import Model, Usage
-from beliefnest.nest.face.nest import Nest, OnProgress
+from beliefnest.nest.acting.script import OnProgress
+from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.expected import Deed
 from beliefnest.scenarios.outcome import ExpectationOutcome, Outcome
 from beliefnest.scenarios.probing import Asking, resolved, run_probe
 from beliefnest.scenarios.right_answers_check import warn_of_answers, warn_of_scene
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.world.paths import parse_path, path_text
-
-__all__ = ["Asking", "run_scenario"]
 
 
 def run_scenario(

@@ -16,8 +16,6 @@ from beliefnest.scenarios.loading import (
 from beliefnest.scenarios.sources import read_document
 from beliefnest.scenarios.yaml_reading import parse_yaml
 
-__all__ = ["Scenario"]
-
 
 @dataclass(frozen=True)
 class Scenario(ScenarioContent):

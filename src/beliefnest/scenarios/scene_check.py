@@ -17,8 +17,6 @@ from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Position
 from beliefnest.world.words import listed
 
-__all__ = ["scene_warnings"]
-
 _CATCHES = 4.0
 """Blocks from the receiver within which somebody else may catch what is thrown."""
 

@@ -2,8 +2,6 @@
 
 import math
 
-__all__ = ["wilson_interval"]
-
 _Z95 = 1.959963984540054
 
 

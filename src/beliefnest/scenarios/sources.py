@@ -9,8 +9,6 @@ from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.world.texts import quoted
 
-__all__ = ["builtin_file", "builtin_names", "read_document"]
-
 _SUFFIXES = (".yaml", ".yml")
 
 

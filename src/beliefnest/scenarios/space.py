@@ -18,17 +18,6 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box, Items, Position
 
-__all__ = [
-    "UNKNOWN",
-    "believed_fault",
-    "build_blocks",
-    "build_box",
-    "build_containers",
-    "build_sign_claims",
-    "build_signs",
-    "parts_of",
-]
-
 UNKNOWN = -1
 """Block state id of unknown blocks."""
 

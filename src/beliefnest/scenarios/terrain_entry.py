@@ -18,8 +18,6 @@ from beliefnest.world.packing import packed, unpacked
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import VOLUME, Terrain
 
-__all__ = ["entry_of", "numbers_in", "packed_entry", "terrain_in"]
-
 _WIDTH = 96
 _LEVEL = 12
 """Level of compression: level 19 takes ten times as long for two thirds of the size."""

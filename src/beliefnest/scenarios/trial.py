@@ -4,10 +4,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from beliefnest.belief.view import State
-from beliefnest.world.values import Event, EventKind, Point, Position
+from beliefnest.world.event_kinds import EventKind
+from beliefnest.world.values import Event, Point, Position
 from beliefnest.worlds.protocol import ProgramResult
-
-__all__ = ["Trial", "opened_by"]
 
 
 def opened_by(agent: str, events: Iterable[Event]) -> tuple[Position, ...]:

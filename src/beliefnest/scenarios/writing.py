@@ -21,8 +21,6 @@ from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, Position
 
-__all__ = ["content_text", "in_flow", "scenario_text"]
-
 _VISITOR = "visitor"
 _WIDTH = 100
 _UNBROKEN = 10_000

@@ -26,8 +26,6 @@ from beliefnest.scenarios.document import (
 )
 from beliefnest.world.texts import quoted, shortened
 
-__all__ = ["LONGEST", "parse_yaml", "read_yaml", "template_text", "templates_file"]
-
 LONGEST = 16 * 2**20
 """Greatest size of a scenario file in bytes."""
 _LONGEST_PROBLEM = 200

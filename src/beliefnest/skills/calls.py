@@ -8,8 +8,6 @@ from typing import Any
 
 from beliefnest.skills.manifests import Parameter, Skill, skills
 
-__all__ = ["OPEN_CONTAINER", "Call", "callables", "program_of"]
-
 OPEN_CONTAINER = Skill(
     "openContainer",
     "openContainer(position)",

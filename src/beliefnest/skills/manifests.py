@@ -6,8 +6,6 @@ from typing import Literal
 
 import msgspec
 
-__all__ = ["Parameter", "Skill", "SkillDetail", "skills", "skills_at"]
-
 SkillDetail = Literal["none", "names", "signatures", "full"]
 """Detail of a list of skills: `names`, `signatures` with parameters, or `full` with effects."""
 

@@ -11,8 +11,6 @@ if TYPE_CHECKING:  # matplotlib is optional, and imported when something is plot
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["COLOURS", "plot_accuracy", "svg_of", "with_short_names"]
-
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#000000")
 """Palette of Okabe and Ito, which colour-blind people can distinguish."""
 

@@ -6,8 +6,6 @@ from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import Literal, get_args
 
-__all__ = ["DESIGNS", "LABEL", "LIST", "PARTICIPANT", "Allocation", "balanced", "latin_lists"]
-
 Allocation = Literal["crossed", "balanced", "latin-square"]
 """Form of a design. `crossed`: every variation under every condition. `balanced`: every variation
 under one condition. `latin-square`: crossed, and divided into lists."""

@@ -20,16 +20,6 @@ from beliefnest.scenarios.record_forms import read_json
 from beliefnest.studies.comparing import ADDED, HASH, PairedDifference
 from beliefnest.world.texts import is_well_formed, quoted, shortened
 
-__all__ = [
-    "MANIFEST",
-    "check_secrets",
-    "damaged_files",
-    "inside",
-    "unpack",
-    "with_manifest",
-    "write_zip",
-]
-
 MANIFEST = "bundle.json"
 _FORM = "beliefnest bundle 1"
 _EPOCH = (1980, 1, 1, 0, 0, 0)

@@ -18,8 +18,6 @@ from beliefnest.studies.plainframe import csv_text
 from beliefnest.studies.run_result import RunResult
 from beliefnest.studies.study_record import StudyRecord
 
-__all__ = ["Results", "bundled", "facts_of", "kind_of", "opened"]
-
 Results = StudyRecord | RunResult
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Generic, Protocol, TypeVar
 
 from beliefnest.errors import BeliefNestError, InputError
-from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
+from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.loading import condition_numbers
@@ -16,28 +16,10 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.allocation import LABEL, LIST, balanced, latin_lists
 from beliefnest.studies.chance import scenario_draws
 from beliefnest.studies.checking import StudyKeyError
-from beliefnest.studies.design import Design, Template
+from beliefnest.studies.design import Design
 from beliefnest.studies.random_variations import drawn_variations
 from beliefnest.studies.variation import Variation, listed_variations
 from beliefnest.world.texts import quoted
-
-__all__ = [
-    "SEEDS",
-    "C",
-    "Cell",
-    "CellKey",
-    "Invalid",
-    "Key",
-    "Keyed",
-    "Plan",
-    "alike",
-    "cell_seed",
-    "check_called",
-    "digest",
-    "plan_cells",
-    "planned_cell",
-    "variation_id",
-]
 
 SEEDS = 2**32
 """Number of possible seeds of cells."""

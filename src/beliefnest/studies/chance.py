@@ -7,8 +7,6 @@ from beliefnest.episodes.task import Task
 from beliefnest.llm.resolve import can_vary
 from beliefnest.scenarios.scenario import Scenario
 
-__all__ = ["episode_draws", "scenario_draws"]
-
 
 def scenario_draws(scenario: Scenario, models: Iterable[str]) -> bool:
     """Return True if a scenario draws random numbers, apart from those of the world itself.

@@ -17,8 +17,6 @@ from beliefnest.studies.symmetry import Placing
 from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
 
-__all__ = ["MovedBySymmetry", "Renamed"]
-
 _NUMBER = r"-?\d+(?:\.\d+)?"
 _TRIPLE = re.compile(rf"\(\s*({_NUMBER}),\s*({_NUMBER}),\s*({_NUMBER})\s*\)")
 _DIRECTIONAL = re.compile(r"\b(north|south|east|west|left|right)\b", re.IGNORECASE)

@@ -12,21 +12,6 @@ from beliefnest.scenarios.loading import condition_number
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import nearest_or_all
 
-__all__ = [
-    "StudyKeyError",
-    "check_cells",
-    "check_count",
-    "check_once",
-    "checked_columns",
-    "checked_conditions",
-    "checked_limits",
-    "checked_lists",
-    "is_amount",
-    "is_count",
-    "is_whole",
-    "several",
-]
-
 _MOST_CELLS = 200_000
 
 

@@ -11,8 +11,6 @@ import numpy.typing as npt
 
 from beliefnest.scenarios.scoring import wilson_interval
 
-__all__ = ["DRAWS", "FEWEST", "crossed_interval", "exchange_p", "mean_interval", "rate_interval"]
-
 DRAWS = 2_000
 """Draws of a bootstrap."""
 

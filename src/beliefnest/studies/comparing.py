@@ -6,9 +6,6 @@ from typing import Any
 
 from beliefnest.world.texts import quoted
 
-__all__ = ["ADDED", "ERROR", "HASH", "PairedDifference", "differing_contents", "differing_rows"]
-
-
 ERROR = "error"
 """Key of a difference whose cell has no result now."""
 

@@ -10,8 +10,6 @@ from typing import Any
 from beliefnest.studies.cells import digest
 from beliefnest.studies.study_folder import StudyFolder
 
-__all__ = ["rows_with_copies", "text_of_copies"]
-
 _OWN = ("key", "seed", "run")
 """Keys of a cell's file that identify the cell and are no part of its result."""
 

@@ -20,8 +20,6 @@ from beliefnest.studies.clusters import (
 )
 from beliefnest.studies.guessing import mean_chance
 
-__all__ = ["Pairs", "Row", "count_rows", "judged_rows", "paired_rows"]
-
 Row = Mapping[str, Any]
 _Z95 = 1.959963984540054
 

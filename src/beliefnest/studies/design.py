@@ -33,8 +33,6 @@ from beliefnest.studies.variation import CHANGES, Variation
 from beliefnest.world.texts import quoted
 from beliefnest.worlds.names import check_world
 
-__all__ = ["Constraint", "Design", "Template", "template_named"]
-
 Constraint = str | Callable[[Mapping[str, Any]], bool]
 """Condition on a variation's values: an expression, or a function of them."""
 

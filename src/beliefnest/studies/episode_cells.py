@@ -25,8 +25,6 @@ from beliefnest.studies.episode_design import EpisodeDesign, Player
 from beliefnest.studies.variation import Variation, listed_variations
 from beliefnest.world.texts import quoted
 
-__all__ = ["EpisodeCell", "EpisodeKey", "plan_episodes", "task_of_cell"]
-
 
 @dataclass(frozen=True, slots=True)
 class EpisodeKey(Key):

@@ -17,16 +17,6 @@ from beliefnest.studies.checking import (
 from beliefnest.world.texts import quoted
 from beliefnest.worlds.names import check_world
 
-__all__ = [
-    "EpisodeDesign",
-    "Order",
-    "Player",
-    "Policies",
-    "listed",
-    "policy_named",
-    "seeds_of",
-]
-
 Order = int | Literal["omniscient"]
 Policies = str | Mapping[str, str | Mapping[str, str]]
 """A policy of all players, policies by agent, or a name for the table with policies by agent."""

@@ -9,8 +9,6 @@ from beliefnest.studies.episode_cells import EpisodeCell
 from beliefnest.studies.terms import Terms
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = ["play_episode"]
-
 
 def play_episode(cell: EpisodeCell, terms: Terms, worlds: Worlds) -> dict[str, Any]:
     """Play an episode and return its result as plain values.

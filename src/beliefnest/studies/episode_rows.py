@@ -16,8 +16,6 @@ from beliefnest.studies.table import (
     plain_value,
 )
 
-__all__ = ["EPISODES"]
-
 
 def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """Yield the measures of the episode, or the reason why there are none."""

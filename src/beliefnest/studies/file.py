@@ -20,8 +20,6 @@ from beliefnest.studies.study_keys import StudyKeys, design_of, labelled_scenari
 from beliefnest.world.words import nearest_or_all
 from beliefnest.worlds.names import check_world
 
-__all__ = ["read_design"]
-
 
 def read_design(path: Path, instead: Mapping[str, Any] | None = None) -> Design | EpisodeDesign:
     """Return the design in a YAML file; paths in the file are relative to its folder.

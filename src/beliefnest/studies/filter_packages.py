@@ -10,8 +10,6 @@ from pathlib import Path
 
 from beliefnest.prompts.filterset import FILTER_GROUP
 
-__all__ = ["PACKAGES", "filter_packages"]
-
 PACKAGES = "packages"
 """Folder of the packages in a supplement."""
 

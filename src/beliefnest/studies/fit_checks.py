@@ -10,16 +10,6 @@ from beliefnest.studies.counting import Row
 from beliefnest.world.array_types import Floats
 from beliefnest.world.words import counted
 
-__all__ = [
-    "FEWEST",
-    "ColumnNames",
-    "certainty_fault",
-    "level_of",
-    "rows_fault",
-    "separation_fault",
-    "support_fault",
-]
-
 FEWEST = 3
 """Least number of variations from which an error between variations can be estimated."""
 

@@ -16,8 +16,6 @@ import numpy as np
 from beliefnest.errors import MissingExtraError
 from beliefnest.world.array_types import Floats
 
-__all__ = ["Z95", "Family", "Fit", "bootstrap", "firth", "gee", "mixed", "statsmodels"]
-
 Family = Literal["binomial", "gaussian"]
 
 Z95 = 1.959963984540054

@@ -11,8 +11,6 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import LayoutEngine, TightLayoutEngine
 from matplotlib.transforms import Bbox
 
-__all__ = ["Fitting"]
-
 _NARROW = 4.5
 """Width in inches below which texts are small and the legend is above the bars."""
 _LARGE, _SMALL = 10.0, 7.0

@@ -9,8 +9,6 @@ from beliefnest.importing import is_object_name, text_of_object
 from beliefnest.scenarios.document import YamlNode
 from beliefnest.world.texts import shortened
 
-__all__ = ["Code", "check_trust", "code_of", "functions_in"]
-
 
 @dataclass(frozen=True, slots=True)
 class Code:

@@ -7,8 +7,6 @@ import msgspec
 from beliefnest.episodes.measures import Measures
 from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm
 
-__all__ = ["PeopleForm", "SecondsForm", "cell_form", "plan_form"]
-
 
 class _Failed(msgspec.Struct):
     error: str

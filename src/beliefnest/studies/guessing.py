@@ -4,8 +4,6 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-__all__ = ["chance_of", "mean_chance"]
-
 
 def chance_of(expected: Mapping[str, Any] | None) -> float | None:
     """Return the probability that guesses meet all expectations of a probe.

@@ -23,8 +23,6 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import read_document
 from beliefnest.scenarios.yaml_reading import templates_file
 
-__all__ = ["InputIndex", "Inputs", "no_inputs"]
-
 FOLDER = "inputs"
 
 

@@ -21,8 +21,6 @@ from beliefnest.studies.worker import CellResult, Worker, play_in_process
 from beliefnest.world.words import counted
 from beliefnest.worlds.minecraft.launching import ahead
 
-__all__ = ["BACKENDS", "OnStudyProgress", "StudyProgress", "run_cells"]
-
 BACKENDS = ("loky", "dask", "ray")
 """Joblib backends: processes of this machine, or a Dask or Ray cluster."""
 

@@ -20,8 +20,6 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.cells import Cell, Plan
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = ["ListsWarning", "with_balanced_lists"]
-
 _MOST_ROUNDS = 50
 _RIGHT = "right answer"
 _WHOLE = 3

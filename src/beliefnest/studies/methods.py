@@ -24,19 +24,6 @@ from beliefnest.studies.run_result import RunResult
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.world.words import counted
 
-__all__ = [
-    "FORMATS",
-    "MethodsForm",
-    "ModelFacts",
-    "RunFacts",
-    "answered",
-    "exchanges_in",
-    "methods_text",
-    "run_facts",
-    "study_facts",
-    "usage_of",
-]
-
 MethodsForm = Literal["markdown", "latex"]
 FORMATS: tuple[MethodsForm, ...] = get_args(MethodsForm)
 

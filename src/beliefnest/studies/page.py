@@ -16,8 +16,6 @@ from beliefnest.studies.table import Table, variation_columns
 from beliefnest.world.texts import visible
 from beliefnest.world.words import counted
 
-__all__ = ["page_text"]
-
 _MOST_ROWS = 2_000
 
 

@@ -16,16 +16,6 @@ if TYPE_CHECKING:  # pandas and pyarrow are optional, and imported when a table 
     import pandas
     import pyarrow
 
-__all__ = [
-    "Typed",
-    "csv_rows",
-    "csv_text",
-    "plain_frame",
-    "read_csv_rows",
-    "write_csv",
-    "write_parquet",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Typed:

@@ -7,8 +7,6 @@ from typing import Any
 from beliefnest.studies.clusters import rate_interval
 from beliefnest.studies.counting import Row
 
-__all__ = ["choices_of", "count_positions"]
-
 
 def choices_of(rows: Sequence[Row], found: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Yield the answers of one cell to questions with options.

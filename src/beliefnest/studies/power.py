@@ -15,15 +15,6 @@ from beliefnest.studies.counting import Pairs
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 
-__all__ = [
-    "AssumedRates",
-    "OnPowerProgress",
-    "Power",
-    "Resampled",
-    "VariationSource",
-    "power_rows",
-]
-
 _ALPHA = 0.05
 _MOST = 10_000
 

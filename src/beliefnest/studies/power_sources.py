@@ -8,8 +8,6 @@ from beliefnest.errors import InputError
 from beliefnest.studies.counting import Pairs, Row, judged_rows
 from beliefnest.studies.power import AssumedRates, Resampled, VariationSource
 
-__all__ = ["SIZES", "assumed_sources", "recorded_sources"]
-
 SIZES = (10, 20, 40, 80, 160, 320)
 """Numbers of variations of simulated studies."""
 

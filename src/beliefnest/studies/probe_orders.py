@@ -5,8 +5,6 @@ from typing import Any
 
 from beliefnest.world.paths import normalised
 
-__all__ = ["order_of"]
-
 
 def order_of(path: str, expected: Mapping[str, Any] | None) -> int:
     """Return the greatest number of agents in the belief paths of a probe: 0 for the real world.

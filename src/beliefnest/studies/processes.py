@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from beliefnest.studies.terms import Terms
     from beliefnest.studies.worker import CellResult
 
-__all__ = ["Supply", "processes"]
-
 _AHEAD = 2
 """Cells that a process has: the one that it plays, and the next one."""
 

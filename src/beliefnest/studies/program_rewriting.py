@@ -12,8 +12,6 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.world.texts import quoted
 
-__all__ = ["Rewriting", "rewritten"]
-
 _COMPUTED = frozenset(
     ("x", "z", "yaw", "offset", "plus", "minus", "translate", "setControlState", "look", "face")
 )

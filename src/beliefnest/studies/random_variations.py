@@ -22,8 +22,6 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.symmetry import SYMMETRIES
 from beliefnest.studies.variation import Variation
 
-__all__ = ["drawn_variations"]
-
 _NAMES = (
     *("ada", "ben", "cleo", "dan", "eve", "finn", "gus", "hana", "ivan", "june", "kai", "lena"),
     *("milo", "nora", "otto", "pia", "quinn", "rosa", "sam", "tess", "uma", "vera", "walt", "zoe"),

@@ -26,18 +26,6 @@ from beliefnest.world.array_types import Floats
 if TYPE_CHECKING:  # pandas is optional, and imported when a table is made.
     import pandas
 
-__all__ = [
-    "FAMILIES",
-    "KINDS",
-    "Effect",
-    "Family",
-    "FitKind",
-    "Regression",
-    "Substitute",
-    "Term",
-    "fit_rows",
-]
-
 FitKind = Literal["gee", "mixed"]
 KINDS: tuple[FitKind, ...] = ("gee", "mixed")
 FAMILIES: tuple[Family, ...] = ("binomial", "gaussian")

@@ -30,8 +30,6 @@ from beliefnest.studies.study_record import StudyRecord
 from beliefnest.studies.terms import Terms
 from beliefnest.world.texts import quoted
 
-__all__ = ["Reproduction", "check_templates", "code_in_study", "reproduce_study"]
-
 
 @dataclass(frozen=True, slots=True)
 class Reproduction:

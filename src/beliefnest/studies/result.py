@@ -11,19 +11,18 @@ from beliefnest.files import replace_file
 from beliefnest.studies.archive import write_zip
 from beliefnest.studies.bundling import bundled
 from beliefnest.studies.counting import count_rows
+from beliefnest.studies.fits import Family
 from beliefnest.studies.methods import MethodsForm, methods_text, study_facts
 from beliefnest.studies.plainframe import Typed, plain_frame, write_csv, write_parquet
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
-from beliefnest.studies.regression import Effect, Family, FitKind, Regression, fit_rows
+from beliefnest.studies.regression import Effect, FitKind, Regression, fit_rows
 from beliefnest.studies.reproducing import Reproduction, reproduce_study
 from beliefnest.studies.study_record import COMPARED, StudyRecord
 
 if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they are needed.
     import pandas
     from matplotlib.figure import Figure
-
-__all__ = ["StudyResult"]
 
 
 class StudyResult(StudyRecord):

@@ -8,8 +8,6 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.world.words import nearest_or_all
 
-__all__ = ["RowFilter"]
-
 _Test = Callable[[Mapping[str, Any]], bool]
 
 _ORDERED: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {

@@ -18,8 +18,6 @@ from beliefnest.studies.table import (
     plain_value,
 )
 
-__all__ = ["PROBES"]
-
 
 def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """Yield the result of each probe.

@@ -15,8 +15,6 @@ from beliefnest.scenarios.record_forms import read_json
 from beliefnest.studies.plainframe import Typed
 from beliefnest.studies.rows import PROBES
 
-__all__ = ["RunResult"]
-
 _REPORT = "run.json"
 _OTHER = "name another folder"
 

@@ -20,8 +20,6 @@ from beliefnest.scenarios.expected_state import ExpectationEntry
 from beliefnest.scenarios.yaml_reading import template_text
 from beliefnest.world.forms import scene_kinds
 
-__all__ = ["SceneChange", "SceneKind", "changed_scene"]
-
 SceneKind = str
 """Kind of a value: `keep`, `block`, `point`, `place` (a block or a point), `yaw`, `facing`,
 `state`, `program`, `text` (read by models), `label` (read only by people), `agent`, `item`, `path`,

@@ -13,8 +13,6 @@ from beliefnest.errors import InputError
 from beliefnest.files import read_regular
 from beliefnest.world.texts import quoted
 
-__all__ = ["Sheet", "decode_sheet", "read_sheet", "spoilt_number", "spoilt_text"]
-
 _DELIMITERS = (",", ";", "\t", "|")
 _MONTHS = (
     "jan janv ene gen feb fev fév févr mar mär mrz märz mars apr avr abr mai may mag maj jun juin "

@@ -12,8 +12,6 @@ from beliefnest.llm.messages import Usage
 from beliefnest.scenarios.record_forms import UsageForm, read_lines
 from beliefnest.studies.study_folder import append_line
 
-__all__ = ["SharedBudget", "spent_in"]
-
 
 @dataclass
 class SharedBudget(RunSpending):

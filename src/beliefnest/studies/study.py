@@ -13,6 +13,7 @@ from beliefnest.llm.model_settings import AskedForm, ModelSettings
 from beliefnest.llm.resolve import check_model, check_structured
 from beliefnest.locking import holding
 from beliefnest.nest.past.versions import own_versions
+from beliefnest.prompts.templates import Template
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.sources import read_document
 from beliefnest.skills.manifests import SkillDetail
@@ -23,7 +24,7 @@ from beliefnest.studies.checking import (
     is_whole,
     several,
 )
-from beliefnest.studies.design import Constraint, Design, Template, template_named
+from beliefnest.studies.design import Constraint, Design, template_named
 from beliefnest.studies.episode_cells import EpisodeCell, plan_episodes
 from beliefnest.studies.episode_design import (
     EpisodeDesign,
@@ -56,8 +57,6 @@ from beliefnest.world.texts import quoted
 
 if TYPE_CHECKING:  # pandas is optional, and imported when a table is made.
     import pandas
-
-__all__ = ["Study"]
 
 
 class Study:

@@ -16,8 +16,6 @@ from beliefnest.locking import is_lock
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
 from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form
 
-__all__ = ["PersonCell", "StudyFolder", "append_line"]
-
 _PLAN = "study.json"
 _PEOPLE = "people.json"
 _FORM = "beliefnest study 1"

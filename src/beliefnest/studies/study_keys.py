@@ -9,13 +9,12 @@ import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.llm.model_settings import ModelSettings, query_of
+from beliefnest.prompts.templates import Template
 from beliefnest.studies.allocation import DESIGNS, Allocation
 from beliefnest.studies.checking import StudyKeyError, checked_conditions, checked_limits, several
-from beliefnest.studies.design import Constraint, Design, Template
+from beliefnest.studies.design import Constraint, Design
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies, listed, seeds_of
 from beliefnest.world.texts import quoted
-
-__all__ = ["StudyKeys", "design_of", "labelled_scenarios"]
 
 
 class StudyKeys(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

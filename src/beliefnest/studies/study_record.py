@@ -20,8 +20,6 @@ from beliefnest.studies.rows import PROBES
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.table import Table, variation_columns
 
-__all__ = ["COMPARED", "StudyRecord"]
-
 COMPARED = (
     *("one", "other", "pairs", "variations", "both", "only_one", "only_other", "difference"),
 )

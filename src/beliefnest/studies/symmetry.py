@@ -10,8 +10,6 @@ from beliefnest.world.terrain import BlockStates, Terrain
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
 
-__all__ = ["SYMMETRIES", "Placing", "Symmetry", "symmetry_named"]
-
 _COMPASS = ("north", "east", "south", "west")
 _SIDED = frozenset(("hinge", "type", "shape"))
 """Properties whose values are left or right; `type` belongs to chests."""

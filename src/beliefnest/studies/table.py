@@ -11,19 +11,6 @@ from beliefnest.studies.allocation import LABEL, LIST, PARTICIPANT
 from beliefnest.studies.copies import rows_with_copies
 from beliefnest.studies.study_folder import StudyFolder
 
-__all__ = [
-    "Column",
-    "ColumnType",
-    "RowSource",
-    "Table",
-    "lost",
-    "of_key",
-    "of_result",
-    "place_text",
-    "plain_value",
-    "variation_columns",
-]
-
 _FAILED = "error"
 _NO_ANSWER = "no_answer"
 assert {_FAILED, _NO_ANSWER} <= set(OUTCOMES)

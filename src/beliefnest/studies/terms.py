@@ -11,8 +11,6 @@ from beliefnest.llm.remote import AnswerLimits
 from beliefnest.llm.resolve import Connection
 from beliefnest.studies.spending import SharedBudget
 
-__all__ = ["Terms"]
-
 
 @dataclass(frozen=True, slots=True)
 class Terms:

@@ -18,8 +18,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Box
 
-__all__ = ["CHANGES", "Variation", "listed_variations"]
-
 CHANGES = ("symmetry", "agents", "items")
 """Keys of `variations` that are not parameters: a symmetry, new names of agents and of items."""
 

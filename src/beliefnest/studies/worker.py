@@ -17,16 +17,15 @@ from beliefnest.llm.resolve import can_vary, is_free, open_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.prompts import Renderer
 from beliefnest.scenarios.content import ScenarioWarning
+from beliefnest.scenarios.probing import Asking
 from beliefnest.scenarios.records import expectation_json, probe_json
-from beliefnest.scenarios.running import Asking, run_scenario
+from beliefnest.scenarios.running import run_scenario
 from beliefnest.studies.cells import Cell, Keyed
 from beliefnest.studies.episode_cells import EpisodeCell
 from beliefnest.studies.episode_playing import play_episode
 from beliefnest.studies.terms import Terms
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.minecraft.launching import Launch
-
-__all__ = ["CellResult", "Worker", "keep_worker", "play_in_process"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,8 +26,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import AgentState, Box, Event, Position
 
-__all__ = ["RunBounds"]
-
 
 @dataclass(frozen=True)
 class RunBounds:

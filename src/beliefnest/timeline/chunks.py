@@ -21,8 +21,6 @@ from beliefnest.timeline.journal import Entry, EntryFilter, count_of_events, is_
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
-__all__ = ["CHUNK_ENTRIES", "Chunks"]
-
 CHUNK_ENTRIES = 128
 """Entries of one compressed chunk; larger chunks hardly compress better and read more slowly."""
 

@@ -20,20 +20,6 @@ from beliefnest.world.packing import packed, unpacked
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, DroppedItem, Event, Items, Position
 
-__all__ = [
-    "decode",
-    "decode_agents",
-    "decode_entry",
-    "decode_last_agents",
-    "decode_snapshot",
-    "decode_ticks",
-    "encode",
-    "encode_entry",
-    "encode_snapshot",
-    "join",
-    "split",
-]
-
 T = TypeVar("T")
 
 _COMPRESSION = 1

@@ -7,8 +7,6 @@ from typing import Any
 
 from beliefnest.timeline.journal import Entry
 
-__all__ = ["EntryDifference", "first_difference"]
-
 _ABSENT = object()
 
 

@@ -31,8 +31,6 @@ from beliefnest.timeline.store_schema import (
 )
 from beliefnest.world.texts import quoted, shortened
 
-__all__ = ["Database", "DatabaseRow", "OlderFormat", "checked", "checksum", "damage"]
-
 T = TypeVar("T")
 
 DatabaseRow = tuple[Any, ...]

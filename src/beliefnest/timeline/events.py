@@ -11,8 +11,6 @@ from beliefnest.world.event_kinds import EventDetail, EventKind, Sense
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Event
 
-__all__ = ["event_from"]
-
 
 def event_from(
     kind: str, actor: str | None, detail: Mapping[str, Any], agents: Collection[str]

@@ -30,8 +30,6 @@ from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 
-__all__ = ["FORMATS", "ExportForm", "export"]
-
 ExportForm = Literal["jsonl", "parquet"]
 FORMATS: tuple[ExportForm, ...] = ("jsonl", "parquet")
 

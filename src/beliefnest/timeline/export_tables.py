@@ -20,22 +20,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state
 from beliefnest.world.values import AgentState, Block, DroppedItem, Items, Position, Sign
 
-__all__ = [
-    "FIRST_ENTRY",
-    "IF_ANY",
-    "TABLES",
-    "BeliefRow",
-    "ColumnForm",
-    "TableRow",
-    "belief_row",
-    "entry_rows",
-    "program_row",
-    "prompt_row",
-    "run_row",
-    "snapshot_rows",
-    "timeline_row",
-]
-
 ColumnForm = Literal["text", "integer", "number", "boolean", "object"]
 """Type of a column's values. Every value may also be null. An object is a JSON object or array."""
 

@@ -14,8 +14,6 @@ from beliefnest.timeline.run_records import ProgramRecord
 from beliefnest.timeline.store_schema import BODY_STATE, STATEMENTS
 from beliefnest.world.texts import quoted
 
-__all__ = ["FORMAT_2", "convert_2"]
-
 FORMAT_2 = tuple(statement for statement in STATEMENTS if statement != BODY_STATE)
 """SQL statements that define the tables of format 2."""
 

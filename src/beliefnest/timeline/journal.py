@@ -17,26 +17,6 @@ from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import AgentState, Block, Items, Position
 
-__all__ = [
-    "FOLLOW",
-    "Edit",
-    "Entry",
-    "EntryFilter",
-    "ForkPoint",
-    "Journal",
-    "TimelineInfo",
-    "TimelineKey",
-    "branch_carries",
-    "branch_missing",
-    "branch_taken",
-    "check_append",
-    "check_base",
-    "check_place",
-    "count_of_events",
-    "is_found",
-    "lineage",
-]
-
 FOLLOW = "follow"
 """Reserved branch name: the timeline of a simulator in follow mode."""
 

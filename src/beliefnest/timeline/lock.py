@@ -8,8 +8,6 @@ from pathlib import Path
 from beliefnest.errors import StoreError
 from beliefnest.locking import LockHeldError, ProcessLock
 
-__all__ = ["writer_lock"]
-
 
 def writer_lock(file: Path) -> ProcessLock:
     """Take the right to write a run file, held until `release` or the end of the process.

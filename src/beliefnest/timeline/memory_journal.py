@@ -34,8 +34,6 @@ from beliefnest.timeline.stored_states import StoredStates
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
-__all__ = ["MemoryJournal"]
-
 _RECENT = 512
 """Least number of entries that a timeline keeps in memory before it packs older ones."""
 

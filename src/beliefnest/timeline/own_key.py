@@ -15,8 +15,6 @@ from pathlib import Path
 
 from beliefnest.files import read_regular
 
-__all__ = ["MARK_BYTES", "Marks", "own_marks"]
-
 MARK_BYTES = 32
 _KEY_BYTES = 32
 

@@ -14,17 +14,6 @@ from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.texts import quoted
 
-__all__ = [
-    "ProgramRecord",
-    "PromptRecord",
-    "Records",
-    "RunJournal",
-    "RunRecord",
-    "Senses",
-    "path_from",
-    "path_to",
-]
-
 _NUMBER = re.compile(r"-?[0-9]{1,18}", re.ASCII)
 
 Senses = Literal["world", "percepts"]

@@ -14,8 +14,6 @@ from beliefnest.timeline.journal import (
 from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.world.values import AgentState
 
-__all__ = ["SideJournal"]
-
 
 class SideJournal(MemoryJournal):
     """Timelines in memory whose bases may be in another journal.

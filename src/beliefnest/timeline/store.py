@@ -36,8 +36,6 @@ from beliefnest.world.paths import path_text
 from beliefnest.world.texts import quoted, shortened
 from beliefnest.world.values import AgentState
 
-__all__ = ["SqliteJournal"]
-
 _OLDER = (OlderFormat(2, FORMAT_2, convert_2),)
 
 

@@ -8,17 +8,6 @@ import sqlite3
 from collections.abc import Iterable
 from contextlib import closing
 
-__all__ = [
-    "APPLICATION_ID",
-    "BODY_STATE",
-    "PAST",
-    "RECORDS",
-    "SCHEMA_VERSION",
-    "SMALL_TABLES",
-    "STATEMENTS",
-    "expected_schema",
-]
-
 APPLICATION_ID = 0x42656C4E
 """SQLite application id that marks a file as a run ("BelN")."""
 

@@ -6,8 +6,6 @@ from beliefnest.timeline.chunks import Chunks
 from beliefnest.timeline.database import Database
 from beliefnest.timeline.own_key import Marks
 
-__all__ = ["StoredStates"]
-
 _LARGEST = 2**28
 """Greatest unpacked size of a checkpoint or the state of a body, in bytes."""
 

@@ -19,7 +19,7 @@ from beliefnest.perception.options import Perception
 from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, Journal, TimelineKey
 from beliefnest.world.claims import Claim, claims_from_plain, claims_of
-from beliefnest.world.event_kinds import AT_CONTAINERS
+from beliefnest.world.event_kinds import AT_CONTAINERS, EventKind
 from beliefnest.world.frames import Frame, PlainClaims, Snapshot
 from beliefnest.world.limits import (
     AGENT_SLOTS,
@@ -44,14 +44,11 @@ from beliefnest.world.values import (
     Box,
     DroppedItem,
     Event,
-    EventKind,
     Items,
     Point,
     Position,
     block_at,
 )
-
-__all__ = ["BadLine", "Trace", "load_trace", "read_trace", "record_trace"]
 
 _LONGEST_LINE = 2**26
 """Greatest length of a line in bytes."""

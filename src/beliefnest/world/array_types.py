@@ -3,8 +3,6 @@
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["Cells", "Codes", "Flags", "Floats", "Ints", "States"]
-
 Cells = npt.NDArray[np.int64]
 """Cells of a grid: their numbers, shape (n,), or their indices, shape (n, 3)."""
 Codes = npt.NDArray[np.uint16]

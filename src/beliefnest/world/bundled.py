@@ -7,8 +7,6 @@ import msgspec
 
 from beliefnest.errors import BodyError
 
-__all__ = ["Bundled", "read_bundled"]
-
 _BUNDLE = Path(__file__).parents[1] / "_bundle"
 
 

@@ -13,8 +13,6 @@ import msgspec
 
 from beliefnest.world.bundled import Bundled, read_bundled
 
-__all__ = ["CircuitFacts", "Circuits"]
-
 _FORMAT = 1
 
 

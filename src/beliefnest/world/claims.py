@@ -13,19 +13,11 @@ from typing import Any, Literal
 import msgspec
 
 from beliefnest.errors import BeliefNestError, InputError
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
-from beliefnest.world.values import Box, Event, EventKind, Point, Position, Sign, block_at
-
-__all__ = [
-    "Claim",
-    "ClaimKind",
-    "claims_from_plain",
-    "claims_of",
-    "claims_written",
-    "with_claims",
-]
+from beliefnest.world.values import Box, Event, Point, Position, Sign, block_at
 
 
 class ClaimKind(StrEnum):

@@ -8,8 +8,6 @@ import numpy as np
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box
 
-__all__ = ["cuboids", "distinct_cells"]
-
 
 def distinct_cells(blocks: Terrain) -> int:
     """Return the number of cells that are left if each layer like the one before it is left out."""

@@ -6,8 +6,6 @@ from beliefnest.errors import WorldError
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["is_door", "is_doorway", "is_open", "is_switch", "moves_by_hand", "passage", "used_door"]
-
 _KINDS = ("_door", "_trapdoor", "_fence_gate")
 _BY_POWER = "iron_"
 _WAYS = ("_door", "_fence_gate")

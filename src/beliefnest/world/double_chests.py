@@ -13,21 +13,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
-__all__ = [
-    "ByEitherHalf",
-    "StateAt",
-    "believed_container_at",
-    "container_at",
-    "halves_in",
-    "holds_items",
-    "is_double",
-    "is_left_half",
-    "left_half_of",
-    "other_half",
-    "states_in",
-    "whole_chests",
-]
-
 StateAt = Callable[[Position], int]
 """Function that returns the block state at a position: air outside the world, -1 if unknown."""
 

@@ -9,8 +9,6 @@ from typing import Any, Self
 
 import msgspec
 
-__all__ = ["AT_CONTAINERS", "EventDetail", "EventKind", "Sense", "Traits"]
-
 
 class Sense(IntEnum):
     """Senses by which agents perceive the events of others; an actor perceives its own.

@@ -4,22 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.signs import sign_words
-from beliefnest.world.values import EventKind, Position
+from beliefnest.world.values import Position
 from beliefnest.world.words import items_words, point_words, with_the
-
-__all__ = [
-    "EVENT_WORDS",
-    "EventWords",
-    "did",
-    "did_to_block",
-    "happened",
-    "happens",
-    "is_lid",
-    "kind_words",
-    "skill_of",
-]
 
 
 class _Event(Protocol):

@@ -6,8 +6,6 @@ import msgspec
 
 from beliefnest.world.limits import FARTHEST
 
-__all__ = ["Within", "WrittenPoint", "WrittenPosition", "note", "scene_kinds"]
-
 
 def note(text: str, scene: str | None = None) -> msgspec.Meta:
     """Return the description of a key, for the published schema.

@@ -23,8 +23,6 @@ from beliefnest.world.values import (
     Sign,
 )
 
-__all__ = ["BlockGrid", "Frame", "PlainClaims", "Snapshot", "places_of"]
-
 PlainClaims = tuple[Mapping[str, Any], ...]
 """Claims as plain data."""
 

@@ -17,16 +17,6 @@ from beliefnest.world.double_chests import StateAt
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Items, Point, Position
 
-__all__ = [
-    "Handling",
-    "check_holds_nothing",
-    "free_to_put",
-    "pressed_button",
-    "put_block",
-    "switched_lever",
-    "with_power",
-]
-
 _FORMAT = 1
 _SIDES = ((0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0), (1, 0, 0))
 _HALF_WIDTH, _HEIGHT = 0.3, 1.8

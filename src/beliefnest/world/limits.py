@@ -26,29 +26,6 @@ from beliefnest.world.values import (
     Sign,
 )
 
-__all__ = [
-    "AGENT_SLOTS",
-    "FARTHEST",
-    "LARGEST_NUMBER",
-    "LATEST_TICK",
-    "MOST_AGENTS",
-    "WORN_SLOTS",
-    "agent_fault",
-    "agent_name_fault",
-    "agents_fault",
-    "block_fault",
-    "box_fault",
-    "container_slots",
-    "divided",
-    "dropped_fault",
-    "held_fault",
-    "items_fault",
-    "point_fault",
-    "slots_at",
-    "snapshot_fault",
-    "tick_fault",
-]
-
 FARTHEST = 30_000_000
 """Greatest absolute coordinate in blocks, as in Minecraft."""
 

@@ -5,8 +5,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-__all__ = ["MEGABYTE", "MemoryLimit", "memory_limit"]
-
 MEGABYTE = 1_000_000
 
 

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field
 from beliefnest.world.claims import Claim
 from beliefnest.world.values import Box, Position
 
-__all__ = ["ClaimsFrom", "Nameable"]
-
 
 @dataclass(frozen=True, slots=True)
 class Nameable:

@@ -6,8 +6,6 @@ from typing import Final
 
 from beliefnest.world.values import Point, Position
 
-__all__ = ["BESIDE", "NEAR", "names_near"]
-
 NEAR: Final = 3.0
 """Distance in blocks up to which an agent counts as being at a named place."""
 

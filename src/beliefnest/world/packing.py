@@ -12,8 +12,6 @@ import zstandard
 
 from beliefnest.world.terrain import VOLUME, Lattice, Terrain
 
-__all__ = ["packed", "unpacked"]
-
 
 def packed(terrain: Terrain, level: int) -> tuple[bytes, int]:
     """Return the bytes of a terrain, and the number of its different chunks; 0: it is one chunk.

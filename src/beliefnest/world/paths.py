@@ -5,16 +5,6 @@ from collections.abc import Collection, Iterable
 from beliefnest.errors import PathError
 from beliefnest.world.texts import quoted
 
-__all__ = [
-    "AND_BELOW",
-    "BeliefPath",
-    "normalised",
-    "parse_path",
-    "parse_pattern",
-    "path_text",
-    "paths_below",
-]
-
 BeliefPath = tuple[str, ...]
 """Agent names, the outermost believer first. The empty path is the real world."""
 

@@ -23,8 +23,6 @@ from beliefnest.errors import BodyError, InputError, UnknownNameError
 from beliefnest.world.bundled import Bundled, read_bundled
 from beliefnest.world.texts import quoted
 
-__all__ = ["AIR", "CONTAINER_NAMES", "BoxBounds", "Registry", "block_name", "parse_state"]
-
 AIR = 0
 """State id of air; it is the same in every version of the protocol."""
 

@@ -4,8 +4,6 @@ import operator
 
 from beliefnest.errors import InputError
 
-__all__ = ["checked_seed"]
-
 
 def checked_seed(seed: object, name: str = "seed") -> int:
     """Return a valid seed as a Python number; NumPy numbers are converted.

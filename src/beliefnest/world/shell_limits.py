@@ -4,8 +4,6 @@ import sys
 import threading
 from collections.abc import Iterator
 
-__all__ = ["low_limits"]
-
 # Measured with Node 24 on Linux; a limit may be a little higher and still be too low.
 _NEEDS = (
     ("RLIMIT_AS", "-v", 2_500_000, 1024),

@@ -9,18 +9,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import escaped, fault_of
 from beliefnest.world.values import Block, Sign
 
-__all__ = [
-    "LONGEST_LINE",
-    "MOST_LINES",
-    "block_words",
-    "is_sign",
-    "plain_state",
-    "sign_fault",
-    "sign_words",
-    "text_of",
-    "written",
-]
-
 MOST_LINES = 4
 """Number of lines of a sign, as in Minecraft."""
 

@@ -18,24 +18,6 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-__all__ = [
-    "DENSE",
-    "MARGIN",
-    "SIDE",
-    "VOLUME",
-    "BlockStates",
-    "ChunkCounts",
-    "Counts",
-    "Draft",
-    "Index",
-    "Lattice",
-    "Layers",
-    "Slabs",
-    "StateChange",
-    "Terrain",
-    "chunks_of",
-]
-
 SIDE = 8
 """Number of cells along an edge of a chunk, a power of 2."""
 VOLUME = SIDE**3

@@ -3,21 +3,6 @@
 import re
 import unicodedata
 
-__all__ = [
-    "LONGEST_QUOTE",
-    "LONGEST_UTTERANCE",
-    "MOST_UTTERANCES",
-    "escaped",
-    "fault_of",
-    "formula_free",
-    "is_well_formed",
-    "on_one_line",
-    "quoted",
-    "shortened",
-    "visible",
-    "visible_json",
-]
-
 LONGEST_UTTERANCE = 256
 """Greatest number of characters in a line of chat, as in Minecraft."""
 

@@ -14,28 +14,6 @@ from typing import Any, NamedTuple
 from beliefnest.errors import PositionError
 from beliefnest.world.event_kinds import EventKind
 
-__all__ = [
-    "AGENT_SAMPLE_HEIGHTS",
-    "BODY_CENTRE_HEIGHT",
-    "EQUIPMENT_SLOTS",
-    "EYE_HEIGHT",
-    "HALF_WIDTH",
-    "TICKS_PER_SECOND",
-    "AgentState",
-    "Block",
-    "Box",
-    "DroppedItem",
-    "Event",
-    "EventKind",
-    "Items",
-    "Placements",
-    "Point",
-    "Position",
-    "Sign",
-    "block_at",
-    "feet_in",
-]
-
 TICKS_PER_SECOND = 20
 EYE_HEIGHT = 1.62
 HALF_WIDTH = 0.3

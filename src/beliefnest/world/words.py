@@ -7,19 +7,6 @@ from beliefnest.world.signs import is_sign
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items
 
-__all__ = [
-    "contents_words",
-    "counted",
-    "items_words",
-    "listed",
-    "nearest_or_all",
-    "point_text",
-    "point_words",
-    "things_words",
-    "told_apart",
-    "with_the",
-]
-
 _DETERMINERS = frozenset({"the", "a", "an", "my", "his", "her", "our", "your", "their"})
 _STATES = {"open": ("open", "shut"), "powered": ("on", "off"), "lit": ("lit", "out")}
 

@@ -16,8 +16,6 @@ from beliefnest.worlds.servers.listening import ListenAddress, is_hosted
 from beliefnest.worlds.servers.realtime import RealtimeWorld
 from beliefnest.worlds.servers.server_world import MinecraftWorld
 
-__all__ = ["Worlds", "hosted_of", "new_world", "open_world", "realtime_of"]
-
 
 def new_world(
     name: str, seed: int, limits: ProcessLimits | None = None, launch: Launch | None = None

@@ -4,8 +4,6 @@ from beliefnest.errors import InputError, UnknownNameError
 from beliefnest.worlds.servers.address import SCHEME, ServerAddress, is_server
 from beliefnest.worlds.servers.listening import DEFAULT_PORT, ListenAddress, is_hosted
 
-__all__ = ["WORLDS", "check_world", "world_name"]
-
 WORLDS = ("embedded", "scripted")
 """Names of the worlds.
 

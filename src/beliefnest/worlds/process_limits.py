@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 from beliefnest.errors import InputError
 
-__all__ = ["ProcessLimits"]
-
 
 @dataclass(frozen=True, slots=True)
 class ProcessLimits:

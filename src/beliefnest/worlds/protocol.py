@@ -4,35 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import (
-    AgentState,
-    DroppedItem,
-    Event,
-    EventKind,
-    Placements,
-    Point,
-    Position,
-)
-
-__all__ = [
-    "AS_USUAL",
-    "KILLED",
-    "NO_WAY",
-    "Aim",
-    "Body",
-    "Called",
-    "Fault",
-    "ProgramPast",
-    "ProgramResult",
-    "RunRules",
-    "SenseSource",
-    "Sensed",
-    "Sink",
-    "Unfinished",
-    "World",
-]
+from beliefnest.world.values import AgentState, DroppedItem, Event, Placements, Point, Position
 
 Sink = Callable[[Frame], None]
 """Receiver of a body's frames, in order of tick."""

@@ -11,8 +11,6 @@ from beliefnest.errors import InputError
 from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, checked_form, read_json
 from beliefnest.studies.result import StudyResult
 
-__all__ = ["FrameSource", "RecordedCell", "cells_of", "study_of"]
-
 FrameSource = str | Path | StudyResult
 """A run file, the folder of a run, the folder of a study, or a study's result."""
 

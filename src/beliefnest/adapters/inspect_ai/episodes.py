@@ -29,8 +29,6 @@ from beliefnest.errors import InputError
 from beliefnest.llm.messages import Answer, Message, Sampling, Usage
 from beliefnest.studies.cells import variation_id
 
-__all__ = ["episode_task", "goal_reached", "play_episode"]
-
 _OMNISCIENT = "omniscient"
 
 

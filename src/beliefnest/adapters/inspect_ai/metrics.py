@@ -23,19 +23,6 @@ from beliefnest.scenarios.judging import NOT_ANSWERED
 from beliefnest.studies.clusters import rate_interval
 from beliefnest.suites.films.film import JudgedPart
 
-__all__ = [
-    "CLUSTER",
-    "beliefs_r",
-    "chance",
-    "desires_r",
-    "interval",
-    "mean_of_epochs",
-    "metrics_by",
-    "not_answered",
-    "rated",
-    "stderr_of_epochs",
-]
-
 CLUSTER = "cluster"
 """Key of a sample's metadata with the name of its scene."""
 

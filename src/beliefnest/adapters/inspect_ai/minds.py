@@ -48,8 +48,6 @@ from beliefnest.suites.films.rating import (
 )
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = ["course_in_words", "films_task", "like_inference", "minds_task"]
-
 
 def minds_task(
     scenarios: str | list[str], *, conditions: int | list[int] | None, world: str, seed: int

@@ -16,8 +16,6 @@ from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.variation import Variation
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = ["JudgedOutcome", "ScenarioStage", "requests_of"]
-
 _ONCE = Asking(attempts=1)
 
 

@@ -24,8 +24,6 @@ from beliefnest.suites.stories.explaining import explain_answer
 from beliefnest.suites.stories.played_story import PlayedStory
 from beliefnest.suites.stories.suite import READERS
 
-__all__ = ["NOWHERE", "story_answer", "suite_task"]
-
 NOWHERE = "in none of them"
 """Answer option for a thing that is in no container."""
 

@@ -19,16 +19,6 @@ from beliefnest.errors import InputError, ModelError
 from beliefnest.llm.failures import NOT_ASKED
 from beliefnest.llm.messages import Finish, Message
 
-__all__ = [
-    "ask_once",
-    "finish_of",
-    "messages_of",
-    "score_of",
-    "several_files",
-    "task_of",
-    "without_answer",
-]
-
 _NO_ANSWER = "no_answer"
 """Outcome, and key of a sample's metadata with the reason."""
 

@@ -28,8 +28,6 @@ from beliefnest.studies.design import Design
 from beliefnest.studies.guessing import chance_of
 from beliefnest.studies.probe_orders import order_of
 
-__all__ = ["belief_prompt", "in_the_belief", "scenario_task"]
-
 _KEPT = ("intended", "opened", "arrived", "program", "ticks", "error", "log", "replies", "checks")
 
 

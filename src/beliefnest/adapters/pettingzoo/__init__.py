@@ -15,8 +15,8 @@ if TYPE_CHECKING:  # Imported when an environment is made.
     from beliefnest.adapters.pettingzoo.vector import BeliefVectorEnv
     from beliefnest.episodes.task import Task
     from beliefnest.nest.face.nest import Nest
-    from beliefnest.nest.past.setting import Senses
     from beliefnest.scenarios.scenario import Scenario
+    from beliefnest.timeline.run_records import Senses
 
 __all__ = ["aec_env", "parallel_env", "vector_env"]
 

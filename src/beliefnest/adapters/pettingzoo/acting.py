@@ -6,20 +6,19 @@ from typing import Protocol
 
 import numpy as np
 
-from beliefnest.adapters.pettingzoo.actions import Call
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.nest import Nest
-from beliefnest.nest.past.setting import Senses
+from beliefnest.skills.calls import Call
+from beliefnest.timeline.run_records import Senses
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import AgentState, EventKind, Position
+from beliefnest.world.values import AgentState, Position
 from beliefnest.worlds.scripted.footpaths import Ground
 from beliefnest.worlds.scripted.hand import Doing, Hand
 from beliefnest.worlds.scripted.skills import perform
-
-__all__ = ["Acting", "ActionState", "JointStep", "ProgramActing", "SkillActing"]
 
 
 @dataclass(frozen=True, slots=True)

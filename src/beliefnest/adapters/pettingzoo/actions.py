@@ -12,8 +12,6 @@ from beliefnest.skills.calls import Call, callables
 from beliefnest.skills.manifests import Parameter
 from beliefnest.world.values import Position
 
-__all__ = ["MOST_ITEMS", "Call", "Calls", "NamedAction", "NotKnownError"]
-
 _LONGEST = 200
 """Greatest number of characters of an action in a message."""
 

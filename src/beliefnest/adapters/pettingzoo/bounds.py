@@ -18,8 +18,6 @@ from beliefnest.world.claims import Claim
 from beliefnest.world.registry import parse_state
 from beliefnest.world.values import Box, Position
 
-__all__ = ["Arrays", "Phrases", "SpaceBounds", "ThingsLayout"]
-
 Arrays = dict[str, npt.NDArray[Any]]
 """An observation or a belief as arrays by name."""
 

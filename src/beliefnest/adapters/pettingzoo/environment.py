@@ -10,13 +10,7 @@ from gymnasium import spaces
 from pettingzoo import ParallelEnv
 
 from beliefnest.adapters.pettingzoo.acting import Acting, ActionState, ProgramActing, SkillActing
-from beliefnest.adapters.pettingzoo.actions import (
-    MOST_ITEMS,
-    Call,
-    Calls,
-    NamedAction,
-    NotKnownError,
-)
+from beliefnest.adapters.pettingzoo.actions import MOST_ITEMS, Calls, NamedAction, NotKnownError
 from beliefnest.adapters.pettingzoo.bounds import Phrases, SpaceBounds, ThingsLayout
 from beliefnest.adapters.pettingzoo.layout import layout_of
 from beliefnest.adapters.pettingzoo.order import KnownOrder, Things
@@ -30,15 +24,14 @@ from beliefnest.episodes.task import Task
 from beliefnest.errors import InputError, PathError, UnknownNameError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.history import context_of
-from beliefnest.nest.past.setting import Senses
 from beliefnest.owned import Owned
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.skills.calls import Call
+from beliefnest.timeline.run_records import Senses
 from beliefnest.world.paths import BeliefPath, parse_path, path_text, paths_below
 from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.names import check_world
-
-__all__ = ["BeliefEnv", "BeliefSpace", "EnvironmentOptions"]
 
 _MAX_STEPS = 100
 _TIMEOUT_TICKS = 1200

@@ -7,8 +7,6 @@ from beliefnest.adapters.pettingzoo.order import placed_states
 from beliefnest.nest.past.setting import Setting
 from beliefnest.world.registry import Registry
 
-__all__ = ["layout_of"]
-
 
 def layout_of(setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> ThingsLayout:
     """Return the layout of the start of a scenario.

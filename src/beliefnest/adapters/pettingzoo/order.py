@@ -19,8 +19,6 @@ from beliefnest.world.signs import is_sign
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Position
 
-__all__ = ["KINDS", "PLACED", "KnownOrder", "Things", "placed_states"]
-
 PLACED = ("containers", "doors", "levers", "buttons", "signs")
 """Kinds of things that are blocks."""
 KINDS = ("agents", "items", *PLACED)

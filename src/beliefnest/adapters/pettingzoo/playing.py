@@ -7,15 +7,13 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from beliefnest.adapters.pettingzoo.acting import ActionState, JointStep
-from beliefnest.adapters.pettingzoo.actions import Call
 from beliefnest.episodes.agent_view import GO_ON, AgentView
 from beliefnest.episodes.decided import latest_end
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.task import Task
 from beliefnest.nest.face.nest import Nest
+from beliefnest.skills.calls import Call
 from beliefnest.worlds.by_name import Worlds
-
-__all__ = ["Instances", "TaskActing"]
 
 _FAILED = ("no_way", "failed", "lost")
 _SPEECH = ("say", "whisper")

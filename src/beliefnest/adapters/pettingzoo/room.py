@@ -11,8 +11,6 @@ from beliefnest.belief.node_memory import check_depth, check_room
 from beliefnest.errors import InputError
 from beliefnest.world.memory import MEGABYTE
 
-__all__ = ["check_arrays", "check_nested"]
-
 _MOST_BYTES = 256_000_000
 """Greatest size of one observation."""
 _BOUNDS = 2

@@ -13,8 +13,6 @@ from beliefnest.adapters.pettingzoo.environment import BeliefEnv, BeliefSpace
 from beliefnest.errors import InputError
 from beliefnest.world.seeds import checked_seed
 
-__all__ = ["BeliefVectorEnv"]
-
 _Flags = npt.NDArray[np.bool_]
 
 

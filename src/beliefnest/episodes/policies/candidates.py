@@ -16,8 +16,6 @@ from beliefnest.world.values import Position, block_at
 _MOST_PARTNERS = 3
 """Number of agents to whom items may be handed in a crowd."""
 
-__all__ = ["calls_of", "claims_of_mind", "is_news", "items_of", "said"]
-
 
 def items_of(goals: Sequence[Goal]) -> list[str]:
     """Return the items in goals, sorted."""

@@ -25,19 +25,9 @@ from beliefnest.nest.acting.imagination import Imagination, Performer
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills.calls import Call
 from beliefnest.world.doors import is_door
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.registry import parse_state
-from beliefnest.world.values import Event, EventKind, Position
-
-__all__ = [
-    "OPEN",
-    "REACHED",
-    "USUAL",
-    "VIOLATED",
-    "CourseScore",
-    "FoundPlan",
-    "Planner",
-    "SearchBounds",
-]
+from beliefnest.world.values import Event, Position
 
 CourseScore = tuple[float, ...]
 """Score of a plan, compared from left to right; less is better."""

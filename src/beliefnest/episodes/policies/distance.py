@@ -11,8 +11,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.world_facts import WorldFacts
 
-__all__ = ["BeliefFacts", "MindFacts", "distance", "held", "is_visible"]
-
 
 class MindFacts(WorldFacts):
     """Facts of an imagination's own reality at its latest tick, from which a planner acts.

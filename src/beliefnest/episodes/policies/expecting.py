@@ -25,8 +25,6 @@ from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.skills.calls import Call, program_of
 from beliefnest.world.values import Position
 
-__all__ = ["Expecting", "GoalShares", "combinations", "uniform"]
-
 GoalShares = Mapping[str, Mapping[str, float]]
 """Probability of each possible goal, by agent and name of the goal."""
 

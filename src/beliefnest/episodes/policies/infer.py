@@ -27,12 +27,11 @@ from beliefnest.minds.ways import Floor
 from beliefnest.nest.acting.imagination import Imagination
 from beliefnest.scenarios.goals import Goal
 from beliefnest.world.claims import ClaimKind
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import EventKind, Position
+from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.footpaths import InReach
 from beliefnest.worlds.scripted.hand import REACH
-
-__all__ = ["Infer", "goals_of_planner", "posterior"]
 
 _WORTH = 100.0
 """Utility of a goal, in steps."""

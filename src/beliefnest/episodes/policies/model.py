@@ -11,8 +11,6 @@ from beliefnest.prompts import built_in_template
 from beliefnest.scenarios.goals import Goal
 from beliefnest.skills import skills_at
 
-__all__ = ["ModelPolicy", "OmniscientModelPolicy"]
-
 
 @dataclass
 class ModelPolicy:

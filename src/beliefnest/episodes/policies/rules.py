@@ -23,8 +23,6 @@ from beliefnest.skills.calls import Call, program_of
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Position
 
-__all__ = ["KEYS", "Rule", "features_of", "linear_key", "places_of", "rule_of"]
-
 Tells = Literal["", "tell", "tell-all"]
 
 KEYS = ("nearest", "farthest", "first", "last", "last-seen", "copy", "any")

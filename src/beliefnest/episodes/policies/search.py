@@ -17,8 +17,6 @@ from beliefnest.episodes.policies.course_planner import (
 from beliefnest.episodes.policies.expecting import Expecting, uniform
 from beliefnest.skills.calls import program_of
 
-__all__ = ["Omniscient", "Search"]
-
 _MOST_COURSES = 10
 _OUTCOMES: Mapping[float, CourseOutcome] = {REACHED: "reached", OPEN: "open", VIOLATED: "violated"}
 _FAILED = ("failed", "no_way")

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from beliefnest.episodes.agent_view import GO_ON, AgentView
 from beliefnest.episodes.policies.candidates import calls_of, claims_of_mind, said
 
-__all__ = ["Person", "Program", "Random", "Scripted"]
-
 
 @dataclass(frozen=True)
 class Person:

@@ -18,8 +18,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Items, Position
 
-__all__ = ["likelihoods_of_traces"]
-
 _MISTAKEN = 0.1
 """Probability of a difference between a found block or content and the true course."""
 

@@ -5,21 +5,6 @@ from typing import Any
 
 from beliefnest.world.values import Position
 
-__all__ = [
-    "FLOOR",
-    "WALL",
-    "WINDOW",
-    "abreast",
-    "also",
-    "belief",
-    "booths",
-    "chest",
-    "floor",
-    "hall",
-    "passages",
-    "wall",
-]
-
 FLOOR, WALL, WINDOW = "smooth_stone", "stone_bricks", "glass"
 
 

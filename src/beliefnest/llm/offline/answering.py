@@ -18,8 +18,6 @@ from beliefnest.llm.offline.planning import believed_place
 from beliefnest.llm.offline.prompt_reading import PromptReading, words
 from beliefnest.world.values import Point
 
-__all__ = ["answer_question"]
-
 _NEAR = 3.0
 _OPTION = re.compile(r"^([A-Z])\) (.+)$", re.MULTILINE)
 _NOT_KNOWN = "I do not know"

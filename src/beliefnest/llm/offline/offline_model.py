@@ -9,8 +9,6 @@ from beliefnest.llm.offline.planning import plan
 from beliefnest.llm.offline.program_texts import fenced
 from beliefnest.llm.offline.prompt_reading import read_prompt
 
-__all__ = ["OfflineModel"]
-
 _QUESTION = re.compile(r"^Question: *(.+)$", re.MULTILINE)
 
 

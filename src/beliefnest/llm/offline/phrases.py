@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from beliefnest.llm.offline.prompt_reading import points_in, words
 from beliefnest.world.values import Point
 
-__all__ = ["match_item", "match_name", "place_named_last", "singular"]
-
 _NOT_THERE = frozenset({"from", "leave", "leaves", "leaving", "left", "not"})
 _ARTICLES = frozenset({"a", "an", "the"})
 

@@ -26,8 +26,6 @@ from beliefnest.llm.offline.phrases import match_item, match_name, place_named_l
 from beliefnest.llm.offline.prompt_reading import PromptReading, points_in, words
 from beliefnest.world.values import Point
 
-__all__ = ["believed_place", "plan"]
-
 _GO = re.compile(
     r"(?:please )?(?:go|walk|move|come|run|return|travel|head)(?: back| over)? to (?:the )?(.+)",
     re.IGNORECASE,

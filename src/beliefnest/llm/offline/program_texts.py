@@ -5,17 +5,6 @@ from collections.abc import Mapping, Sequence
 
 from beliefnest.world.values import Point
 
-__all__ = [
-    "fenced",
-    "give_item",
-    "go_to",
-    "look_for_player",
-    "search_chests",
-    "take_items",
-    "vector",
-    "wonder",
-]
-
 _SEARCH_DISTANCE = 20
 
 

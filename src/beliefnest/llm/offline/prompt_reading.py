@@ -8,9 +8,6 @@ from dataclasses import dataclass
 
 from beliefnest.world.values import Point
 
-__all__ = ["HeardUtterance", "PromptReading", "points_in", "read_prompt", "words"]
-
-
 _HEADING = re.compile(r"([A-Z][A-Za-z ]*):")
 _TASK = re.compile(r"Task:\s*(.*)")
 _DIVIDER = re.compile(r"<[^<>]+>|\[[^\[\]]*\]")

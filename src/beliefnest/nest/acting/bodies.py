@@ -25,8 +25,6 @@ from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.worlds.by_name import hosted_of
 from beliefnest.worlds.protocol import Body, ProgramPast, SenseSource, World
 
-__all__ = ["Bodies"]
-
 
 @dataclass(frozen=True, slots=True)
 class _RecordedBody:

@@ -13,8 +13,6 @@ from beliefnest.perception.sight import Sight, SightLines
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Point, Position, block_at
 
-__all__ = ["Agreement", "Tolerance", "Witness"]
-
 _MOST_GRIDS = 4096
 _DEEDS = "actions at containers"
 

@@ -33,8 +33,6 @@ from beliefnest.worlds.scripted.powered import switches_in
 from beliefnest.worlds.scripted.programs import RunningPrograms
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
-__all__ = ["Candidate", "Course", "CoursePlan", "Glimpse", "PolicyProgram", "Seeds"]
-
 PolicyProgram = Callable[["Course", str], str]
 """Function that returns the next program of an agent in a course; empty: nothing more."""
 

@@ -4,11 +4,10 @@ from collections.abc import Collection
 
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import Event, EventKind
+from beliefnest.world.values import Event
 from beliefnest.worlds.servers.hosted import HostedWorld
-
-__all__ = ["Earshot"]
 
 
 class Earshot:

@@ -22,8 +22,6 @@ from beliefnest.worlds.minecraft.exhibits import Exhibit, Plot, Shown, display_n
 from beliefnest.worlds.protocol import World
 from beliefnest.worlds.servers.realtime import RealtimeWorld
 
-__all__ = ["Embodying"]
-
 _REALITY: BeliefPath = ()
 _RADII = (8, 32, 64)
 """Distances in blocks within which a place to stand is searched, one after the other."""

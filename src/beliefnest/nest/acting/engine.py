@@ -22,9 +22,8 @@ from beliefnest.nest.acting.speculation import Speculation, SpeculationStart, sp
 from beliefnest.nest.past.body_state import internal_state_at, note_internal_state, present
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
-from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, Edit, ForkPoint, TimelineInfo, TimelineKey
-from beliefnest.timeline.run_records import ProgramRecord
+from beliefnest.timeline.run_records import ProgramRecord, Senses
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Block, Items, Position
 from beliefnest.worlds.protocol import (
@@ -36,8 +35,6 @@ from beliefnest.worlds.protocol import (
     RunRules,
     World,
 )
-
-__all__ = ["Engine"]
 
 P = ParamSpec("P")
 R = TypeVar("R")

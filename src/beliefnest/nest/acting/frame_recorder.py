@@ -7,10 +7,8 @@ from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.hearsay import Hearsay, has_unread
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import EventKind
-
-__all__ = ["ChatListener", "FrameRecorder"]
 
 SpokenLine = tuple[int, str, str]
 """Tick, speaker, text."""

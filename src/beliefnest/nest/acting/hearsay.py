@@ -15,13 +15,12 @@ from beliefnest.timeline.journal import TimelineKey
 from beliefnest.world.claims import Claim, with_claims
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.double_chests import holds_items
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import block_name
-from beliefnest.world.values import Event, EventKind, Position
-
-__all__ = ["ClaimReader", "Hearsay", "has_unread", "recalled"]
+from beliefnest.world.values import Event, Position
 
 
 class ClaimReader(Protocol):

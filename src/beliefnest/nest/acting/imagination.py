@@ -40,8 +40,6 @@ if TYPE_CHECKING:  # Programs take long to import, and few imaginations run one.
     from beliefnest.worlds.scripted.desk import Desk
     from beliefnest.worlds.scripted.ground_cache import Grounds
 
-__all__ = ["Imagination", "Performer"]
-
 _MOST_GROUNDS = 64
 
 

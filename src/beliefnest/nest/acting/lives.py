@@ -9,8 +9,6 @@ from typing import TypeVar
 
 from beliefnest.errors import BodyError, BodyLostError
 
-__all__ = ["Lives"]
-
 _LIVES = 3
 
 T = TypeVar("T")

@@ -14,8 +14,6 @@ from beliefnest.minds.walking import Draw
 from beliefnest.nest.acting.course_agreement import Agreement
 from beliefnest.nest.acting.courses import Candidate, Course, CoursePlan, Glimpse, Seeds
 
-__all__ = ["Drawn", "HistoryDraws", "Lost", "Particle", "spread"]
-
 OnTick = Callable[[int, int], None]
 
 

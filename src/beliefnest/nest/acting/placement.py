@@ -20,8 +20,6 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import HALF_WIDTH, AgentState, Box, Point, Position, block_at
 from beliefnest.worlds.scripted.footpaths import Ground, Near
 
-__all__ = ["FARTHEST", "BodySpace", "PlacedBodies", "moved_agents", "placed", "unknown_floors"]
-
 PlacedBodies = Mapping[str, tuple[Point, Point]]
 """Believed place and first place in the body, by agent."""
 

@@ -20,8 +20,6 @@ from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import path_text
 from beliefnest.worlds.protocol import Body, ProgramPast, RunRules, SenseSource, World
 
-__all__ = ["ReplayedTimeline", "replay"]
-
 
 @dataclass(frozen=True, slots=True)
 class ReplayedTimeline:

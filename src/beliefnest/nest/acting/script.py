@@ -9,8 +9,6 @@ from beliefnest.timeline.journal import Journal, TimelineKey, lineage
 from beliefnest.timeline.run_records import ProgramRecord
 from beliefnest.worlds.protocol import ProgramResult
 
-__all__ = ["OnProgress", "play_script", "steps_played"]
-
 OnProgress = Callable[[str, int, int], None]
 """Function of a description of the present step, the number of steps done, and of all steps."""
 

@@ -6,12 +6,11 @@ from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.embodiable import chest_places, with_chests_at
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.timeline.journal import TimelineKey
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import AgentState, EventKind
+from beliefnest.world.values import AgentState
 from beliefnest.worlds.protocol import Sensed
-
-__all__ = ["Sensing", "believer_of"]
 
 
 def believer_of(path: BeliefPath, agent: str) -> BeliefPath:

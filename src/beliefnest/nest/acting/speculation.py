@@ -25,8 +25,6 @@ from beliefnest.worlds.protocol import (
     World,
 )
 
-__all__ = ["SpeculatedBody", "Speculation", "SpeculationStart", "speculate"]
-
 
 @dataclass(frozen=True, slots=True)
 class SpeculationStart:

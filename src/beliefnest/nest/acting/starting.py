@@ -16,8 +16,6 @@ from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Position
 
-__all__ = ["BodyStart", "start_of"]
-
 _FLOOR = "barrier"
 """Block that a body puts for an unknown floor below a believed agent."""
 

@@ -47,8 +47,6 @@ from beliefnest.timeline.journal import Edit, ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point, Position
 
-__all__ = ["element_of", "explain"]
-
 
 def element_of(
     recording: Recording,

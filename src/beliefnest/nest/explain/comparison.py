@@ -19,18 +19,6 @@ from beliefnest.world.terrain import BlockStates, Counts
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import contents_words, point_words
 
-__all__ = [
-    "Difference",
-    "Differences",
-    "Pose",
-    "are_elsewhere",
-    "are_false",
-    "compare",
-    "false_beliefs",
-    "false_things",
-    "value_words",
-]
-
 _MOST = 12
 """Number of differences that a terminal shows; the others are only counted."""
 

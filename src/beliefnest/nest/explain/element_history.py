@@ -17,18 +17,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.signs import block_words, plain_state
 from beliefnest.world.values import Box
 
-__all__ = [
-    "ExplainedSpan",
-    "LogStep",
-    "cells_of",
-    "is_current",
-    "last_change",
-    "observed_at",
-    "steps_since",
-    "touches",
-    "value_in",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class LogStep:

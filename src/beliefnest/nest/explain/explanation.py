@@ -6,8 +6,6 @@ from beliefnest.nest.explain.parts import BaseFact, Element, Level
 from beliefnest.nest.explain.wording import explanation_lines
 from beliefnest.pictures.words import html_lines
 
-__all__ = ["Explanation"]
-
 
 @dataclass(frozen=True, slots=True)
 class Explanation:

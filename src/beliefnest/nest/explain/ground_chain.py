@@ -24,11 +24,10 @@ from beliefnest.nest.explain.parts import (
 )
 from beliefnest.timeline.journal import Edit
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import EventKind, Items, Point, Position
-
-__all__ = ["Acts", "ElementGrounds", "mattering"]
+from beliefnest.world.values import Items, Point, Position
 
 Acts = Mapping[int, tuple[PerceivedEvent, ...]]
 """Perceived acts on an element by tick."""

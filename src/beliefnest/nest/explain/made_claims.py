@@ -15,12 +15,11 @@ from beliefnest.nest.explain.wording import as_known_to
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineKey
 from beliefnest.world.claims import Claim, ClaimKind, claims_from_plain, claims_of
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.registry import block_name, parse_state
-from beliefnest.world.values import Event, EventKind, Position
-
-__all__ = ["MadeClaim", "claims_made", "says_otherwise"]
+from beliefnest.world.values import Event, Position
 
 
 class MadeClaim:

@@ -10,22 +10,6 @@ from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Point, Position
 
-__all__ = [
-    "Absence",
-    "BaseFact",
-    "Contents",
-    "Element",
-    "HeardClaim",
-    "Level",
-    "Missed",
-    "Reason",
-    "SeenElsewhere",
-    "Sighting",
-    "Value",
-    "ValueGround",
-    "View",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Contents:

@@ -19,8 +19,6 @@ from beliefnest.world.values import (
     Position,
 )
 
-__all__ = ["sighting_of_agent", "sighting_of_block"]
-
 _Sees = Callable[[SightLines], bool]
 
 

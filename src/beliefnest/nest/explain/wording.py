@@ -17,12 +17,10 @@ from beliefnest.nest.explain.parts import (
     ValueGround,
     View,
 )
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.event_words import did, kind_words
 from beliefnest.world.paths import path_text
-from beliefnest.world.values import EventKind
 from beliefnest.world.words import items_words, point_words, with_the
-
-__all__ = ["as_known_to", "explanation_lines"]
 
 _GIVEN = (Source.PRIOR, Source.EDITED)
 """Sources that are no perceptions."""

@@ -17,8 +17,6 @@ if TYPE_CHECKING:  # The page lies above; see `view`.
     from beliefnest.adapters.notebook import PageView
     from beliefnest.minds.inference import Inference
 
-__all__ = ["NestBase"]
-
 
 class NestBase(ShownNest, ABC):
     """Nest whose simulators are read at the latest tick of their branches."""

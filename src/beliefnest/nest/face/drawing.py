@@ -13,8 +13,6 @@ from beliefnest.pictures.scene import Scene, Wrong, read_scene
 from beliefnest.prompts.naming import known_places
 from beliefnest.world.paths import BeliefPath, path_text
 
-__all__ = ["scene_of", "wrong_things"]
-
 
 def scene_of(
     recording: Recording,

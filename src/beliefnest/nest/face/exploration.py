@@ -18,8 +18,6 @@ from beliefnest.timeline.run_records import Senses
 from beliefnest.world.paths import BeliefPath
 from beliefnest.worlds.protocol import ProgramResult
 
-__all__ = ["Attempt", "Exploration", "ScoreFunction", "programs_by_name"]
-
 ScoreFunction = Callable[[Simulator, ProgramResult], float | Mapping[str, float]]
 """Function that rates an outcome, of the simulator as the program left it and the result, by one
 number or by several with names."""

@@ -5,8 +5,6 @@ from typing import SupportsIndex
 
 from beliefnest.errors import BranchError, TickError
 
-__all__ = ["check_branch_name", "tick_of", "whole"]
-
 
 def whole(value: object) -> int | None:
     """Return a whole number of any type, also of NumPy, as an int; None for any other value."""

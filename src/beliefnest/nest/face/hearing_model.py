@@ -15,8 +15,6 @@ from beliefnest.world.paths import BeliefPath
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Model
 
-__all__ = ["AsksModel", "reader_of"]
-
 
 @runtime_checkable
 class AsksModel(Protocol):

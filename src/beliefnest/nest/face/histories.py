@@ -28,8 +28,6 @@ if TYPE_CHECKING:  # These take long to import, and few histories are drawn or l
 
     from beliefnest.pictures.figure import Figure
 
-__all__ = ["Faces", "History", "Imagined", "weigh"]
-
 
 @dataclass(frozen=True, slots=True)
 class Faces:

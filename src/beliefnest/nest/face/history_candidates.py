@@ -17,8 +17,6 @@ from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.paths import BeliefPath, normalised
 from beliefnest.world.values import block_at
 
-__all__ = ["Candidates", "HistoryPolicies"]
-
 
 @dataclass(frozen=True)
 class Candidates:

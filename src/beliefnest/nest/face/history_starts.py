@@ -14,8 +14,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state
 from beliefnest.world.values import AgentState, Block, Items, Position
 
-__all__ = ["Doubt", "HistoryStarts"]
-
 
 @dataclass(frozen=True, eq=False)
 class Doubt:

@@ -14,8 +14,6 @@ from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.paths import BeliefPath
 
-__all__ = ["Asked", "Checked", "Evidence", "goal_conditions"]
-
 _SUM_SLACK = 1e-9
 
 Evidence = Sequence[tuple[Sequence[GoalCondition], float]]

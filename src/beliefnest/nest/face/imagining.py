@@ -25,9 +25,6 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Block, Position
 from beliefnest.world.words import counted
 
-__all__ = ["ImaginationWarning", "imagine_in"]
-
-
 _FEW = 0.1
 """Share of the histories below which a small effective number raises a warning."""
 

@@ -7,8 +7,6 @@ from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.world.paths import path_text
 from beliefnest.world.values import Position
 
-__all__ = ["Layout", "Standing", "layout_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class Standing:

@@ -17,8 +17,6 @@ from beliefnest.world.event_words import EVENT_WORDS, did_to_block
 from beliefnest.world.values import Items, Point, Position
 from beliefnest.world.words import contents_words, point_words, told_apart, with_the
 
-__all__ = ["AgentPlace", "BlockAt", "Carried", "Contained", "Matter", "OwnedCount", "ValueCourse"]
-
 V = TypeVar("V")
 ValueCourse = list[tuple[int, V | None]]
 """Believed values, each with the tick at which the belief began; None: nothing was known."""

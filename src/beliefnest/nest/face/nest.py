@@ -39,8 +39,6 @@ from beliefnest.worlds.scripted.nest_world import ScriptedNestWorld
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest.worlds.servers.realtime import RealtimeWorld
 
-__all__ = ["HasSetting", "Nest", "OnProgress", "Past"]
-
 _PATIENCE_S = 600.0
 _LONGEST_S = 24 * 60 * 60
 

@@ -23,8 +23,6 @@ from beliefnest.worlds.protocol import World
 from beliefnest.worlds.servers.address import is_server
 from beliefnest.worlds.servers.listening import is_hosted
 
-__all__ = ["BareSetting", "HasSetting", "as_scenario", "begun", "resumed"]
-
 
 class HasSetting(Protocol):
     """Protocol of what a nest can open: a scenario with one chosen condition."""

@@ -22,11 +22,10 @@ from beliefnest.pictures.figure import Figure
 from beliefnest.pictures.plot import Band, NotedClaim, PlotRow, belief_plot
 from beliefnest.pictures.time_axis import NotedAct
 from beliefnest.timeline.journal import ForkPoint
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
-from beliefnest.world.values import EventKind, Position
+from beliefnest.world.values import Position
 from beliefnest.world.words import point_words, with_the
-
-__all__ = ["matter_of", "plot_of"]
 
 V = TypeVar("V")
 

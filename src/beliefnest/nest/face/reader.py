@@ -14,8 +14,6 @@ from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Position
 
-__all__ = ["Reader"]
-
 
 class Reader:
     """Reader of one nest, live or recorded, on any of its timelines. It changes nothing.

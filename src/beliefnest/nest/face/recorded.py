@@ -13,8 +13,6 @@ from beliefnest.timeline.journal import FOLLOW, TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.paths import parse_path
 
-__all__ = ["RecordedNest"]
-
 
 class RecordedNest(NestBase):
     """Read-only nest of a recorded run.

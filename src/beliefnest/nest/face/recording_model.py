@@ -12,8 +12,6 @@ from beliefnest.world.paths import BeliefPath
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Answer, Message, Model, Sampling, Usage
 
-__all__ = ["RecordingModel"]
-
 
 class RecordingModel:
     """Model for one conversation, asked from one simulator.

@@ -41,8 +41,6 @@ if TYPE_CHECKING:  # Modules for drawing and inference take long to import, and 
     from beliefnest.pictures.figure import Figure
     from beliefnest.pictures.scene import Scene
 
-__all__ = ["Past", "PastSimulator", "ShownNest", "ShownSimulator"]
-
 
 class ShownSimulator(ABC):
     """Read-only methods of a simulator at one tick, or at the latest tick of its timeline."""

@@ -15,8 +15,8 @@ from beliefnest.nest.face.recording_model import RecordingModel
 from beliefnest.nest.face.shown import ShownSimulator
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.recording import Recording
-from beliefnest.nest.past.setting import Senses
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
+from beliefnest.timeline.run_records import Senses
 from beliefnest.world.double_chests import (
     believed_container_at,
     is_double,
@@ -35,8 +35,6 @@ from beliefnest.worlds.scripted.world import ScriptedWorld
 
 if TYPE_CHECKING:  # Models take long to import, and few nests have one.
     from beliefnest.llm.messages import Model
-
-__all__ = ["Simulator", "check_senses"]
 
 Mode = Literal["control", "follow"]
 

@@ -11,8 +11,6 @@ from typing import Concatenate, ParamSpec, Protocol, TypeVar
 
 from beliefnest.nest.past.recording import Recording
 
-__all__ = ["in_turn"]
-
 
 class _InNest(Protocol):
     _recording: Recording

@@ -21,8 +21,6 @@ from beliefnest.world.memory import MEGABYTE, memory_limit
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Position
 
-__all__ = ["ModelStart", "credence_in", "infer_in", "start_of_model"]
-
 _ROOM = 2**27
 """Limit of the values of one chunk of utilities, in bytes."""
 

@@ -20,8 +20,6 @@ from beliefnest.world.registry import Registry, parse_state
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Items, Point, Position, block_at
 
-__all__ = ["Overlay"]
-
 _NEAR = 0.5
 """Distance from which two places count as different, in blocks."""
 
@@ -238,4 +236,5 @@ def _fits(items: Items, held: ContainerBelief) -> bool:
 
 
 def pose_of(agent: AgentBelief) -> AgentPose | None:
+    """Return the believed pose of an agent; None: its place is unknown."""
     return None if agent.position is None else (agent.position, agent.yaw, agent.pitch)

@@ -15,11 +15,9 @@ from beliefnest.nest.inferring.overlay import Overlay, pose_of
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, Entry, TimelineKey
 from beliefnest.world.claims import Claim, claims_of
-from beliefnest.world.event_kinds import AT_CONTAINERS
+from beliefnest.world.event_kinds import AT_CONTAINERS, EventKind
 from beliefnest.world.paths import BeliefPath, normalised, path_text
-from beliefnest.world.values import EventKind, Position, block_at
-
-__all__ = ["CourseQuestion", "CourseReading"]
+from beliefnest.world.values import Position, block_at
 
 
 @dataclass(frozen=True, eq=False)

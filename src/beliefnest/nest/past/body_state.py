@@ -7,8 +7,6 @@ internal state.
 
 from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
 
-__all__ = ["internal_state_at", "note_internal_state", "present"]
-
 
 def present(journal: Journal, key: TimelineKey) -> ForkPoint:
     """Return the moment at the head of a timeline."""

@@ -25,8 +25,6 @@ from beliefnest.timeline.journal import Journal, TimelineKey
 from beliefnest.version import VERSION
 from beliefnest.world.paths import BeliefPath
 
-__all__ = ["Checkpoints", "Pace"]
-
 _ROOMS = ("world", "perception", "belief", "nest/past")
 """Folders of the package whose source code determines forests."""
 

@@ -14,8 +14,6 @@ from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.signs import is_sign
 
-__all__ = ["ClaimedBlocks"]
-
 
 class ClaimedBlocks:
     """Cells that have to be tracked from the beginning of every timeline.

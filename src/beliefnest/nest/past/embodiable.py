@@ -25,8 +25,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import EQUIPMENT_SLOTS, HALF_WIDTH, AgentState, Box, Items, Position
 
-__all__ = ["CHEST", "chest_places", "embodiable", "with_chests", "with_chests_at"]
-
 CHEST = "chest"
 """Block that a body puts where items are believed to be and no block can hold them."""
 

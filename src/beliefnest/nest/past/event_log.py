@@ -11,8 +11,6 @@ from beliefnest.world.paths import BeliefPath
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Event
 
-__all__ = ["EventLog"]
-
 
 class EventLog:
     """Events of one timeline so far, and the events that nodes perceived before it began.

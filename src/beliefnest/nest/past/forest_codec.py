@@ -11,8 +11,6 @@ from beliefnest.errors import StoreError
 from beliefnest.timeline import codec
 from beliefnest.world.paths import BeliefPath
 
-__all__ = ["restored", "saved"]
-
 _LEVEL = 1
 
 

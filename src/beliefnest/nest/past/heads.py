@@ -10,8 +10,6 @@ from collections.abc import Callable, ItemsView
 from beliefnest.belief.forest import Forest
 from beliefnest.timeline.journal import TimelineKey
 
-__all__ = ["Heads"]
-
 _BYTES = 128_000_000
 """Bytes that forests may take together."""
 _FEW = 8

@@ -29,12 +29,11 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.perception.sight import Sight
 from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
-from beliefnest.world.values import EventKind, Sign
-
-__all__ = ["StateHistory", "context_of"]
+from beliefnest.world.values import Sign
 
 _PASTS = 4
 """Number of forests of the past that are kept."""

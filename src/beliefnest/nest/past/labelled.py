@@ -12,8 +12,6 @@ from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.signs import plain_state
 from beliefnest.world.values import Position
 
-__all__ = ["Labelled"]
-
 
 class Labelled:
     """Things that have the labels of a scenario, until they are replaced.

@@ -24,12 +24,11 @@ from beliefnest.prompts.observations import (
 )
 from beliefnest.timeline.journal import ForkPoint
 from beliefnest.world.doors import is_door
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.event_words import is_lid
 from beliefnest.world.paths import BeliefPath, normalised
 from beliefnest.world.registry import block_name
-from beliefnest.world.values import DroppedItem, EventKind, Items, Point, Position
-
-__all__ = ["observations_of"]
+from beliefnest.world.values import DroppedItem, Items, Point, Position
 
 _DEEDS_AT_BLOCKS = frozenset(
     {

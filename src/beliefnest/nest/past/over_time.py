@@ -12,8 +12,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
-__all__ = ["Moment", "each_tick", "over_time"]
-
 
 @dataclass(frozen=True, slots=True)
 class Moment:

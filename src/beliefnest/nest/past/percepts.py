@@ -20,12 +20,10 @@ from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import Edit, ForkPoint
-from beliefnest.world.event_kinds import AT_CONTAINERS
+from beliefnest.world.event_kinds import AT_CONTAINERS, EventKind
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import EYE_HEIGHT, EventKind, Items, Point, Position, block_at
-
-__all__ = ["DeedKey", "Percept", "deed_of", "percepts_of"]
+from beliefnest.world.values import EYE_HEIGHT, Items, Point, Position, block_at
 
 DeedKey = tuple[str, str, Position, tuple[tuple[str, int], ...]]
 """Kind, actor, container, and the items that were seen being moved."""

@@ -10,8 +10,6 @@ from beliefnest.world.signs import is_sign, plain_state
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Position
 
-__all__ = ["object_names", "sign_places"]
-
 
 def object_names(setting: Setting) -> Mapping[Position, str]:
     """Return names of containers, signs, doors and switches, without articles, by position.

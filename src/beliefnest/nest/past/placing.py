@@ -12,8 +12,6 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Placements, Point, Position
 
-__all__ = ["fork_of_belief", "placed_in", "placing_frame"]
-
 
 def fork_of_belief(journal: Journal, key: TimelineKey) -> tuple[TimelineInfo, ForkPoint] | None:
     """Return the branch on which a simulator left its parent's belief, and the fork point.

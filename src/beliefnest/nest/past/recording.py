@@ -27,8 +27,6 @@ from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
 
-__all__ = ["Recording", "read_recording", "read_start"]
-
 
 class Recording(Barred):
     """Timelines and states of one nest.

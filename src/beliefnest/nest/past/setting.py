@@ -25,8 +25,6 @@ from beliefnest.world.signs import plain_state
 from beliefnest.world.texts import escaped, is_well_formed, quoted
 from beliefnest.world.values import Box, Position
 
-__all__ = ["MAIN", "Senses", "Setting", "Step"]
-
 MAIN = "main"
 """Name of the real world's first branch."""
 

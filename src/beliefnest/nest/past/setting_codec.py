@@ -12,8 +12,6 @@ from beliefnest.perception.options import Perception, Radius
 from beliefnest.timeline import codec
 from beliefnest.world.values import Position
 
-__all__ = ["decode_start", "encode_start"]
-
 _FORM, _CUT_FORM = 1, 2
 """Forms of stored settings: of a box of one chunk, and of a box of several (see `world.terrain`).
 

@@ -9,8 +9,6 @@ from beliefnest.prompts.mind_view import MindView, ToldMind
 from beliefnest.prompts.naming import believed_names, known_places
 from beliefnest.world.paths import BeliefPath, normalised
 
-__all__ = ["mind_view"]
-
 
 def mind_view(recording: Recording, path: BeliefPath, tick: int | None) -> MindView:
     """Return the view of a simulator, now or at a past tick.

@@ -16,8 +16,6 @@ from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Position
 
-__all__ = ["GroundsSource", "TimelineState"]
-
 # After this many questions about single blocks, or in a box of at most this many cells, all blocks
 # are computed at once. In a box whose nodes hold chunks it is those of a cube with this edge.
 _FEW = 4

@@ -12,8 +12,6 @@ from beliefnest.timeline.run_records import RunRecord
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.timeline.trace import Trace, record_trace
 
-__all__ = ["import_trace"]
-
 
 def import_trace(trace: Trace, name: str, store: str | Path) -> None:
     """Write a trace to a run file, which can be read and resumed as any other.

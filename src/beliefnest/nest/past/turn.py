@@ -4,8 +4,6 @@ from threading import RLock
 
 from beliefnest.owned import Owned
 
-__all__ = ["Turn"]
-
 
 class Turn(Owned):
     """Lock that a thread holds while it uses a nest: a reentrant context manager.

@@ -11,8 +11,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items
 
-__all__ = ["unique_fault", "unique_items"]
-
 
 def unique_items(names: Iterable[str]) -> frozenset[str]:
     """Return the names of unique items without `minecraft:`.

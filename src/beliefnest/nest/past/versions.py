@@ -9,8 +9,6 @@ from types import MappingProxyType
 
 from beliefnest.version import VERSION
 
-__all__ = ["own_versions"]
-
 _LIBRARIES = ("jinja2", "msgspec", "numba", "numpy", "zstandard")
 
 

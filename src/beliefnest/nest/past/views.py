@@ -11,8 +11,6 @@ from beliefnest.perception.sight import Sight
 from beliefnest.world.terrain import Index
 from beliefnest.world.values import EYE_HEIGHT
 
-__all__ = ["VisiblePart", "visible_from", "visible_part"]
-
 _MARGIN = 2
 """Cells beyond the greatest visible distance that a line of sight may touch."""
 

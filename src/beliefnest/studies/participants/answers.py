@@ -14,8 +14,6 @@ from beliefnest.files import decode_json, read_regular
 from beliefnest.studies.sheets import decode_sheet, spoilt_number, spoilt_text
 from beliefnest.world.texts import quoted
 
-__all__ = ["PersonAnswer", "answer_files", "read_answers", "with_pseudonyms"]
-
 _TRIAL = "beliefnest-question"
 """Value of `trial_type` of our trials, which jsPsych writes as well."""
 _START = "beliefnest-start"

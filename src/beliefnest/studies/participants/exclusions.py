@@ -9,8 +9,6 @@ from beliefnest.studies.sheets import read_sheet, spoilt_text
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 
-__all__ = ["excluded_words", "read_exclusions"]
-
 _IDS = ("participant", "id")
 _REASON = "reason"
 

@@ -12,8 +12,6 @@ from beliefnest.prompts.story_filters import captions
 from beliefnest.world.paths import parse_path
 from beliefnest.world.values import Position
 
-__all__ = ["FilmFrame", "SceneFilm", "read_film"]
-
 _MOST = 60
 """Greatest number of pictures without a new caption."""
 _TICK_MS = 50

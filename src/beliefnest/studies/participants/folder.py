@@ -17,8 +17,6 @@ from beliefnest.studies.participants.playing import ParticipantView
 from beliefnest.viewer.page.html import inlined, packed, self_contained
 from beliefnest.world.texts import on_one_line
 
-__all__ = ["check_folder", "check_post", "experiment", "page_files", "write_folder"]
-
 _WEB = files("beliefnest.studies.participants") / "web"
 _STIMULI = "stimuli.js"
 

@@ -8,8 +8,6 @@ from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text
 from beliefnest.studies.participants.items import Item
 
-__all__ = ["instruction_pages", "read_instructions"]
-
 _SCENE = (
     "The scene is drawn from above. A circle is a person, and its tip points where the person "
     "looks. Boxes show what is in them while it can be seen; a question mark means that it cannot. "

@@ -8,8 +8,6 @@ from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.studies.cells import Cell, digest
 
-__all__ = ["Item", "ItemQuestion", "items_of", "left_out"]
-
 
 @dataclass(frozen=True, slots=True)
 class ItemQuestion:

@@ -20,8 +20,6 @@ from beliefnest.studies.study_folder import PersonCell
 from beliefnest.world.texts import quoted, visible
 from beliefnest.world.words import counted
 
-__all__ = ["Joined", "Sessions", "check_name", "counted_answers", "joined"]
-
 
 @dataclass(frozen=True, slots=True)
 class _PersonKey(CellKey):

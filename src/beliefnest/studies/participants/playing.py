@@ -18,16 +18,6 @@ from beliefnest.studies.participants.film import SceneFilm, read_film
 from beliefnest.studies.participants.items import Item
 from beliefnest.worlds.by_name import Worlds
 
-__all__ = [
-    "Judged",
-    "OnItem",
-    "ParticipantView",
-    "judged_items",
-    "refuse_claims",
-    "shown_items",
-    "view_of",
-]
-
 OnItem = Callable[[str, int, int], None]
 """Function of a description, the number of items done, and of all items."""
 

@@ -36,8 +36,6 @@ from beliefnest.studies.participants.playing import (
 )
 from beliefnest.studies.plainframe import Typed, write_csv
 
-__all__ = ["Page", "ShownForm", "join_answers", "make_page", "write_answers"]
-
 ShownForm = Literal["film", "story", "both"]
 """Form in which participants get a scene."""
 

@@ -10,8 +10,6 @@ from beliefnest.suites.films.film import JudgedPart
 from beliefnest.suites.films.film_inference import Judgment
 from beliefnest.world.array_types import Floats
 
-__all__ = ["PUBLISHED", "JudgesAgreement", "agreement", "interval"]
-
 PUBLISHED = {
     None: {"desires": 0.908, "beliefs": 0.783},
     "true_belief": {"desires": 0.72, "beliefs": -0.02},

@@ -7,17 +7,6 @@ from typing import Literal
 
 from beliefnest.scenarios.inferring import MOST_HYPOTHESES
 
-__all__ = [
-    "ABOUT",
-    "NOTHING",
-    "Film",
-    "FilmCell",
-    "FilmParameters",
-    "JudgedPart",
-    "event_name",
-    "grid_for",
-]
-
 FilmCell = tuple[int, int]
 """Coordinates x, y from 1, y upwards."""
 

@@ -24,8 +24,6 @@ from beliefnest.suites.films.film import (
 )
 from beliefnest.world.texts import quoted
 
-__all__ = ["films_from", "parameters_from", "read_films"]
-
 _UNKNOWN = "unknown"
 _PLACE = re.compile(r"spot[A-Za-z0-9]+")
 _JUDGED = re.compile(

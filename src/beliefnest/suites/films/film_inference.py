@@ -15,8 +15,6 @@ from beliefnest.suites.films.film import Film, FilmCell, FilmParameters, JudgedP
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
-__all__ = ["AGENT", "LESIONS", "Judgment", "Lesion", "judge", "model_of", "staged"]
-
 AGENT = "student"
 
 Lesion = Literal["true_belief", "no_cost"]

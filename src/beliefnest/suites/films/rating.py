@@ -18,8 +18,6 @@ from beliefnest.suites.films.film import ABOUT, JudgedPart
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["Comparison", "asked_of", "compared", "rating_prompt", "ratings_in", "read_ratings"]
-
 _LOWEST, _HIGHEST = 1.0, 7.0
 _WORDS: Mapping[JudgedPart, str] = {
     "desires": "desire",

@@ -10,8 +10,6 @@ from beliefnest.world.claims import Claim
 from beliefnest.world.values import Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
-__all__ = ["programs_of", "tell"]
-
 
 def tell(world: ScriptedWorld, plan: FloorPlan, act: Act) -> None:  # noqa: PLR0912  # one case an act
     """Do one act in one tick."""

@@ -10,8 +10,6 @@ from collections.abc import Iterator
 from beliefnest.suites.stories.questions import Question
 from beliefnest.suites.stories.story import Come, Go, HandOver, Move, Place, Story, Take
 
-__all__ = ["data_fault"]
-
 
 def data_fault(story: Story, question: Question, expected: str | None) -> str | None:
     """Return how an expected answer contradicts the story; None: no contradiction is found.

@@ -13,8 +13,6 @@ if TYPE_CHECKING:  # Importing models takes long.
     from beliefnest.llm.claim_reader import ClaimsFromModel
     from beliefnest.llm.messages import Model
 
-__all__ = ["StoryReader", "in_words_alone"]
-
 
 @dataclass(frozen=True, slots=True)
 class StoryReader:

@@ -15,8 +15,6 @@ from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
 from beliefnest.world.texts import quoted
 
-__all__ = ["BatteryItem", "ReadStories", "StoryItems", "Unread", "line_of", "read_items"]
-
 
 class _Row(msgspec.Struct):
     """Row of a Hi-ToM file; other columns are ignored."""

@@ -6,8 +6,6 @@ from beliefnest.suites.stories.questions import Question
 from beliefnest.suites.stories.story import HandOver, Place
 from beliefnest.world.signs import sign_words
 
-__all__ = ["explain_answer"]
-
 
 def explain_answer(
     played: PlayedStory, question: Question, answer: StoryAnswer, expected: str | None

@@ -9,8 +9,6 @@ import msgspec
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import nearest_or_all
 
-__all__ = ["form_fault"]
-
 _FAULT = re.compile(r"(?P<what>.*?)(?: - at `\$\.?(?P<path>.*)`)?", re.DOTALL)
 _EVENT = re.compile(r"events\[(\d+)\]\.?")
 _UNKNOWN = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)

@@ -36,8 +36,6 @@ from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Box, Items, Point, Position
 
-__all__ = ["WALL", "FloorPlan", "feet", "lay_out"]
-
 WALL = "stone"
 """Block of walls and floors, which nothing else is made of."""
 

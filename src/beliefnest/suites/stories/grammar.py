@@ -15,31 +15,6 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.world.texts import quoted
 
-__all__ = [
-    "IT",
-    "Agent",
-    "Entered",
-    "Exited",
-    "Line",
-    "Located",
-    "Moved",
-    "Opened",
-    "Placed",
-    "Present",
-    "Returned",
-    "Sentence",
-    "Stayed",
-    "Taken",
-    "Told",
-    "UseDoor",
-    "Wait",
-    "Whispered",
-    "Write",
-    "parse_all",
-    "parse_line",
-    "parse_lines",
-]
-
 Agent = Annotated[str, msgspec.Meta(pattern=r"^[A-Za-z0-9_]{1,16}$")]
 _Agents = Annotated[tuple[Agent, ...], msgspec.Meta(min_length=1)]
 _Name = Annotated[str, msgspec.Meta(min_length=1, max_length=100)]

@@ -32,8 +32,6 @@ from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
 from beliefnest.world.texts import quoted
 
-__all__ = ["read_own"]
-
 _Event = (
     Entered
     | Exited

@@ -26,8 +26,6 @@ from beliefnest.world.texts import quoted
 if TYPE_CHECKING:  # Importing models takes long, and few stories need one.
     from beliefnest.llm.claim_reader import ClaimsFromModel
 
-__all__ = ["Knowing", "PlayedStory", "StoryAnswer"]
-
 _TIMEOUT_TICKS = 2400
 _TICKS_PER_BLOCK = 8
 """Ticks allowed per block of a walk; more than walking takes."""

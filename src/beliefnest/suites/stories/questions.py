@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from beliefnest.errors import InputError
 from beliefnest.world.texts import quoted
 
-__all__ = ["Question", "parse_question"]
-
 
 @dataclass(frozen=True, slots=True)
 class Question:

@@ -35,23 +35,6 @@ from beliefnest.world.signs import sign_fault
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import listed
 
-__all__ = [
-    "WAITING_ROOM",
-    "Act",
-    "Come",
-    "Go",
-    "HandOver",
-    "LookInto",
-    "Move",
-    "Place",
-    "Put",
-    "Story",
-    "Take",
-    "Tell",
-    "read_story",
-    "story_of",
-]
-
 WAITING_ROOM = "waiting_room"
 """Room from which agents see no other room. In stories without testimony, agents in it do not
 see each other either. In other stories, all agents that are in no room meet there."""

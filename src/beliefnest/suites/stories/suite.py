@@ -10,8 +10,6 @@ from beliefnest.suites.stories.own import read_own
 from beliefnest.suites.stories.played_story import PlayedStory, StoryAnswer
 from beliefnest.suites.stories.tomi import read_tomi
 
-__all__ = ["READERS", "JudgedAnswer", "Score", "answer_story", "score", "scores_by_order"]
-
 READERS: Mapping[str, Callable[..., ReadStories]] = {
     "hi-tom": read_items,
     "tomi": read_tomi,

@@ -12,8 +12,6 @@ from beliefnest.suites.stories.questions import parse_question
 from beliefnest.suites.stories.story import Story, story_of
 from beliefnest.world.texts import quoted
 
-__all__ = ["read_tomi"]
-
 _FORM = "write the question, a tab, and the answer"
 
 

@@ -7,8 +7,6 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.world.signs import plain_state, sign_words
 from beliefnest.world.values import Sign
 
-__all__ = ["BlockPalette"]
-
 _COLOURS = (
     ("stained_glass", "#c8dbe0"),
     ("glass", "#cfe5ea"),

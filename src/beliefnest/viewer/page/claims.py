@@ -8,8 +8,6 @@ from beliefnest.nest.explain.made_claims import says_otherwise
 from beliefnest.world.claims import Claim, claims_of
 from beliefnest.world.paths import BeliefPath, normalised
 
-__all__ = ["claims_at", "kind_of"]
-
 
 def claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim]]:
     """Yield the claims of the forest's present entry.

@@ -11,10 +11,6 @@ from beliefnest.viewer.page.runs import Runs, grid_runs, joined
 from beliefnest.world.array_types import Cells, States
 from beliefnest.world.terrain import SIDE, VOLUME
 
-__all__ = [
-    "GridChanges",
-]
-
 
 class GridChanges:
     """Finder of changed blocks in some nodes of a forest.

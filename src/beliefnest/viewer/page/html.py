@@ -12,8 +12,6 @@ from typing import Any
 from beliefnest.errors import InputError
 from beliefnest.world.texts import on_one_line, visible_json
 
-__all__ = ["inlined", "packed", "page_html", "self_contained"]
-
 _BUILT = Path(__file__).parents[2] / "_page"
 
 _SHELL = """<!doctype html>

@@ -3,8 +3,6 @@
 from bisect import bisect_right
 from dataclasses import dataclass, field
 
-__all__ = ["PoseBook", "PoseRow", "Stand"]
-
 PoseRow = tuple[float, float, float, float, float]
 """Feet x, y, z (blocks), yaw, pitch (radians)."""
 

@@ -8,8 +8,6 @@ from beliefnest.minds.inference import Inference
 from beliefnest.pictures.plan import LEAST_HEAT
 from beliefnest.pictures.posterior import PosteriorPanel
 
-__all__ = ["told_inference"]
-
 _MOST_PREDICTIONS = 60
 """Ticks with a prediction; each follows the course once more from its beginning."""
 

@@ -24,8 +24,6 @@ from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box, Position
 
-__all__ = ["ahead", "explanation_of", "look_of", "name_of", "sight_of"]
-
 _THING = re.compile(r"(agent|block|container|inventory)-(\d{1,9})", re.ASCII)
 
 _EXPLANATIONS = 36

@@ -18,8 +18,6 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.values import Position
 
-__all__ = ["About", "RunData"]
-
 Onlookers = Callable[[TimelineInfo, Sequence[BeliefPath]], Onlooker]
 
 

@@ -12,19 +12,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-__all__ = [
-    "AS_FIRST",
-    "FIRST_STATE",
-    "UNKNOWN",
-    "Runs",
-    "grid_runs",
-    "grid_text",
-    "joined",
-    "numbers_text",
-    "runs_text",
-    "text_numbers",
-]
-
 AS_FIRST, UNKNOWN, FIRST_STATE = 0, 1, 2
 """Marks of runs: the block that reality had there at first, an unknown block, block number 0."""
 

@@ -11,8 +11,6 @@ from beliefnest.viewer.page.html import page_html
 from beliefnest.viewer.page.reasons import ahead
 from beliefnest.viewer.page.run import About
 
-__all__ = ["check_depth", "still_page", "write_still_page"]
-
 
 def check_depth(depth: int) -> None:
     """Raise InputError if a page cannot hold all beliefs to a depth: it must be from 0 to 4."""

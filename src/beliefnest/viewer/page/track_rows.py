@@ -6,8 +6,6 @@ from typing import Any
 from beliefnest.viewer.page.pose_history import PoseRow, Stand
 from beliefnest.viewer.page.tracks import PLACED, Track, TrackRow
 
-__all__ = ["StandRows", "TrackRows", "fresh_rows"]
-
 _THOUSAND = 1000
 
 

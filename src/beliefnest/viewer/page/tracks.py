@@ -29,8 +29,6 @@ from beliefnest.world.array_types import Cells
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath, normalised
 
-__all__ = ["CURRENT", "PLACED", "STALE", "UNKNOWN", "Onlooker", "Track", "TrackRecorder"]
-
 UNKNOWN, CURRENT, STALE, PLACED = 0, 1, 2, 3
 """Kinds of an agent's pose: unknown, as in the timeline's world now, as at a past tick, other."""
 

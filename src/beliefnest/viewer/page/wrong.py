@@ -11,8 +11,6 @@ from beliefnest.nest.explain.parts import Contents
 from beliefnest.viewer.page.grid_changes import GridChanges
 from beliefnest.world.array_types import Cells
 
-__all__ = ["WrongThings"]
-
 WrongElements = tuple[str, ...]
 """`agent-1`: its pose; `inventory-1`: its inventory; `container-7`, `block-7`: those of cell 7."""
 

@@ -16,8 +16,6 @@ from beliefnest.viewer.page.html import page_html
 from beliefnest.viewer.serving.guard import Guard
 from beliefnest.world.texts import visible_json
 
-__all__ = ["Editor", "editor_app"]
-
 _LARGEST = 8 * 2**20
 """Greatest size of a request in bytes."""
 

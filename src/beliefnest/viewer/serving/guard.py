@@ -8,8 +8,6 @@ from urllib.parse import parse_qs
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-__all__ = ["Guard"]
-
 _COOKIE = "beliefnest"
 
 _HEADERS = (

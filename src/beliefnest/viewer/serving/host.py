@@ -13,8 +13,6 @@ from beliefnest.viewer.page.reasons import explanation_of, look_of, sight_of
 from beliefnest.viewer.page.run import About, RunData
 from beliefnest.world.paths import BeliefPath, parse_path, path_text
 
-__all__ = ["Host", "OpenRun"]
-
 
 @dataclass(frozen=True, slots=True)
 class OpenRun:

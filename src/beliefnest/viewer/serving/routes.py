@@ -20,8 +20,6 @@ from beliefnest.viewer.serving.guard import Guard
 from beliefnest.viewer.serving.host import Host
 from beliefnest.world.texts import quoted, visible_json
 
-__all__ = ["page_app"]
-
 _PAUSE = 0.025
 """Seconds between checks for updates; a change should be on the page within 0.1 s."""
 

@@ -19,8 +19,6 @@ from beliefnest.world.texts import escaped
 from beliefnest.worlds.minecraft.child import Child
 from beliefnest.worlds.process_limits import ProcessLimits
 
-__all__ = ["PROTOCOL", "Channel"]
-
 PROTOCOL = 6
 """Version of the channel's messages; both sides state it."""
 

@@ -14,8 +14,6 @@ from beliefnest.errors import BodyError
 from beliefnest.owned import Owned
 from beliefnest.worlds.process_limits import ProcessLimits
 
-__all__ = ["Child"]
-
 _STDERR_LINES = 15
 _STDERR_BYTES = 1 << 16
 _GRACE_SECONDS = 2.0

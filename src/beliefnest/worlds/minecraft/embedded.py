@@ -17,8 +17,6 @@ from beliefnest.worlds.minecraft.launching import Launch
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import AS_USUAL, ProgramResult, RunRules, SenseSource, Sink
 
-__all__ = ["EmbeddedBody", "EmbeddedWorld", "NodeWorld"]
-
 
 class _Telling:
     """Messages to Node about an agent's knowledge: first all of it, then the changes."""

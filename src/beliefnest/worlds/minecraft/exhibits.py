@@ -18,8 +18,6 @@ from beliefnest.worlds.minecraft.node_messages import (
     terrain_changes,
 )
 
-__all__ = ["Exhibit", "Plot", "Shown", "display_names", "origin_of"]
-
 _CHUNK = 16
 _GAP_CHUNKS = 64
 """Distance between exhibits: more than twice the largest view distance, 32 chunks."""

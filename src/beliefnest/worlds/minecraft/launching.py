@@ -16,8 +16,6 @@ from beliefnest.worlds.minecraft.channel import PROTOCOL, Channel
 from beliefnest.worlds.minecraft.node_files import EMBEDDED, node_command
 from beliefnest.worlds.process_limits import ProcessLimits
 
-__all__ = ["MINECRAFT", "Launch", "ahead", "started"]
-
 MINECRAFT = "1.20.4"
 """Minecraft version of the embedded world."""
 

@@ -10,17 +10,6 @@ from pathlib import Path
 from beliefnest.errors import BodyError
 from beliefnest.worlds.process_limits import ProcessLimits
 
-__all__ = [
-    "EMBEDDED",
-    "HOSTING",
-    "OLDEST_NODE",
-    "REALTIME",
-    "bundle_path",
-    "node_command",
-    "node_path",
-    "versions_folder",
-]
-
 OLDEST_NODE = 24
 """Oldest major version of Node with the permissions and flags of the packaged one."""
 

@@ -25,26 +25,6 @@ from beliefnest.world.values import (
 )
 from beliefnest.worlds.protocol import Aim, Called, Fault, ProgramResult, Sensed, Unfinished
 
-__all__ = [
-    "CUT",
-    "Cubes",
-    "agent_message",
-    "blocks_message",
-    "contents_message",
-    "frame_of",
-    "items_message",
-    "percepts_changes",
-    "percepts_message",
-    "pose_message",
-    "results_of",
-    "runs_of",
-    "signs_message",
-    "snapshot_message",
-    "snapshot_of",
-    "terrain_changes",
-    "terrain_of_cubes",
-]
-
 CUT = {"side": SIDE, "margin": MARGIN}
 """Cut of a box into the cubes of `Terrain`, for requests."""
 

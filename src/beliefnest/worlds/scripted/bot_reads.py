@@ -9,8 +9,6 @@ from beliefnest.world.values import AgentState, Position, block_at
 from beliefnest.worlds.protocol import Sensed, SenseSource
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
-__all__ = ["BotBody", "BotReads", "OpenWindow", "state_of"]
-
 _EPOCH_MS = 1_704_067_200_000
 """Start of the worlds' time, as in Minecraft's: 2024-01-01, in UTC."""
 _TICK_MS = 50

@@ -15,8 +15,6 @@ from beliefnest.worlds.scripted.hand import (
     walk_to_use,
 )
 
-__all__ = ["mine_block", "place_item", "press_button", "switch_lever"]
-
 _MOST_WAITED = 40
 
 

@@ -10,8 +10,6 @@ from beliefnest.world.circuits import Circuits
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Position
 
-__all__ = ["FACES", "Circuit", "may_be_of_power"]
-
 Offset = tuple[int, int, int]
 
 FACES: Sequence[Offset] = ((0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0), (1, 0, 0))

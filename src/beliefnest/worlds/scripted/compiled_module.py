@@ -10,8 +10,6 @@ from typing import Any
 
 from beliefnest.files import read_regular, replace_file
 
-__all__ = ["Compiled", "compiled"]
-
 _DIGEST = hashlib.sha256().digest_size
 _RESERVED = 96 << 20
 """Addresses reserved for the memory of an interpreter, which is never larger."""

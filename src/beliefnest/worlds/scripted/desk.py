@@ -13,8 +13,6 @@ from beliefnest.worlds.scripted.interpreter import GuestError, Interpreter
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.wasm_machine import TrapError
 
-__all__ = ["Desk", "DeskFacts", "Prepared", "TooIntricateError"]
-
 _FUEL = 1_000_000_000
 """Fuel of one request; reading the longest usual program takes a twentieth."""
 _MEMORY_BYTES = 64 << 20

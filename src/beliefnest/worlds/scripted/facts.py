@@ -22,19 +22,6 @@ from beliefnest.world.values import (
     Position,
 )
 
-__all__ = [
-    "Pending",
-    "ScriptedFacts",
-    "checked_box",
-    "checked_equipment",
-    "checked_name",
-    "checked_utterance",
-    "due_from",
-    "rest_of",
-    "sum_of",
-    "whole_position",
-]
-
 
 @dataclass
 class ScriptedFacts:

@@ -30,8 +30,6 @@ from beliefnest.world.values import Box, Position
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.worlds.scripted.footpath_kernels import PathCells
 
-__all__ = ["Footing", "WalkWindow"]
-
 _MARGIN = (1, 2, 1)
 """Cells around the box, so that every neighbour of a cell has an index."""
 _BELOW, _ABOVE, _ASIDE = 8, 2, 4

@@ -23,20 +23,6 @@ from beliefnest.perception.compiling import compiled, inlined, merged
 from beliefnest.world.array_types import Ints
 from beliefnest.world.values import EYE_HEIGHT
 
-__all__ = [
-    "AVOIDED",
-    "MOST_STEPS",
-    "NOWHERE",
-    "SCRATCH",
-    "WIDER",
-    "PathAim",
-    "PathCells",
-    "Queue",
-    "Trail",
-    "find",
-    "next_target",
-]
-
 ByteFlags = npt.NDArray[np.uint8]
 
 _DONE, AVOIDED = 1, 2

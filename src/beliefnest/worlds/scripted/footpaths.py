@@ -22,8 +22,6 @@ from beliefnest.worlds.scripted.footing import Footing, WalkWindow
 if TYPE_CHECKING:  # Compiled code takes its time to load.
     from beliefnest.worlds.scripted.footpath_kernels import PathAim, Trail
 
-__all__ = ["Ground", "InReach", "Near", "WalkGoal"]
-
 _MOST_CELLS = 100_000
 _TOUCH = 1e-3
 """Height of feet above a block's face, in blocks, from which on they are on something there."""

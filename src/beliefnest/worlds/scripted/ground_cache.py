@@ -8,8 +8,6 @@ from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import Box
 from beliefnest.worlds.scripted.footpaths import Ground
 
-__all__ = ["Grounds"]
-
 _MOST = 32
 _Key = TypeVar("_Key")
 _Value = TypeVar("_Value")

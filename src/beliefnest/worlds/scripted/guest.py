@@ -13,8 +13,6 @@ from beliefnest.worlds.scripted.interpreter import GuestError, Interpreter
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.wasm_machine import TrapError
 
-__all__ = ["Guest", "GuestEndedError", "parsed"]
-
 _NUMBER_COST = 1000
 """Fuel for asking the host for the time or a random number; the crossing takes that long here."""
 _HOST, _NOW, _RANDOM = 1, 2, 3

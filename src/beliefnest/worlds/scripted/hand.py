@@ -20,22 +20,6 @@ from beliefnest.worlds.protocol import NO_WAY
 from beliefnest.worlds.scripted.footpaths import Ground, InReach, Near, WalkGoal
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
-__all__ = [
-    "REACH",
-    "Doing",
-    "Doors",
-    "Hand",
-    "SkillError",
-    "block_in",
-    "doors_in",
-    "items_in",
-    "number_in",
-    "point_in",
-    "text_in",
-    "walk",
-    "walk_to_use",
-]
-
 _SHORTEST_STRIDE = 3
 REACH = 4.0
 """Distance, in blocks, between the eyes and the middle of a block to which skills walk."""

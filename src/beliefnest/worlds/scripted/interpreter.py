@@ -10,8 +10,6 @@ from beliefnest.worlds.scripted.compiled_module import compiled
 from beliefnest.worlds.scripted.sandbox_parts import INTERPRETER, MachineState, bundled, parts
 from beliefnest.worlds.scripted.wasm_machine import Machine
 
-__all__ = ["GuestError", "Interpreter"]
-
 _PAGE = 65536
 _LONGEST_TEXT = 4_000_000
 """Bytes that are read of a text; above the limit of messages, which can thus be refused."""

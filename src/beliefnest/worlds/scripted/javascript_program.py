@@ -15,8 +15,6 @@ from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.sfc32 import Sfc32
 
-__all__ = ["JavaScriptProgram"]
-
 _HEARD = ("chat", "whisper", "messagestr")
 """Events to which a program can listen here."""
 _UNDEFINED = {"$": "u"}

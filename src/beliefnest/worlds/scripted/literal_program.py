@@ -16,8 +16,6 @@ from beliefnest.worlds.scripted.bot_reads import BotReads
 from beliefnest.worlds.scripted.desk import Desk, DeskFacts
 from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
 
-__all__ = ["LiteralCall", "LiteralProgram", "literal_calls"]
-
 _MOST_CALLS = 200
 """Programs with more calls go to the interpreter, where their fuel is counted."""
 _LONGEST = 10_000

@@ -10,8 +10,6 @@ from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
-__all__ = ["ScriptedBody", "ScriptedNestWorld"]
-
 
 class ScriptedBody:
     """Simulator's part of the scripted world; users act in it through `world`.

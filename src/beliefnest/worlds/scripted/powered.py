@@ -14,8 +14,6 @@ from beliefnest.worlds.scripted.circuit import Circuit
 from beliefnest.worlds.scripted.facts import Pending
 from beliefnest.worlds.scripted.state import ScriptedState
 
-__all__ = ["PoweredState", "plates_in", "switches_in"]
-
 _AGENT, _ITEM = (0.3, 1.8), (0.125, 0.25)
 """Half width and height of bodies."""
 _LAMP = "redstone_lamp"

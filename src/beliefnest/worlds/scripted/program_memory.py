@@ -7,8 +7,6 @@ from typing import Any
 
 from beliefnest.worlds.protocol import Called
 
-__all__ = ["Memory"]
-
 _MOST = 2000
 """Largest number of remembered calls; a program with more begins anew."""
 _WAITS = "waitTicks"

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.errors import BeliefNestError
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
-from beliefnest.world.values import AgentState, Box, Event, EventKind, Point
+from beliefnest.world.values import AgentState, Box, Event, Point
 from beliefnest.worlds.protocol import (
     Aim,
     Fault,
@@ -30,8 +31,6 @@ from beliefnest.worlds.scripted.program_memory import Memory
 from beliefnest.worlds.scripted.requests import Request
 from beliefnest.worlds.scripted.skills import CALLS, SKILLS, UTTERANCES
 from beliefnest.worlds.scripted.world import ScriptedWorld
-
-__all__ = ["RunningPrograms", "run_programs"]
 
 _MOST_AIMS = 100
 _DOINGS = {**SKILLS, **CALLS}

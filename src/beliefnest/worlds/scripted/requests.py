@@ -8,8 +8,6 @@ from typing import Any
 from beliefnest.skills.manifests import skills
 from beliefnest.worlds.protocol import Fault
 
-__all__ = ["Request", "error_of", "fault_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class Request:

@@ -10,17 +10,6 @@ from pathlib import Path
 
 import msgspec
 
-__all__ = [
-    "INTERPRETER",
-    "Limits",
-    "MachineState",
-    "Meter",
-    "ObjectKind",
-    "Parts",
-    "bundled",
-    "parts",
-]
-
 INTERPRETER = "quickjs.wasm"
 _FILE = "sandbox.msgpack.gz"
 

@@ -6,8 +6,6 @@
 import hashlib
 import struct
 
-__all__ = ["Sfc32"]
-
 _WORD = 0xFFFF_FFFF
 
 

@@ -32,8 +32,6 @@ from beliefnest.worlds.scripted.hand import (
     walk_to_use,
 )
 
-__all__ = ["CALLS", "SKILLS", "UTTERANCES", "perform"]
-
 _NEAR = 2.0
 _CHEST = "Give the position of a chest or barrel."
 _SIGN = "Give the position of a sign."

@@ -9,6 +9,7 @@ from beliefnest.errors import BeliefNestError, InputError, WorldError
 from beliefnest.owned import Barred
 from beliefnest.world.circuits import Circuits
 from beliefnest.world.double_chests import container_at, is_double, other_half
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import BlockGrid, PlainClaims
 from beliefnest.world.limits import container_slots, divided, items_fault
 from beliefnest.world.registry import AIR, Registry
@@ -20,7 +21,6 @@ from beliefnest.world.values import (
     Block,
     Box,
     Event,
-    EventKind,
     Items,
     Point,
     Position,
@@ -34,8 +34,6 @@ from beliefnest.worlds.scripted.facts import (
     sum_of,
     whole_position,
 )
-
-__all__ = ["ScriptedState"]
 
 
 class ScriptedState(Barred):

@@ -13,8 +13,6 @@ from typing import Any
 
 from beliefnest.worlds.scripted.compiled_module import Compiled
 
-__all__ = ["Machine", "TrapError"]
-
 _MOST_WORDS = 8
 _OK = 0
 

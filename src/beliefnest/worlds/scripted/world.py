@@ -14,6 +14,7 @@ from typing import Any
 from beliefnest.errors import InputError, WorldError
 from beliefnest.world.claims import Claim, claims_from_plain, with_claims
 from beliefnest.world.doors import used_door
+from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.handling import (
     Handling,
@@ -30,14 +31,7 @@ from beliefnest.world.limits import (
 )
 from beliefnest.world.registry import AIR, parse_state
 from beliefnest.world.signs import plain_state, text_of
-from beliefnest.world.values import (
-    AgentState,
-    Event,
-    EventKind,
-    Items,
-    Point,
-    Position,
-)
+from beliefnest.world.values import AgentState, Event, Items, Point, Position
 from beliefnest.worlds.scripted.facts import (
     Pending,
     ScriptedFacts,
@@ -50,8 +44,6 @@ from beliefnest.worlds.scripted.facts import (
     whole_position,
 )
 from beliefnest.worlds.scripted.powered import PoweredState, plates_in
-
-__all__ = ["Listener", "ScriptedWorld"]
 
 Listener = Callable[[Frame], None]
 """Callback that receives a frame for every tick, empty frames included."""

@@ -5,8 +5,6 @@ from beliefnest.world.signs import is_sign
 from beliefnest.world.values import Items, Point, Position
 from beliefnest.worlds.scripted.world import ScriptedWorld
 
-__all__ = ["WorldFacts"]
-
 
 class WorldFacts:
     """Facts of a scripted world at its latest tick.

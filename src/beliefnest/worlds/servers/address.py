@@ -8,8 +8,6 @@ from urllib.parse import parse_qsl, urlsplit
 
 from beliefnest.errors import InputError
 
-__all__ = ["SCHEME", "ServerAddress", "is_server", "overwriting"]
-
 SCHEME = "minecraft"
 
 _PORT = 25565

@@ -22,8 +22,6 @@ from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.servers.address import ServerAddress
 from beliefnest.worlds.servers.server_world import joined
 
-__all__ = ["Captured", "Unknown", "capture_file", "capture_server"]
-
 _MOST_NAMED = 5
 _LONGEST_NAMED = 40
 

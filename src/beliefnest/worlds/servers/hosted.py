@@ -12,8 +12,6 @@ from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.servers.listening import ListenAddress
 from beliefnest.worlds.servers.realtime import RealtimeWorld
 
-__all__ = ["HostedWorld"]
-
 
 class HostedWorld(RealtimeWorld):
     """Process for the real world, which people can join, and another one for all beliefs.

@@ -6,8 +6,6 @@ from urllib.parse import urlsplit
 
 from beliefnest.errors import InputError
 
-__all__ = ["DEFAULT_PORT", "LOOPBACK", "ListenAddress", "is_hosted"]
-
 LOOPBACK = "127.0.0.1"
 """Address for people at this machine only."""
 

@@ -10,8 +10,6 @@ from beliefnest.worlds.minecraft.exhibits import Exhibit, Plot, Shown
 from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.protocol import Sink
 
-__all__ = ["RealtimeBody", "RealtimeWorld"]
-
 _REALITY = "/"
 
 

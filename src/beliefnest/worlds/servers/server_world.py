@@ -11,8 +11,6 @@ from beliefnest.worlds.process_limits import ProcessLimits
 from beliefnest.worlds.servers.address import ServerAddress
 from beliefnest.worlds.servers.realtime import RealtimeWorld
 
-__all__ = ["MinecraftWorld", "joined"]
-
 
 def joined(
     address: ServerAddress, seed: int, limits: ProcessLimits
