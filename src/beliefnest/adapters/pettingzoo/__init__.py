@@ -169,8 +169,10 @@ def _loaded(
 
     if isinstance(scenario, str):
         found = _named(scenario, condition, parameters)
-    elif parameters:
-        raise InputError("parameters are for names and files; give the task or scenario its own")
+    elif parameters or condition is not None:
+        raise InputError(
+            "parameters are for names and files, as is condition; give the task or scenario its own"
+        )
     elif isinstance(scenario, Scenario):
         has_goal = scenario.rules is not None and scenario.rules.goal != GoalEntry()
         found = functools.partial(_same, Task.of(scenario)) if has_goal else scenario

@@ -1,6 +1,5 @@
 """Scenario as a multi-agent environment with PettingZoo's parallel interface."""
 
-import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, cast
@@ -16,6 +15,7 @@ from beliefnest.adapters.pettingzoo.layout import layout_of
 from beliefnest.adapters.pettingzoo.order import KnownOrder, Things
 from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
 from beliefnest.adapters.pettingzoo.room import check_arrays, check_nested
+from beliefnest.adapters.pettingzoo.saving import Choice, SavedEpisode, check_no_options
 from beliefnest.belief.plain import belief_json
 from beliefnest.belief.view import State
 from beliefnest.episodes.agent_view import AgentView, Brief
@@ -27,6 +27,7 @@ from beliefnest.nest.past.history import context_of
 from beliefnest.owned import Owned
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.skills.calls import Call
+from beliefnest.timeline.journal import FOLLOW, TimelineInfo
 from beliefnest.timeline.run_records import Senses
 from beliefnest.world.paths import BeliefPath, parse_path, path_text, paths_below
 from beliefnest.world.seeds import checked_seed
@@ -38,6 +39,10 @@ _TIMEOUT_TICKS = 1200
 _TRIED = 8
 """Number of instances whose things are counted for the sizes of arrays."""
 _LONGEST_PROGRAM = 10_000
+_OF_WORLD = frozenset(
+    ("_own", "_worlds", "_nest", "_acting", "_played", "_by_hand", "_left", "_heard", "_orders")
+)
+"""Attributes of an environment that belong to its open world."""
 _LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
 
 Infos = dict[str, Any]
@@ -101,10 +106,10 @@ class EnvironmentOptions:
         Raises:
             InputError: An option has no effect in tasks.
         """
-        if self.senses == "world" or self.timeout_ticks is not None:
+        if self.senses == "world" or self.timeout_ticks is not None or self.plays_script:
             raise InputError(
-                "a task is played with the knowledge of each agent, in rounds of step_ticks: leave "
-                "senses and timeout_ticks out"
+                "a task is played with the knowledge of each agent, in rounds of step_ticks, after "
+                "its script: leave senses and timeout_ticks out, and plays_script"
             )
 
     @property
@@ -165,6 +170,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         else:
             options.check_scenario()
             scenario = source
+        self._named = scenario.name
         self._arrange(scenario)
         layouts = [self.layout, *self._further_layouts()]
         self._bounds = SpaceBounds.of(layouts, options.sizes)
@@ -184,13 +190,32 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             check_arrays(context, self._bounds, len(self.possible_agents), len(self._nested))
         self.agents: list[str] = []
         self._seed = options.seed - 1
+        self._spaces = {each: self._spaces_of() for each in self.possible_agents}
+        self._forget()
+
+    def _forget(self) -> None:
+        """Begin a life without a world."""
         self._own = Owned()
         self._worlds: Worlds | None = None
         self._nest: Nest | None = None
         self._acting: Acting | None = None
-        self._steps = 0
+        self._played: list[Mapping[str, Choice]] = []
+        self._by_hand = False
+        self._left: TimelineInfo | None = None
         self._heard: dict[str, int] = {}
         self._orders: dict[str | None, KnownOrder] = {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy has: everything but the world, and the episode as it was saved."""
+        kept = {name: each for name, each in self.__dict__.items() if name not in _OF_WORLD}
+        return {**kept, "saved": None if self._nest is None else self.save()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        saved = state.pop("saved")
+        self.__dict__.update(state)
+        self._forget()
+        if saved is not None:
+            self.restore(saved)
 
     def _arrange(self, scenario: Scenario) -> None:
         """Set what there is in an instance."""
@@ -254,9 +279,19 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """The environment itself."""
         return self
 
-    @functools.cache  # noqa: B019 - the interface wants the same space for an agent each time
     def observation_space(self, agent: str) -> spaces.Space[Any]:
         """Return the space of an agent's observations; the same object on each call."""
+        return self._spaces[agent][0]
+
+    def action_space(self, agent: str) -> spaces.Space[Any]:
+        """Return the space of an agent's actions; the same object on each call."""
+        return self._spaces[agent][1]
+
+    def _spaces_of(self) -> tuple[spaces.Space[Any], spaces.Space[Any]]:
+        """Return new spaces of an agent's observations and actions."""
+        return self._new_observation_space(), self._new_action_space()
+
+    def _new_observation_space(self) -> spaces.Space[Any]:
         if self._options.observations == "dict":
             return BeliefSpace()
         return spaces.Dict(
@@ -266,9 +301,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             }
         )
 
-    @functools.cache  # noqa: B019 - as above
-    def action_space(self, agent: str) -> spaces.Space[Any]:
-        """Return the space of an agent's actions; the same object on each call."""
+    def _new_action_space(self) -> spaces.Space[Any]:
         if self._options.actions == "programs":
             return spaces.Text(_LONGEST_PROGRAM, min_length=0, charset=_LETTERS)
         parts: dict[str, spaces.Space[Any]] = {"skill": spaces.Discrete(len(self.skills))}
@@ -315,29 +348,87 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
 
         Args:
             seed: Seed of every random number; None for the last seed plus one.
-            options: Ignored.
+            options: There are none. An option of the name `options`, which PettingZoo's own tests
+                give, means nothing.
 
         Raises:
-            InputError: The seed is not a whole number of 64 bits; the current episode continues.
+            InputError: The seed is not a whole number of 64 bits, or an option is given; the
+                current episode continues.
             ForkedError: The world was opened by another process.
             BodyError: The world could not be started.
             ProgramError: The script cannot be played.
         """
         if self._worlds is not None:
             self._own.check_own("the environment")
+        check_no_options(options)
         self._seed = self._seed + 1 if seed is None else checked_seed(seed)
         self._end_episode()
         if self._worlds is None:
             self._worlds = Worlds(0)
         self._acting = self._begun(self._worlds)
         self.agents = list(self.possible_agents)
-        self._steps = 0
+        self._played, self._by_hand = [], False
         self._heard = {}
         self._orders = {
             None: KnownOrder(),
             **{a: KnownOrder(self._declared(a)) for a in self.agents},
         }
-        return self._told({agent: ActionState() for agent in self.agents}, spoken=True)
+        told = self._told({agent: ActionState() for agent in self.agents}, spoken=True)
+        self._left = self._reality()
+        return told
+
+    def save(self) -> SavedEpisode:
+        """Return the episode up to now, for `restore` of this environment or of a copy.
+
+        It holds what the agents chose, not the world: it is small and can be pickled.
+
+        Raises:
+            InputError: No episode has begun, or its world was changed by hand.
+        """
+        self._check_timelines()
+        if self._by_hand or self._reality() != self._left:
+            raise InputError(
+                "the world was changed by hand, which no saved episode can repeat: save before, or "
+                "let agents act in place of it"
+            )
+        return SavedEpisode(self._named, self._seed, tuple(self._played))
+
+    def restore(self, saved: SavedEpisode) -> tuple[dict[str, Any], dict[str, Infos]]:
+        """Play a saved episode again up to where it was saved; return what agents were told then.
+
+        Raises:
+            InputError: The episode is not one of this environment.
+            BodyError: The Minecraft side failed.
+        """
+        if not isinstance(saved, SavedEpisode) or saved.scenario != self._named:
+            found = saved.scenario if isinstance(saved, SavedEpisode) else type(saved).__name__
+            raise InputError(
+                f"{found!r} is not an episode of {self._named}; give what save() returned"
+            )
+        told = self.reset(saved.seed)
+        for chosen in saved.steps:
+            told = self._play(chosen)
+        if saved.steps and any(self._ends()):
+            self.agents = []
+        return told
+
+    def _reality(self) -> TimelineInfo:
+        """Return how long the timeline of the real world is."""
+        reality = self.nest["/"]
+        return next(each for each in reality.branches() if each.key.branch == reality.branch)
+
+    def _check_timelines(self) -> None:
+        """Raise InputError if somebody has switched a simulator that the episode uses."""
+        reality = "" if self._left is None else self._left.key.branch
+        beliefs = [*((agent,) for agent in self.possible_agents), *self._nested]
+        for path in ((), *beliefs):
+            text, home = path_text(path), FOLLOW if path else reality
+            branch = self.nest[text].branch
+            if branch != home:
+                raise InputError(
+                    f"{text} was switched to the branch {branch!r}; the episode is on {home!r}: "
+                    f"env.nest[{text!r}].switch({home!r}) returns to it"
+                )
 
     def _begun(self, worlds: Worlds) -> Acting:
         """Open the nest of an episode; return the executor of its actions."""
@@ -389,31 +480,41 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
                 raise InputError(f"{agent!r} does not act now; agents are {self.agents}")
         if not self.agents:
             return {}, {}, {}, {}, {}
-        nothing = "" if self._options.actions == "programs" else Call("doNothing")
-        read: dict[str, Call | str] = {}
-        unknown: dict[str, ActionState] = {}
-        for agent in self.agents:
-            try:
-                read[agent] = self._read(agent, actions.get(agent, nothing))
-            except NotKnownError as error:
-                read[agent], unknown[agent] = nothing, ActionState(str(error))
-        step = self._acting.act(read)
-        self._steps += 1
-        told = {
-            agent: replace(deed, error=unknown[agent].error) if agent in unknown else deed
-            for agent, deed in step.deeds.items()
-        }
-        observations, infos = self._told(told, spoken=step.spoken)
+        self._check_timelines()
+        chosen = {agent: self._chosen(agent, actions) for agent in self.agents}
+        self._by_hand |= self._reality() != self._left
+        observations, infos = self._play(chosen)
         rewards = {agent: self._reward(agent) for agent in self.agents}
         ended, cut = self._ends()
-        if isinstance(self._acting, TaskActing):
-            for info in infos.values():
-                info["success"] = self._acting.success
         terminations = dict.fromkeys(self.agents, ended)
         truncations = dict.fromkeys(self.agents, cut)
         if ended or cut:
             self.agents = []
         return observations, rewards, terminations, truncations, infos
+
+    def _chosen(self, agent: str, actions: Mapping[str, Any]) -> Choice:
+        """Return what an agent begins; nothing if it has no action, or one of nothing known."""
+        nothing = "" if self._options.actions == "programs" else Call("doNothing")
+        try:
+            return Choice(self._read(agent, actions[agent]) if agent in actions else nothing)
+        except NotKnownError as error:
+            return Choice(nothing, str(error))
+
+    def _play(self, chosen: Mapping[str, Choice]) -> tuple[dict[str, Any], dict[str, Infos]]:
+        """Let agents begin what was chosen; return the observations and infos of all agents."""
+        assert self._acting is not None  # its callers have begun an episode
+        step = self._acting.act({agent: each.action for agent, each in chosen.items()})
+        self._played.append(chosen)
+        deeds = {
+            agent: replace(deed, error=chosen[agent].fault or deed.error)
+            for agent, deed in step.deeds.items()
+        }
+        observations, infos = self._told(deeds, spoken=step.spoken)
+        if isinstance(self._acting, TaskActing):
+            for info in infos.values():
+                info["success"] = self._acting.success
+        self._left = self._reality()
+        return observations, infos
 
     def _reward(self, agent: str) -> float:
         reward = self._options.reward
@@ -428,7 +529,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if isinstance(self._acting, TaskActing):
             is_cut = self._acting.is_cut
             return ended or (self._acting.is_over and not is_cut), is_cut
-        return ended, self._steps >= (self._options.max_steps or _MAX_STEPS)
+        return ended, len(self._played) >= (self._options.max_steps or _MAX_STEPS)
 
     def render(self) -> None:
         """Do nothing; `nest.figure()` draws any belief."""

@@ -1,6 +1,6 @@
 """Copies of an environment as a vector environment of Gymnasium, in one process."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from typing import Any
 
@@ -10,9 +10,12 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, concatenate, create_empty_array, iterate
 
 from beliefnest.adapters.pettingzoo.environment import BeliefEnv, BeliefSpace
+from beliefnest.adapters.pettingzoo.saving import check_no_options
 from beliefnest.errors import InputError
 from beliefnest.world.seeds import checked_seed
 
+_Told = dict[tuple[int, str], tuple[Any, dict[str, Any]]]
+"""Observation and info by copy and agent."""
 _Flags = npt.NDArray[np.bool_]
 
 
@@ -50,6 +53,7 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.metadata = {**first.metadata, "autoreset_mode": AutoresetMode.NEXT_STEP}
         self._batch: Any = create_empty_array(self.single_observation_space, self.num_envs)
+        self._latest: dict[tuple[int, str], Any] | None = None
         self._seeds = [first.first_seed + number for number in range(copies)]
 
     def reset(
@@ -59,15 +63,24 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
 
         Args:
             seed: Seed of the first copy, or one for each; None: the next ones.
-            options: Ignored.
+            options: `reset_mask`, an array of True for the rows of copies that begin again; the
+                others go on.
 
         Raises:
-            InputError: The seeds are not whole numbers of 64 bits, or not one for each copy.
+            InputError: The seeds are not whole numbers of 64 bits, or not one for each copy; an
+                option does not exist, or the mask parts the rows of a copy.
         """
+        others = dict(options or {})
+        chosen = self._masked(others.pop("reset_mask", np.ones(self.num_envs, np.bool_)))
+        check_no_options(others)
         if seed is not None:
-            self._seeds = self._seeds_from(seed)
-        told: dict[tuple[int, str], tuple[Any, dict[str, Any]]] = {}
-        for number in range(len(self.envs)):
+            given = self._seeds_from(seed)
+            self._seeds = [
+                new if number in chosen else old
+                for number, (new, old) in enumerate(zip(given, self._seeds, strict=True))
+            ]
+        told: _Told = {}
+        for number in chosen:
             told |= self._again(number)
         return self._gathered(told)
 
@@ -76,7 +89,7 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         chosen = dict(zip(self.rows, iterate(self.action_space, actions), strict=True))
         rewards = np.zeros(self.num_envs)
         ended, cut = np.zeros(self.num_envs, np.bool_), np.zeros(self.num_envs, np.bool_)
-        told: dict[tuple[int, str], tuple[Any, dict[str, Any]]] = {}
+        told: _Told = {}
         for number, env in enumerate(self.envs):
             if not env.agents:
                 told |= self._again(number)
@@ -97,6 +110,19 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         for env in self.envs:
             env.close()
 
+    def _masked(self, mask: Any) -> list[int]:
+        """Return the copies that a mask of rows names."""
+        of_rows = isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
+        if not of_rows or mask.dtype != np.bool_:
+            raise InputError(f"reset_mask is {mask!r}; give an array of {self.num_envs} truths")
+        named = {copy for (copy, _), masked in zip(self.rows, mask, strict=True) if masked}
+        rest = {copy for (copy, _), masked in zip(self.rows, mask, strict=True) if not masked}
+        if named & rest:
+            raise InputError("reset_mask parts the agents of a copy, which begin again together")
+        if self._latest is None and rest:
+            raise InputError("reset_mask is for copies that have begun; reset all first")
+        return sorted(named)
+
     def _seeds_from(self, seed: int | Sequence[int]) -> list[int]:
         if isinstance(seed, Sequence):
             if len(seed) != len(self.envs):
@@ -104,19 +130,19 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
             return [checked_seed(each) for each in seed]
         return [checked_seed(seed) + number for number in range(len(self.envs))]
 
-    def _again(self, number: int) -> Mapping[tuple[int, str], tuple[Any, dict[str, Any]]]:
+    def _again(self, number: int) -> _Told:
         """Begin the next episode of a copy."""
         observations, infos = self.envs[number].reset(self._seeds[number])
         self._seeds[number] += len(self.envs)
         return {(number, agent): (observations[agent], infos[agent]) for agent in observations}
 
-    def _gathered(
-        self, told: Mapping[tuple[int, str], tuple[Any, dict[str, Any]]]
-    ) -> tuple[Any, dict[str, Any]]:
-        found = [told[row] for row in self.rows]
+    def _gathered(self, told: _Told) -> tuple[Any, dict[str, Any]]:
+        """Return the observations of all rows, and the infos of those that were told something."""
+        self._latest = {**(self._latest or {}), **{row: each for row, (each, _) in told.items()}}
         infos: dict[str, Any] = {}
-        for row, (_, info) in enumerate(found):
-            infos = self._add_info(infos, info, row)
-        rows = [observation for observation, _ in found]
+        for number, row in enumerate(self.rows):
+            if row in told:
+                infos = self._add_info(infos, told[row][1], number)
+        rows = [self._latest[row] for row in self.rows]
         self._batch = concatenate(self.single_observation_space, rows, self._batch)
         return deepcopy(self._batch), infos
