@@ -6,9 +6,8 @@ and has no other meaning. A sentence of another form is reported, never guessed.
 """
 
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import msgspec
 
@@ -209,9 +208,10 @@ class Line:
 IT = "it"
 """Thing that was named last."""
 
-_AGENT = r"[A-Za-z0-9_]{1,16}"
+_ONE = r"[A-Za-z0-9_]{1,16}"
 _AND = r"(?:,\s*(?:and\s+)?|\s+and\s+)"
-_AGENTS = rf"(?P<agents>{_AGENT}(?:{_AND}{_AGENT})*)"
+_SOME = rf"{_ONE}(?:{_AND}{_ONE})*"
+_AGENT, _HEARER, _AGENTS = rf"(?P<agent>{_ONE})", rf"(?P<hearer>{_ONE})", rf"(?P<agents>{_SOME})"
 _WORD = (
     r"(?!(?:the|an?|in|into|inside|to|from|out|on|onto|up|and|with|for|that|is|are|was|were)\b)"
     r"[\w'-]+"
@@ -227,6 +227,8 @@ _THE = rf"(?:{_A} )?"
 _ALL = r"(?:(?:both|all|together)\s+)?"
 _THING = rf"{_THE}(?P<thing>{_NAME})"
 _CONTAINER = rf"{_THE}(?P<container>{_NAME})"
+_ROOM = rf"(?P<room>{_NAME})"
+_PLACE = rf"{_THE}(?P<place>{_NAME})"
 _INTO = r"(?:back )?(?:in|into|inside)"
 _TO = r"(?:back )?(?:into|inside|to)"
 _FROM = rf"(?:from|out of) {_THE}(?P<source>{_NAME})"
@@ -238,151 +240,67 @@ _CARRIES = (
 )
 _TAKES = r"(?:fetched|fetches|grabbed|grabs|removed|removes|takes|took)"
 _CLAIM = (
-    rf"(?:that )?(?:the )?(?P<thing>{_NAME}) (?P<link>is|is not) in (?:the )?"
+    rf"(?:that )?(?:the )?(?P<thing>{_NAME}) (?P<is_there>is|is not) in (?:the )?"
     rf"(?P<container>{_NAME})(?: now)?"
 )
-_NOBODY = frozenset(
-    (
-        "he",
-        "she",
-        "it",
-        "they",
-        "him",
-        "her",
-        "them",
-        "his",
-        "their",
-        "we",
-        "you",
-        "i",
-        "this",
-        "that",
-        "there",
-        "here",
-        "someone",
-        "somebody",
-        "everyone",
-        "everybody",
-        "nobody",
-        "both",
-        "all",
-    )
+_NOBODY = re.compile(
+    "he|she|it|they|him|her|them|his|their|we|you|i|this|that|there|here|someone|somebody|"
+    "everyone|everybody|nobody|both|all",
+    re.IGNORECASE | re.ASCII,
 )
 """Words that name nobody and nothing."""
 
 
-def _agents(match: re.Match[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(_JOINT.split(match["agents"])))
-
-
-def _told(match: re.Match[str]) -> Told:
-    is_there = match["link"] == "is"
-    return Told(match["agent"], match["thing"], match["container"], is_there, match["to"])
-
-
-def _whispered(match: re.Match[str]) -> Whispered:
-    is_there = match["link"] == "is"
-    hearer = match["hearer"]
-    return Whispered(match["agent"], hearer, match["thing"], match["container"], is_there)
-
-
-def _moved(match: re.Match[str]) -> Moved:
-    return Moved(match["agent"], match["thing"], match["container"], match["source"])
-
-
-def _taken(match: re.Match[str]) -> Taken:
-    return Taken(match["agent"], match["thing"], match["source"])
-
-
-def _exited(match: re.Match[str]) -> Exited:
-    room = match.groupdict().get("room")
-    return Exited(_agents(match), None if room == "room" else room)
-
-
-def _remark(match: re.Match[str]) -> Wait:
-    return Wait(match.groupdict().get("about"))
-
-
-_FORMS: tuple[tuple[str, Callable[[re.Match[str]], Sentence]], ...] = (
+_FORMS: tuple[tuple[str, type[Any]], ...] = (
     (
         rf"{_AGENTS} {_ALL}(?:(?:re-?)?enter(?:ed|s)|{_WALK} (?:back )?(?:in|to|into|inside)|"
-        rf"return(?:ed|s) to|arrive[ds] in) {_THE}(?P<room>{_NAME})",
-        lambda match: Entered(_agents(match), match["room"]),
+        rf"return(?:ed|s) to|arrive[ds] in) {_THE}{_ROOM}",
+        Entered,
     ),
     (
         rf"{_AGENTS} {_ALL}(?:(?:re-?)enter(?:ed|s)|return(?:ed|s)|(?:came|comes|goes|went) back)"
         r"(?: in| inside)?",
-        lambda match: Returned(_agents(match)),
+        Returned,
     ),
     (
         rf"{_AGENTS} {_ALL}(?:left|leaves|exited|exits|departed|departs|"
         rf"{_WALK} (?:out|away|off|outside))",
-        _exited,
+        Exited,
     ),
     (
-        rf"{_AGENTS} {_ALL}(?:exit(?:ed|s)|left|leaves|{_WALK} out of) {_THE}(?P<room>{_NAME})",
-        _exited,
+        rf"{_AGENTS} {_ALL}(?:exit(?:ed|s)|left|leaves|{_WALK} out of) {_THE}(?:room|{_ROOM})",
+        Exited,
     ),
     (
-        rf"{_AGENTS} made no movements and stayed in (?:the )?(?P<room>{_NAME})"
-        r"(?: for \d+ minutes?)?",
-        lambda match: Stayed(_agents(match), match["room"]),
+        rf"{_AGENTS} made no movements and stayed in (?:the )?{_ROOM}(?: for \d+ minutes?)?",
+        Stayed,
     ),
-    (rf"(?P<agent>{_AGENT}) {_CARRIES} {_THING}(?: {_FROM})? {_TO} {_CONTAINER}", _moved),
+    (rf"{_AGENT} {_CARRIES} {_THING}(?: {_FROM})? {_TO} {_CONTAINER}", Moved),
     (
-        rf"(?P<agent>{_AGENT}) (?:{_TAKES}|picked up|picks up) {_THING}(?: {_FROM})? and {_PUTS} "
-        rf"it {_INTO} {_CONTAINER}",
-        _moved,
+        rf"{_AGENT} (?:{_TAKES}|picked up|picks up) {_THING}(?: {_FROM})? and {_PUTS} it {_INTO} "
+        rf"{_CONTAINER}",
+        Moved,
     ),
-    (
-        rf"(?P<agent>{_AGENT}) {_PUTS} {_THING} {_INTO} {_CONTAINER}",
-        lambda match: Placed(match["agent"], match["thing"], match["container"]),
-    ),
-    (rf"(?P<agent>{_AGENT}) (?:{_TAKES}|picked up|picks up) {_THING}(?: {_FROM})?", _taken),
-    (rf"(?P<agent>{_AGENT}) (?:picked|picks|takes|took) {_THING} (?:up|out)(?: {_FROM})?", _taken),
-    (
-        rf"(?:The|the|An?|an?) (?P<thing>{_NAME}) (?:is|are|was|were) in {_THE}(?P<place>{_NAME})",
-        lambda match: Located(match["thing"], match["place"]),
-    ),
-    (
-        rf"There (?:is|was) an? (?P<thing>{_NAME}) in {_THE}(?P<place>{_NAME})",
-        lambda match: Located(match["thing"], match["place"]),
-    ),
-    (
-        rf"It (?:is|was) in {_THE}(?P<place>{_NAME})",
-        lambda match: Located(IT, match["place"]),
-    ),
-    (
-        rf"{_AGENTS} {_ALL}(?:is|are|was|were) {_ALL}in {_THE}(?P<place>{_NAME})",
-        lambda match: Present(_agents(match), match["place"]),
-    ),
-    (
-        rf"(?P<agent>{_AGENT}) (?P<how>opened|shut|closed) the door of (?:the )?(?P<room>{_NAME})",
-        lambda match: UseDoor(match["agent"], match["room"], match["how"] == "opened"),
-    ),
-    (
-        rf'(?P<agent>{_AGENT}) wrote "(?P<text>[^"]*)" on the sign of '
-        rf"(?:the )?(?P<room>{_NAME})",
-        lambda match: Write(match["agent"], match["room"], match["text"]),
-    ),
-    (
-        rf"(?P<agent>{_AGENT}) (?:opens|opened|look(?:ed|s) (?:in|into|inside)) {_CONTAINER}",
-        lambda match: Opened(match["agent"], match["container"]),
-    ),
-    (
-        rf"(?P<agent>{_AGENT}) (?:privately told|whispered to) (?P<hearer>{_AGENT}) {_CLAIM}",
-        _whispered,
-    ),
-    (
-        rf"(?P<agent>{_AGENT}) (?:publicly claimed|said|told (?P<to>{_AGENT})) {_CLAIM}",
-        _told,
-    ),
-    (rf"{_AGENTS} (?:dis)?likes? {_THE}(?P<about>{_NAME})", _remark),
-    (rf"{_AGENTS} (?:hate|love)s? {_THE}(?P<about>{_NAME})", _remark),
-    (rf"{_AGENTS} (?:saw|lost) {_A} (?P<about>{_NAME})", _remark),
-    (r"(?:The )?[Pp]hone rang", _remark),
+    (rf"{_AGENT} {_PUTS} {_THING} {_INTO} {_CONTAINER}", Placed),
+    (rf"{_AGENT} (?:{_TAKES}|picked up|picks up) {_THING}(?: {_FROM})?", Taken),
+    (rf"{_AGENT} (?:picked|picks|takes|took) {_THING} (?:up|out)(?: {_FROM})?", Taken),
+    (rf"(?:The|the|An?|an?) (?P<thing>{_NAME}) (?:is|are|was|were) in {_PLACE}", Located),
+    (rf"There (?:is|was) an? (?P<thing>{_NAME}) in {_PLACE}", Located),
+    (rf"It (?:is|was) in {_PLACE}", Located),
+    (rf"(?P<names>{_SOME}) {_ALL}(?:is|are|was|were) {_ALL}in {_PLACE}", Present),
+    (rf"{_AGENT} (?P<opens>opened|shut|closed) the door of (?:the )?{_ROOM}", UseDoor),
+    (rf'{_AGENT} wrote "(?P<text>[^"]*)" on the sign of (?:the )?{_ROOM}', Write),
+    (rf"{_AGENT} (?:opens|opened|look(?:ed|s) (?:in|into|inside)) {_CONTAINER}", Opened),
+    (rf"{_AGENT} (?:privately told|whispered to) {_HEARER} {_CLAIM}", Whispered),
+    (rf"{_AGENT} (?:publicly claimed|said|told {_HEARER}) {_CLAIM}", Told),
+    (rf"{_AGENTS} (?:dis)?likes? {_THE}(?P<about>{_NAME})", Wait),
+    (rf"{_AGENTS} (?:hate|love)s? {_THE}(?P<about>{_NAME})", Wait),
+    (rf"{_AGENTS} (?:saw|lost) {_A} (?P<about>{_NAME})", Wait),
+    (r"(?:The )?[Pp]hone rang", Wait),
 )
-_KINDS = tuple((re.compile(form), make) for form, make in _FORMS)
+"""Kinds of sentences; the groups of a form are fields of its kind."""
+
+_KINDS = tuple((re.compile(form), kind) for form, kind in _FORMS)
 
 
 def parse_all(text: str) -> tuple[tuple[Line, ...], tuple[InputError, ...]]:
@@ -427,11 +345,11 @@ def _parse(line: str, place: str) -> Sentence:
     # Keep the text of a sign as it is.
     spaced = _SPACE.sub(lambda found: found["text"] or " ", _NUMBER.sub("", line, count=1))
     words = spaced.strip().removesuffix(".")
-    for form, make in _KINDS:
+    for form, kind in _KINDS:
         match = form.fullmatch(words)
         if match is not None:
             _check_names(match, place, line)
-            return make(match)
+            return _sentence(kind, match)
     raise InputError(
         f"{place}: {quoted(line)} is no sentence of a story; write that someone entered, left, "
         "returned "
@@ -441,13 +359,30 @@ def _parse(line: str, place: str) -> Sentence:
     )
 
 
+def _sentence(kind: type[Any], match: re.Match[str]) -> Sentence:
+    """Return the sentence of a match; a thing without a group is `it`."""
+    given: dict[str, Any] = {"thing": IT}
+    for name, text in match.groupdict().items():
+        match name:
+            case _ if text is None:
+                pass
+            case "agents" | "names":
+                given[name] = tuple(dict.fromkeys(_JOINT.split(text)))
+            case "is_there" | "opens":
+                given[name] = text in ("is", "opened")
+            case _:
+                given[name] = text
+    sentence: Sentence = kind(**{n: given[n] for n in kind.__struct_fields__ if n in given})
+    return sentence
+
+
 def _check_names(match: re.Match[str], place: str, line: str) -> None:
     """Refuse words in place of names; only a thing may be `it`."""
     for kind, found in match.groupdict().items():
-        if kind in ("about", "how", "link", "text") or found is None:
+        if kind in ("about", "opens", "is_there", "text") or found is None:
             continue
-        for name in _JOINT.split(found) if kind == "agents" else (found,):
-            if name.lower() in _NOBODY and (kind, name) != ("thing", IT):
+        for name in _JOINT.split(found) if kind in ("agents", "names") else (found,):
+            if _NOBODY.fullmatch(name) and (kind, name) != ("thing", IT):
                 raise InputError(
                     f"{place}: {quoted(line)}: {quoted(name)} is no name; write the name"
                 )
