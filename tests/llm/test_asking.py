@@ -6,12 +6,7 @@ from collections import deque
 import pytest
 
 from beliefnest.errors import InputError, ModelError
-from beliefnest.llm import (
-    NoUsableProgramError,
-    Sampling,
-    Usage,
-    ask_for_program,
-)
+from beliefnest.llm import NoUsableProgramError, Sampling, Usage, ask_for_program
 from beliefnest.llm.messages import Answer
 from beliefnest.llm.recorded_models import ScriptedModel
 

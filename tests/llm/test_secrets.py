@@ -15,14 +15,7 @@ from tests.llm.conftest import FakeClock, FakeOpenAI
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import ModelError
-from beliefnest.llm import (
-    Connection,
-    Message,
-    RetryPolicy,
-    Sampling,
-    SystemClock,
-    open_model,
-)
+from beliefnest.llm import Connection, Message, RetryPolicy, Sampling, SystemClock, open_model
 from beliefnest.llm.secrets import MASK, Secrets, without_password
 
 KEY = "sk-a-very-secret-key"

@@ -18,14 +18,7 @@ from beliefnest.timeline.journal import Edit
 from beliefnest.world import terrain
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import (
-    EQUIPMENT_SLOTS,
-    AgentState,
-    Box,
-    DroppedItem,
-    Event,
-    EventKind,
-)
+from beliefnest.world.values import EQUIPMENT_SLOTS, AgentState, Box, DroppedItem, Event, EventKind
 
 floats = st.floats(allow_nan=False)
 whole = st.integers(-(2**31), 2**31 - 1)

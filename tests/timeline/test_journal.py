@@ -4,13 +4,7 @@ import pytest
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
-from beliefnest.timeline.journal import (
-    EntryFilter,
-    ForkPoint,
-    TimelineInfo,
-    TimelineKey,
-    is_found,
-)
+from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineInfo, TimelineKey, is_found
 from beliefnest.world.frames import Frame
 
 MAIN = TimelineKey((), "main")

@@ -196,11 +196,7 @@ def cut_grids(shape_codes: Codes, reaches: Reaches, grids: Sequence[Terrain]) ->
 
 
 def _cut(
-    shape_codes: Codes,
-    reaches: Reaches,
-    grid: Terrain,
-    known: dict[bytes, int],
-    kept: list[bytes],
+    shape_codes: Codes, reaches: Reaches, grid: Terrain, known: dict[bytes, int], kept: list[bytes]
 ) -> Ints:
     """Return the numbers of the chunks of a grid, and add new ones to `known` and `kept`."""
 

@@ -38,10 +38,7 @@ class Beginning:
     """
 
     def __init__(
-        self,
-        context: BeliefContext,
-        snapshot: Snapshot,
-        static_blocks: frozenset[str | Position],
+        self, context: BeliefContext, snapshot: Snapshot, static_blocks: frozenset[str | Position]
     ) -> None:
         self.snapshot, self._context, self._static = snapshot, context, static_blocks
         self._cut: CutGrids | None = None

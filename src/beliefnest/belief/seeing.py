@@ -19,11 +19,7 @@ def eye_of(space: Space, poses: Poses, pose: int) -> Eye:
     """Return the eye of an agent at a pose, in grid coordinates."""
     x, y, z = poses.feet[pose]
     yaw, pitch = poses.angles[pose]
-    place = (
-        x + space.origin[0],
-        y + EYE_HEIGHT + space.origin[1],
-        z + space.origin[2],
-    )
+    place = (x + space.origin[0], y + EYE_HEIGHT + space.origin[1], z + space.origin[2])
     return eye_at(place, yaw, pitch, space.senses.cos_half, space.senses.far)
 
 
@@ -58,11 +54,7 @@ def _sees_cell_past(space: Space, codes: Codes, rows: Rows, eye: Eye, cell: int)
 
 @allocating
 def sees_place(
-    space: Space,
-    poses: Poses,
-    nodes: Nodes,
-    which: npt.NDArray[np.int64],
-    pose: int,
+    space: Space, poses: Poses, nodes: Nodes, which: npt.NDArray[np.int64], pose: int
 ) -> npt.NDArray[np.bool_]:
     """Return, by node of `which`, if its owner would see an agent at a pose.
 
@@ -81,12 +73,7 @@ def sees_place(
 
 @allocating
 def sees_cells(
-    space: Space,
-    poses: Poses,
-    codes: Codes,
-    rows: Rows,
-    pose: int,
-    cells: npt.NDArray[np.int64],
+    space: Space, poses: Poses, codes: Codes, rows: Rows, pose: int, cells: npt.NDArray[np.int64]
 ) -> npt.NDArray[np.bool_]:
     """Return, by cell of `cells`, if an eye at a pose sees it.
 

@@ -22,12 +22,7 @@ from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.options import RunOptions
 from beliefnest.cli.pictures import read_condition
-from beliefnest.cli.report import (
-    OutcomeRow,
-    outcome_json,
-    outcome_table,
-    report_json,
-)
+from beliefnest.cli.report import OutcomeRow, outcome_json, outcome_table, report_json
 from beliefnest.cli.run_cells import RunCell, plan_run_cells
 from beliefnest.cli.run_report import report_html
 from beliefnest.cli.streams import noted_warnings

@@ -75,10 +75,7 @@ class ClaimsFromModel:
             ModelError: The model failed, or its answer is not a list of claims about this world.
         """
         model = self.wrap(_Strict(self.model, nameable))
-        question = (
-            Message("system", _SYSTEM),
-            Message("user", _question(text, speaker, nameable)),
-        )
+        question = (Message("system", _SYSTEM), Message("user", _question(text, speaker, nameable)))
         return _claims_in(model.answer(question, self.sampling).text, nameable)
 
 

@@ -115,11 +115,7 @@ PROVIDERS: Mapping[str, Provider] = {
     provider.name: provider
     for provider in (
         Provider(
-            "openai",
-            "openai",
-            ("OPENAI_API_KEY",),
-            "OPENAI_BASE_URL",
-            "https://api.openai.com/v1",
+            "openai", "openai", ("OPENAI_API_KEY",), "OPENAI_BASE_URL", "https://api.openai.com/v1"
         ),
         Provider(
             "anthropic",

@@ -11,12 +11,7 @@ from beliefnest.errors import ModelError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
-from beliefnest.llm.stored_exchange import (
-    Exchange,
-    decode_exchange,
-    encode_exchange,
-    exchange_of,
-)
+from beliefnest.llm.stored_exchange import Exchange, decode_exchange, encode_exchange, exchange_of
 
 _Question = tuple[Message, ...]
 

@@ -285,8 +285,7 @@ def _chat_model(endpoint: Endpoint, model: str, client: "httpx2.AsyncClient") ->
             from pydantic_ai.providers.google import GoogleProvider
 
             return GoogleModel(
-                model,
-                provider=GoogleProvider(api_key=key or "", base_url=url, http_client=client),
+                model, provider=GoogleProvider(api_key=key or "", base_url=url, http_client=client)
             )
         case "openai":
             from pydantic_ai.models.openai import OpenAIChatModel
@@ -398,8 +397,7 @@ def _answer(
             text = str((response.provider_details or {}).get("refusal") or text)
     if not is_well_formed(text):
         raise UnusableAnswerError(
-            f"{model.name} gave an answer with half a surrogate pair in it; ask again",
-            usage,
+            f"{model.name} gave an answer with half a surrogate pair in it; ask again", usage
         )
     return Answer(text, usage, date=datetime.now(UTC).date().isoformat(), finish=finish, form=form)
 

@@ -63,10 +63,7 @@ def model_names() -> tuple[str, ...]:
 
 
 def resolve_model(
-    name: str,
-    environment: Mapping[str, str],
-    *,
-    limits: AnswerLimits | None = None,
+    name: str, environment: Mapping[str, str], *, limits: AnswerLimits | None = None
 ) -> Model:
     """Return the bare model of a name; each answer takes one request.
 

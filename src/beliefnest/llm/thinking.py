@@ -22,7 +22,7 @@ _PROMPT_ECHO = re.compile(r".*\[/INST\]", re.DOTALL)
 _TURN_START = re.compile(
     r"\s*(?:<s>|<bos>|<\|begin_of_text\|>|<\|startoftext\|>"
     r"|<\|im_start\|>\s*assistant\b|<start_of_turn>\s*model\b|<\|assistant\|>"
-    r"|<\|start\|>\s*assistant\b|<\|start_header_id\|>\s*assistant\s*<\|end_header_id\|>)",
+    r"|<\|start\|>\s*assistant\b|<\|start_header_id\|>\s*assistant\s*<\|end_header_id\|>)"
 )
 _TURN_END = re.compile(
     r"<\|im_end\|>|<\|im_start\|>|<\|eot_id\|>|<\|end_of_text\|>|<\|endoftext\|>|</s>|<eos>"

@@ -329,10 +329,7 @@ class AlternativeWorlds:
 
 
 def _is_behind(
-    away: npt.NDArray[np.float64],
-    hiding: npt.NDArray[np.float64],
-    radius: float,
-    far: float | None,
+    away: npt.NDArray[np.float64], hiding: npt.NDArray[np.float64], radius: float, far: float | None
 ) -> npt.NDArray[np.bool_]:
     """Return a mask of the balls whose sight can depend on what is in some cells.
 

@@ -66,10 +66,7 @@ def sampled_cells(
             chance = _chance(tracker.hypotheses, action)
             inside = 0.0 if chance is None else float(_at(chance, hypothesis))
             parts.setdefault(source, []).append(float(layer.before[source][hypothesis]) + inside)
-        state = _drawn(
-            {source: _log_sum_of(logs) for source, logs in parts.items()},
-            random,
-        )
+        state = _drawn({source: _log_sum_of(logs) for source, logs in parts.items()}, random)
     for tick in range(tracker.steps[0].tick, left + 1):
         cells[tick] = state[0]
     return dict(sorted(cells.items()))

@@ -102,12 +102,7 @@ def raise_values(
 
 
 _Mixed = tuple[
-    npt.NDArray[np.int32],
-    Floats,
-    npt.NDArray[np.int32],
-    npt.NDArray[np.int32],
-    Floats,
-    Floats,
+    npt.NDArray[np.int32], Floats, npt.NDArray[np.int32], npt.NDArray[np.int32], Floats, Floats
 ]
 """Cells, fixed parts, starts of the lists of pairs, cells and shares of pairs, working space."""
 

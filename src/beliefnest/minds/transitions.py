@@ -33,12 +33,7 @@ def by_stage(scene: Surroundings, weights: Weights) -> list[tuple[Stage, dict[Wa
 
 
 def arrive(
-    hypotheses: Hypotheses,
-    stage: Stage,
-    actual: int,
-    weights: Weights,
-    cell: Position,
-    sums: Sums,
+    hypotheses: Hypotheses, stage: Stage, actual: int, weights: Weights, cell: Position, sums: Sums
 ) -> None:
     """Add one action without an event; then the agent is seen in a cell."""
     for state, weight in weights.items():
@@ -140,10 +135,7 @@ def look_round(stage: Stage, actual: int, weights: Weights, sums: Sums) -> None:
 
 
 def learn(
-    weights: Weights,
-    rule: Callable[[Knowledge, int], Knowledge],
-    masks: Sequence[int],
-    sums: Sums,
+    weights: Weights, rule: Callable[[Knowledge, int], Knowledge], masks: Sequence[int], sums: Sums
 ) -> None:
     """Add what the agent learns, by the rule of percepts or of claims, each with its set."""
     for state, weight in weights.items():

@@ -135,12 +135,7 @@ class Ways:
 
 
 def ways_from(
-    box: Box,
-    floors: Sequence[Floor],
-    starts: Sequence[Position],
-    *,
-    diagonal: bool,
-    most: int,
+    box: Box, floors: Sequence[Floor], starts: Sequence[Position], *, diagonal: bool, most: int
 ) -> Ways | None:
     """Return all cells that are reachable from some cells in at least one alternative.
 

@@ -28,11 +28,7 @@ def check_animated(path: Path) -> str:
     return form
 
 
-def save_animation(
-    figures: Sequence[Figure],
-    milliseconds: Sequence[int],
-    path: Path,
-) -> None:
+def save_animation(figures: Sequence[Figure], milliseconds: Sequence[int], path: Path) -> None:
     """Write figures as an animation that repeats forever.
 
     Args:

@@ -195,8 +195,4 @@ def _png(drawing: Drawing, dpi: float) -> bytes:
     return png_bytes(raster(drawing, dpi), dpi=(dpi, dpi))
 
 
-_FORMS: Mapping[str, Callable[[Drawing, float], bytes]] = {
-    ".svg": _svg,
-    ".pdf": _pdf,
-    ".png": _png,
-}
+_FORMS: Mapping[str, Callable[[Drawing, float], bytes]] = {".svg": _svg, ".pdf": _pdf, ".png": _png}

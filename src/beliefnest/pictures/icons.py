@@ -130,10 +130,7 @@ def verdict(at: XY, radius: float, *, good: bool) -> list[Drawn]:
         (x - radius * 0.1, y + radius * 0.42),
         (x + radius * 0.52, y - radius * 0.38),
     )
-    return [
-        Circle(x, y, radius, _GOOD),
-        Polygon(points, None, PAPER, radius * 0.26, closed=False),
-    ]
+    return [Circle(x, y, radius, _GOOD), Polygon(points, None, PAPER, radius * 0.26, closed=False)]
 
 
 def container(at: XY, size: float, store: Store) -> list[Drawn]:
@@ -149,9 +146,7 @@ def container(at: XY, size: float, store: Store) -> list[Drawn]:
         (_STONE, _STONE_DARK, mix(_STONE, PAPER, 0.3)) if kiln else (_WOOD, _WOOD_DARK, _WOOD_LIGHT)
     )
     drawn: list[Drawn] = [
-        Rectangle(
-            x - half, y - half, size, size, body, dark, size * 0.05, size * 0.08, role="icon"
-        ),
+        Rectangle(x - half, y - half, size, size, body, dark, size * 0.05, size * 0.08, role="icon")
     ]
     empty = store.complete and not store.items
     if empty:

@@ -123,10 +123,7 @@ def _unknown(at: XY, wide: float, high: float) -> list[Drawn]:
         for a in (0.2, 0.5, 0.8)
         for b in (0.3, 0.7)
     ]
-    return [
-        Rectangle(x, y, wide, high, _GROUND),
-        Lines(tuple(dots), QUIET, 0.8),
-    ]
+    return [Rectangle(x, y, wide, high, _GROUND), Lines(tuple(dots), QUIET, 0.8)]
 
 
 def _container(at: XY, wide: float, high: float) -> list[Drawn]:

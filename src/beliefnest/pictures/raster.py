@@ -92,13 +92,7 @@ class _Pen:
             self._box(low, high, mark.fill, mark.stroke, mark.thick, mark.radius)
 
     def _box(
-        self,
-        low: XY,
-        high: XY,
-        fill: str | None,
-        stroke: str | None,
-        thick: float,
-        radius: float,
+        self, low: XY, high: XY, fill: str | None, stroke: str | None, thick: float, radius: float
     ) -> None:
         # Centre the outline on the edge, as SVG and PDF do.
         out = thick / 2 if stroke is not None else 0.0

@@ -86,10 +86,7 @@ def _pixels(root: ElementTree.Element, mark: Pixels) -> None:
 
 
 def _shape(
-    root: ElementTree.Element,
-    tag: str,
-    given: dict[str, float],
-    mark: Rectangle | Circle | Polygon,
+    root: ElementTree.Element, tag: str, given: dict[str, float], mark: Rectangle | Circle | Polygon
 ) -> ElementTree.Element:
     shape = ElementTree.SubElement(root, tag, {key: _n(value) for key, value in given.items()})
     shape.set("fill", mark.fill or "none")

@@ -113,11 +113,7 @@ class StepMeter(threading.local):
         def counter(count: Callable[[Any], Any]) -> Callable[..., Any]:
             return pass_context(lambda _context, value: count(value))
 
-        return {
-            _TEXT: counter(self.text),
-            _TURNS: counter(self.turns),
-            _VALUE: counter(self.value),
-        }
+        return {_TEXT: counter(self.text), _TURNS: counter(self.turns), _VALUE: counter(self.value)}
 
     def filter(self, name: str, environment: Environment) -> Callable[..., Any]:
         """Return an environment's filter so that it counts its work."""

@@ -5,13 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from beliefnest.belief.grounds import (
-    AgentBelief,
-    Basis,
-    ContainerBelief,
-    PerceivedEvent,
-    Source,
-)
+from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import PathError, PositionError
 from beliefnest.prompts.observations import Found, Happened, Observation, Outset, Read, SightChange
@@ -120,10 +114,7 @@ class ExampleBranch:
 def example_branch() -> ExampleBranch:
     """Return Sally's belief at tick 240, and her belief about Anne's belief."""
     deposit = PerceivedEvent(
-        69,
-        EventKind.DEPOSIT_ITEM_INTO_CHEST,
-        "sally",
-        {"position": _LEFT, "items": {"diamond": 1}},
+        69, EventKind.DEPOSIT_ITEM_INTO_CHEST, "sally", {"position": _LEFT, "items": {"diamond": 1}}
     )
     lever = PerceivedEvent(131, EventKind.USE_LEVER, "anne", {"position": _LEVER, "powered": True})
     outer = ExampleBranch(_state(("sally", "anne", "sally"), (deposit,), frozenset()))

@@ -14,12 +14,7 @@ from beliefnest.world.values import EQUIPMENT_SLOTS, EYE_HEIGHT, AgentState, Box
 _WIDTH = 0.6
 _HEIGHT = 1.8
 _SLACK = 1e-6
-_YAWS = {
-    "north": 0.0,
-    "west": math.pi / 2,
-    "south": math.pi,
-    "east": -math.pi / 2,
-}
+_YAWS = {"north": 0.0, "west": math.pi / 2, "south": math.pi, "east": -math.pi / 2}
 _Bounds = tuple[Point, Point]
 
 
@@ -119,6 +114,5 @@ def _check_place(
             )
             if _overlap(body, shape):
                 raise document.fault(
-                    path,
-                    f"{list(feet)} is inside the {registry.name(state)} at {list(position)}",
+                    path, f"{list(feet)} is inside the {registry.name(state)} at {list(position)}"
                 )

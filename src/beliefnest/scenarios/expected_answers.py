@@ -68,12 +68,7 @@ class Answers(Expected):
             else:
                 right = (each.right,) if isinstance(each.right, str) else tuple(each.right)
             found = cls(
-                each.question,
-                right,
-                tuple(each.options),
-                tuple(each.wrong),
-                each.reason,
-                believed,
+                each.question, right, tuple(each.options), tuple(each.wrong), each.reason, believed
             )
             for key, message in found._faults():
                 raise checks.fault((*place, *key), message)

@@ -73,8 +73,7 @@ class ContainerEntry(_Entry, frozen=True):
 
 
 _SignText = Annotated[
-    str,
-    note("Text on its front: at most 4 lines of 45 characters, separated by line breaks."),
+    str, note("Text on its front: at most 4 lines of 45 characters, separated by line breaks.")
 ]
 
 
@@ -118,8 +117,7 @@ class _AgentAttributes(_Entry, frozen=True):
     yaw: Annotated[_Angle | None, note("Radians; 0 looks north (-z), pi/2 west (-x).")] = None
     pitch: Annotated[_Angle | None, note("Radians, positive upwards.")] = None
     inventory: Annotated[
-        dict[str, int],
-        note("Counts by item name; equipment is added if it is not listed."),
+        dict[str, int], note("Counts by item name; equipment is added if it is not listed.")
     ] = {}
     equipment: Annotated[EquipmentEntry, note("Worn and held items.")] = EquipmentEntry()
     health: Annotated[float, msgspec.Meta(gt=0, le=20, description="Half hearts.")] = 20.0
@@ -164,8 +162,7 @@ class LegendEntry(_AgentAttributes, frozen=True, kw_only=True):
 
 
 _Rows = Annotated[
-    str | list[str],
-    note("Rows of characters, from north to south; each from west to east."),
+    str | list[str], note("Rows of characters, from north to south; each from west to east.")
 ]
 
 
@@ -209,8 +206,7 @@ class InitialBeliefEntry(_Entry, frozen=True):
     """Initial content of a belief."""
 
     path: Annotated[
-        str,
-        note("A belief path such as /observer/sally; with /** at the end, also all below it."),
+        str, note("A belief path such as /observer/sally; with /** at the end, also all below it.")
     ]
     containers: Annotated[
         list[_BelievedContainerEntry], note("Believed contents of containers.")
@@ -419,10 +415,9 @@ class _File(_Entry, frozen=True, kw_only=True):
     places: Annotated[
         dict[str, WrittenPosition], note("Named places: block positions by name.")
     ] = {}
-    perception: Annotated[
-        Perception,
-        note("Range of sight and hearing, and effect of claims."),
-    ] = Perception()
+    perception: Annotated[Perception, note("Range of sight and hearing, and effect of claims.")] = (
+        Perception()
+    )
     senses: Annotated[_Senses, _SENSES] = "world"
     static_blocks: Annotated[
         list[str | WrittenPosition],
@@ -435,17 +430,15 @@ class _File(_Entry, frozen=True, kw_only=True):
             "it is nowhere else."
         ),
     ] = []
-    labels: Annotated[
-        bool,
-        note("True if prompts contain `label` and `looks` of containers."),
-    ] = False
+    labels: Annotated[bool, note("True if prompts contain `label` and `looks` of containers.")] = (
+        False
+    )
     initial_beliefs: Annotated[list[InitialBeliefEntry], note("Beliefs before the script.")] = []
     script: Annotated[list[StepEntry], note("Steps in the real world, in order.")] = []
     probes: Annotated[list[ProbeEntry], note("Requests to models after the script.")] = []
     expectations: Annotated[list[ExpectationEntry], note("Expected beliefs after the script.")] = []
     episode: Annotated[
-        EpisodeEntry | None,
-        note("Goals of agents, and the rules of play in rounds."),
+        EpisodeEntry | None, note("Goals of agents, and the rules of play in rounds.")
     ] = None
     conditions: Annotated[
         dict[int, dict[str, Any]],
@@ -465,8 +458,7 @@ class ScenarioFile(_File, frozen=True, kw_only=True):
 
     box: Annotated[tuple[WrittenPosition, WrittenPosition], _BOX]
     agents: Annotated[
-        dict[str, AgentEntry],
-        msgspec.Meta(min_length=1, description="Agents by name."),
+        dict[str, AgentEntry], msgspec.Meta(min_length=1, description="Agents by name.")
     ]
 
 

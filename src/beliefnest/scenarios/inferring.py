@@ -12,11 +12,7 @@ from beliefnest.facts.reading import check_entry, edits_of
 from beliefnest.minds.mind_model import MindModel, simplex_grid
 from beliefnest.scenarios.checks import Checks, check_inside
 from beliefnest.scenarios.document import Document, KeyPath
-from beliefnest.scenarios.format import (
-    GridEntry,
-    InferEntry,
-    LevelsEntry,
-)
+from beliefnest.scenarios.format import GridEntry, InferEntry, LevelsEntry
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.texts import quoted
@@ -60,11 +56,7 @@ class Inferring:
         """
         try:
             return simulator.infer(
-                self.model,
-                since=self.since,
-                until=self.until,
-                ended=self.ended,
-                smooth=self.smooth,
+                self.model, since=self.since, until=self.until, ended=self.ended, smooth=self.smooth
             )
         except (InputError, PathError, TickError) as error:
             raise ScenarioError(f"{self.where}: {error}") from None

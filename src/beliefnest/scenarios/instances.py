@@ -23,12 +23,7 @@ from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, plain
 from beliefnest.scenarios.format import InstanceEntry, ParameterEntry, TerrainEntry
 from beliefnest.scenarios.loading import condition_numbers, scenario_in
-from beliefnest.scenarios.parameters import (
-    broken_constraint,
-    check_declared,
-    choices,
-    declared_in,
-)
+from beliefnest.scenarios.parameters import broken_constraint, check_declared, choices, declared_in
 from beliefnest.scenarios.terrain_entry import terrain_in
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain

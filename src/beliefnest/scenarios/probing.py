@@ -4,13 +4,7 @@ from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.view import State
 from beliefnest.errors import ModelError
-from beliefnest.llm.asking import (
-    NoUsableProgramError,
-    Prompt,
-    Round,
-    ask_for_program,
-    asked_again,
-)
+from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_program, asked_again
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.model_settings import ModelSettings

@@ -19,11 +19,7 @@ def usage_json(usage: Usage) -> dict[str, object]:
 
 def expectation_json(outcome: ExpectationOutcome) -> dict[str, object]:
     """Return the outcome of an expectation as plain values."""
-    return {
-        **outcome.expectation.written(),
-        "ok": outcome.ok,
-        "why_not": outcome.why_not or "",
-    }
+    return {**outcome.expectation.written(), "ok": outcome.ok, "why_not": outcome.why_not or ""}
 
 
 def placed_json(placed: Placements) -> dict[str, object]:

@@ -56,8 +56,7 @@ class EpisodeEntry(_Entry, frozen=True, kw_only=True):
     ] = {}
     order: Annotated[int, msgspec.Meta(ge=0, description="Order of Theory of Mind it needs.")] = 0
     players: Annotated[
-        list[str],
-        note("Agents whose policies are tested; empty: all agents not in `policies`."),
+        list[str], note("Agents whose policies are tested; empty: all agents not in `policies`.")
     ] = []
     policies: Annotated[dict[str, str], note("Policies of agents that are no players.")] = {}
     talk: Annotated[list[str], note("Agents that may speak.")] = []

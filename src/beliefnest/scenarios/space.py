@@ -71,11 +71,7 @@ def build_blocks(document: Document, file: ScenarioFile, box: Box, registry: Reg
 
 
 def build_signs(
-    document: Document,
-    file: ScenarioFile,
-    blocks: Terrain,
-    box: Box,
-    registry: Registry,
+    document: Document, file: ScenarioFile, blocks: Terrain, box: Box, registry: Registry
 ) -> dict[Position, str]:
     """Return the texts of signs by position; signs without a text are left out."""
     places: set[Position] = set()

@@ -12,12 +12,7 @@ from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.scenarios.document import Document, plain
 from beliefnest.scenarios.drawn_map import with_map
 from beliefnest.scenarios.loading import condition_numbers
-from beliefnest.scenarios.parameters import (
-    broken_constraint,
-    choices,
-    declared_in,
-    with_parameters,
-)
+from beliefnest.scenarios.parameters import broken_constraint, choices, declared_in, with_parameters
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.symmetry import SYMMETRIES
 from beliefnest.studies.variation import Variation

@@ -19,18 +19,10 @@ from beliefnest.scenarios.sources import read_document
 from beliefnest.skills.manifests import SkillDetail
 from beliefnest.studies.allocation import LABEL, PARTICIPANT
 from beliefnest.studies.cells import C, Cell, Plan, plan_cells
-from beliefnest.studies.checking import (
-    StudyKeyError,
-    is_whole,
-    several,
-)
+from beliefnest.studies.checking import StudyKeyError, is_whole, several
 from beliefnest.studies.design import Constraint, Design, template_named
 from beliefnest.studies.episode_cells import EpisodeCell, plan_episodes
-from beliefnest.studies.episode_design import (
-    EpisodeDesign,
-    Order,
-    Policies,
-)
+from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
 from beliefnest.studies.inputs import Inputs

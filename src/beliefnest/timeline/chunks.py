@@ -163,11 +163,7 @@ class Chunks:
                 yield self._decoded(chunk, encoded)
 
     def _parts(
-        self,
-        timeline: int,
-        start: int,
-        stop: int,
-        gone: Callable[[], BranchError | None] | None,
+        self, timeline: int, start: int, stop: int, gone: Callable[[], BranchError | None] | None
     ) -> Iterator[tuple[_Chunk, list[msgspec.Raw]]]:
         """Yield chunks, each with those of its encoded entries that lie from start to stop - 1."""
         # Query anew for each chunk: a writer may join chunks between two reads.

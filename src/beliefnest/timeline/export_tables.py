@@ -106,13 +106,7 @@ TABLES: Mapping[str, Mapping[str, ColumnForm]] = MappingProxyType(
         },
         "signs": {**_PLACE, **_CELL, "text": "text", "claims": "object", "edited": "text"},
         "containers": {**_PLACE, **_CELL, "items": "object", "edited": "text"},
-        "items": {
-            **_PLACE,
-            "item": "integer",
-            "name": "text",
-            "count": "integer",
-            **_POINT,
-        },
+        "items": {**_PLACE, "item": "integer", "name": "text", "count": "integer", **_POINT},
         "events": {
             **_PLACE,
             "number": "integer",
@@ -164,12 +158,7 @@ TABLES: Mapping[str, Mapping[str, ColumnForm]] = MappingProxyType(
             "message": "text",
             "reason": "text",
         },
-        "goals": {
-            "branch": "text",
-            "condition": "text",
-            "never": "boolean",
-            "tick": "integer",
-        },
+        "goals": {"branch": "text", "condition": "text", "never": "boolean", "tick": "integer"},
         "beliefs": {**_ON_TIMELINE, "state": "object", "blocks": "object"},
     }
 )
@@ -344,9 +333,7 @@ def _block_rows(
 
 
 def _container_rows(
-    place: Mapping[str, Any],
-    contents: Iterable[tuple[Position, Items | None]],
-    edited: str | None,
+    place: Mapping[str, Any], contents: Iterable[tuple[Position, Items | None]], edited: str | None
 ) -> Iterator[TableRow]:
     for (x, y, z), items in contents:
         held = None if items is None else dict(items)

@@ -213,11 +213,7 @@ class _Reader:
         self._registry = registry
         self._box = Box(*line.box)
         self.names = tuple(line.agents)
-        _check(
-            box_fault(self._box),
-            tick_fault(line.tick),
-            *map(agent_name_fault, self.names),
-        )
+        _check(box_fault(self._box), tick_fault(line.tick), *map(agent_name_fault, self.names))
         if len(self.names) > MOST_AGENTS:
             raise InputError(
                 f"there are {len(self.names)} agents; at most {MOST_AGENTS} are allowed"

@@ -93,11 +93,7 @@ class Box:
 
     def index(self, position: Position) -> tuple[int, int, int]:
         """Return the index of a position in a dense array of shape `shape`."""
-        return (
-            position[0] - self.low[0],
-            position[1] - self.low[1],
-            position[2] - self.low[2],
-        )
+        return (position[0] - self.low[0], position[1] - self.low[1], position[2] - self.low[2])
 
     def positions(self) -> Iterator[Position]:
         """Yield all block positions, x slowest, z fastest (the order of a dense array)."""

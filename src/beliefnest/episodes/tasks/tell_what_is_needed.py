@@ -9,15 +9,7 @@ that Max knows, she does not help him; if she says everything, she is too late f
 import random
 from typing import Any
 
-from beliefnest.episodes.tasks.building import (
-    WINDOW,
-    belief,
-    booths,
-    chest,
-    hall,
-    passages,
-    wall,
-)
+from beliefnest.episodes.tasks.building import WINDOW, belief, booths, chest, hall, passages, wall
 from beliefnest.world.values import Position
 
 PARAMETERS = {"items": (3, 2, 4), "moved": (1, 1, 2), "reach": (20, 20, 26), "agents": (2, 2, 4)}

@@ -127,11 +127,7 @@ class Bodies:
         """Return the start of a simulator's body at a moment; see `start_of`."""
         recording = self._recording
         return start_of(
-            recording.journal,
-            recording.history,
-            path,
-            moment,
-            has_physics=self.world.has_physics,
+            recording.journal, recording.history, path, moment, has_physics=self.world.has_physics
         )
 
     def recorded(self, key: TimelineKey) -> Snapshot:

@@ -52,9 +52,7 @@ def _surviving(
     return again
 
 
-def _shown(
-    method: Callable[Concatenate["Engine", P], R],
-) -> Callable[Concatenate["Engine", P], R]:
+def _shown(method: Callable[Concatenate["Engine", P], R]) -> Callable[Concatenate["Engine", P], R]:
     """Show the result of a method to people who visit beliefs."""
 
     @wraps(method)

@@ -102,11 +102,7 @@ class _RecordedTimeline:
 
 
 def replay(
-    setting: Setting,
-    journal: Journal,
-    programs: Sequence[ProgramRecord],
-    world: World,
-    seed: int,
+    setting: Setting, journal: Journal, programs: Sequence[ProgramRecord], world: World, seed: int
 ) -> Iterator[ReplayedTimeline]:
     """Run every timeline of a run again, in order of creation, and yield the results.
 

@@ -49,10 +49,7 @@ from beliefnest.world.values import Point, Position
 
 
 def element_of(
-    recording: Recording,
-    container: Position | None,
-    agent: str | None,
-    block: Position | None,
+    recording: Recording, container: Position | None, agent: str | None, block: Position | None
 ) -> Element:
     """Return the one element that is asked for; raises as `ShownSimulator.explain` does."""
     given = [name for name in (container, agent, block) if name is not None]

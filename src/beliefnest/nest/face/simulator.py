@@ -17,12 +17,7 @@ from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import FOLLOW, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import Senses
-from beliefnest.world.double_chests import (
-    believed_container_at,
-    is_double,
-    other_half,
-    states_in,
-)
+from beliefnest.world.double_chests import believed_container_at, is_double, other_half, states_in
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry
 from beliefnest.world.signs import plain_state, written

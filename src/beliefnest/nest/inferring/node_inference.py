@@ -267,11 +267,7 @@ def _chunks(model: MindModel, moments: Sequence[EvidenceMoment]) -> list[slice]:
 
 
 def credence_in(
-    recording: Recording,
-    path: BeliefPath,
-    model: MindModel,
-    since: int,
-    tick: int | None,
+    recording: Recording, path: BeliefPath, model: MindModel, since: int, tick: int | None
 ) -> dict[str, float]:
     """Return the credence of an agent in alternatives, by its percepts alone, without a planner.
 

@@ -117,10 +117,7 @@ class StateHistory:
     """
 
     def __init__(
-        self,
-        journal: Journal,
-        setting: Setting,
-        turn: AbstractContextManager[object] | None = None,
+        self, journal: Journal, setting: Setting, turn: AbstractContextManager[object] | None = None
     ) -> None:
         self.turn = nullcontext() if turn is None else turn
         self._journal = journal

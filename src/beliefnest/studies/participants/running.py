@@ -28,12 +28,7 @@ from beliefnest.studies.participants.folder import (
 from beliefnest.studies.participants.instructions import instruction_pages, read_instructions
 from beliefnest.studies.participants.items import items_of, left_out
 from beliefnest.studies.participants.joining import Joined, check_name, counted_answers, joined
-from beliefnest.studies.participants.playing import (
-    OnItem,
-    judged_items,
-    refuse_claims,
-    shown_items,
-)
+from beliefnest.studies.participants.playing import OnItem, judged_items, refuse_claims, shown_items
 from beliefnest.studies.plainframe import Typed, write_csv
 
 ShownForm = Literal["film", "story", "both"]

@@ -77,10 +77,7 @@ def staged(film: Film) -> Nest:
 
 
 def model_of(
-    film: Film,
-    parameters: FilmParameters,
-    lesion: Lesion | None = None,
-    known: str | None = None,
+    film: Film, parameters: FilmParameters, lesion: Lesion | None = None, known: str | None = None
 ) -> MindModel:
     """Return the model of a film's agent.
 

@@ -148,10 +148,7 @@ def feet(block: Position) -> Point:
 
 
 def _carved(
-    box: Box,
-    spans: Sequence[tuple[int, int]],
-    cells: Mapping[str, Position],
-    registry: Registry,
+    box: Box, spans: Sequence[tuple[int, int]], cells: Mapping[str, Position], registry: Registry
 ) -> BlockGrid:
     """Return walls and floors with all rooms, entrances and cells cut out.
 

@@ -160,23 +160,23 @@ class Wait(_Sentence, frozen=True, tag="wait"):
     about: _Name | None = None
 
 
-Sentence = (
+StoryEvent = (
     Entered
     | Exited
-    | Returned
-    | Present
-    | Stayed
     | Located
     | Moved
     | Placed
     | Taken
+    | Opened
     | UseDoor
     | Write
-    | Opened
     | Told
     | Whispered
     | Wait
 )
+"""Sentence that can also be written as an object in JSON."""
+
+Sentence = StoryEvent | Returned | Present | Stayed
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,10 +271,7 @@ _FORMS: tuple[tuple[str, type[Any]], ...] = (
         rf"{_AGENTS} {_ALL}(?:exit(?:ed|s)|left|leaves|{_WALK} out of) {_THE}(?:room|{_ROOM})",
         Exited,
     ),
-    (
-        rf"{_AGENTS} made no movements and stayed in (?:the )?{_ROOM}(?: for \d+ minutes?)?",
-        Stayed,
-    ),
+    (rf"{_AGENTS} made no movements and stayed in (?:the )?{_ROOM}(?: for \d+ minutes?)?", Stayed),
     (rf"{_AGENT} {_CARRIES} {_THING}(?: {_FROM})? {_TO} {_CONTAINER}", Moved),
     (
         rf"{_AGENT} (?:{_TAKES}|picked up|picks up) {_THING}(?: {_FROM})? and {_PUTS} it {_INTO} "

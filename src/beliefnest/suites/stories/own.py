@@ -10,42 +10,11 @@ from beliefnest.files import decode_json, read_regular
 from beliefnest.perception.options import ContainerMode, Testimony
 from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
 from beliefnest.suites.stories.faults import form_fault
-from beliefnest.suites.stories.grammar import (
-    Agent,
-    Entered,
-    Exited,
-    Line,
-    Located,
-    Moved,
-    Opened,
-    Placed,
-    Taken,
-    Told,
-    UseDoor,
-    Wait,
-    Whispered,
-    Write,
-    parse_line,
-)
+from beliefnest.suites.stories.grammar import Agent, Line, StoryEvent, Write, parse_line
 from beliefnest.suites.stories.played_story import Knowing, check_question
 from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
 from beliefnest.world.texts import quoted
-
-_Event = (
-    Entered
-    | Exited
-    | Located
-    | Moved
-    | Placed
-    | Taken
-    | Opened
-    | UseDoor
-    | Write
-    | Told
-    | Whispered
-    | Wait
-)
 
 
 class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -63,7 +32,7 @@ class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class _OwnStory(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Line of the file: one story."""
 
-    events: list[str | _Event]
+    events: list[str | StoryEvent]
     questions: list[_Asked]
     name: str = ""
     containers: ContainerMode = "transparent"
@@ -100,7 +69,7 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> ReadStories:
         try:
             told = decode_json(line, _OwnStory)
         except msgspec.DecodeError as error:
-            unread.append(Unread(where, (form_fault(error, _OwnStory, _Event),)))
+            unread.append(Unread(where, (form_fault(error, _OwnStory, StoryEvent),)))
             continue
         story, faults = _story(number, told)
         if story is not None:
@@ -143,7 +112,7 @@ def _story(number: int, told: _OwnStory) -> tuple[StoryItems | None, tuple[str, 
     return StoryItems(story, tuple(items), knowing), tuple(faults)
 
 
-def _line(number: int, event: str | _Event) -> Line:
+def _line(number: int, event: str | StoryEvent) -> Line:
     if not isinstance(event, str):
         return Line(number, msgspec.json.encode(event).decode(), event, "event")
     return parse_line(number, event, "event")

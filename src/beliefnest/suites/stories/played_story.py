@@ -15,12 +15,7 @@ from beliefnest.suites.stories.acting import programs_of, tell
 from beliefnest.suites.stories.claim_reading import StoryReader, in_words_alone
 from beliefnest.suites.stories.floor_plan import WALL, FloorPlan, lay_out
 from beliefnest.suites.stories.questions import Question
-from beliefnest.suites.stories.story import (
-    Come,
-    Go,
-    Place,
-    Story,
-)
+from beliefnest.suites.stories.story import Come, Go, Place, Story
 from beliefnest.world.texts import quoted
 
 if TYPE_CHECKING:  # Importing models takes long, and few stories need one.

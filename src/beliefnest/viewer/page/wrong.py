@@ -28,11 +28,7 @@ class WrongThings:
     """
 
     def __init__(
-        self,
-        forest: Forest,
-        numbers: Sequence[int],
-        grids: GridChanges,
-        false: Sequence[Cells],
+        self, forest: Forest, numbers: Sequence[int], grids: GridChanges, false: Sequence[Cells]
     ) -> None:
         self._forest, self._numbers = forest, list(numbers)
         self._grids = grids

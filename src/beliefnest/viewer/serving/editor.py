@@ -61,9 +61,7 @@ def editor_app(editor: Editor, addresses: Collection[str], token: str | None) ->
     )
 
 
-def _answering(
-    answer: Callable[[dict[str, Any]], dict[str, Any]],
-) -> Callable[[Request], Any]:
+def _answering(answer: Callable[[dict[str, Any]], dict[str, Any]]) -> Callable[[Request], Any]:
     """Return a route that answers a JSON object with another."""
 
     async def answered(request: Request) -> Response:

@@ -12,14 +12,7 @@ from beliefnest.errors import BeliefNestError
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, Box, Event, Point
-from beliefnest.worlds.protocol import (
-    Aim,
-    Fault,
-    ProgramResult,
-    RunRules,
-    Sensed,
-    SenseSource,
-)
+from beliefnest.worlds.protocol import Aim, Fault, ProgramResult, RunRules, Sensed, SenseSource
 from beliefnest.worlds.scripted.bot_reads import BotReads
 from beliefnest.worlds.scripted.desk import Desk
 from beliefnest.worlds.scripted.footpaths import Ground

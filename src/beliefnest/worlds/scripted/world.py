@@ -23,12 +23,7 @@ from beliefnest.world.handling import (
     put_block,
     switched_lever,
 )
-from beliefnest.world.limits import (
-    AGENT_SLOTS,
-    WORN_SLOTS,
-    slots_at,
-    snapshot_fault,
-)
+from beliefnest.world.limits import AGENT_SLOTS, WORN_SLOTS, slots_at, snapshot_fault
 from beliefnest.world.registry import AIR, parse_state
 from beliefnest.world.signs import plain_state, text_of
 from beliefnest.world.values import AgentState, Event, Items, Point, Position
