@@ -10,6 +10,7 @@ from tests.noninterference.pairs import AGENTS, Played
 import beliefnest as bn
 from beliefnest.episodes.agent_view import AgentView, Brief
 from beliefnest.episodes.decided import Ended
+from beliefnest.llm.claim_reader import claims_from_model
 from beliefnest.llm.messages import Answer, Message, Sampling
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.nest.face.imagining import ImaginationWarning
@@ -30,16 +31,18 @@ class Listener:
     """Model that keeps what it is asked.
 
     Attributes:
+        says: Its answer to everything.
         asked: Texts of the messages.
     """
 
+    says: str = "Answer: none"
     name: str = "listener"
     asked: list[str] = field(default_factory=list)
 
     def answer(self, messages: Sequence[Message], sampling: Sampling) -> Answer:
-        """Answer nothing of use."""
+        """Answer always the same."""
         self.asked += [message.text for message in messages]
-        return Answer("Answer: none")
+        return Answer(self.says)
 
 
 @door(every=2)
@@ -66,6 +69,16 @@ def right_answers(world: Played, path: str) -> object:
         )
         for kind, thing in matters
     ]
+
+
+@door()
+def readings(world: Played, path: str) -> object:
+    """Return what readers of claims are given for the words that the owner hears."""
+    model = Listener('{"claims": []}')
+    heard = [each for each in world.read if each[0] in ("ann", "bob")]
+    for speaker, text, nameable in heard:
+        claims_from_model(model)(text, speaker, nameable)
+    return heard, model.asked
 
 
 @door(every=4)

@@ -17,6 +17,7 @@ from typing import Any
 import beliefnest as bn
 from beliefnest.nest.past.setting import Setting
 from beliefnest.prompts import Renderer
+from beliefnest.world.nameable import Nameable
 from beliefnest.world.values import Items, Point, Position
 
 __all__ = ["AGENTS", "BOX", "PATHS", "Pair", "Played", "Side", "pair_of", "played"]
@@ -101,11 +102,13 @@ class Played:
         nest: Its open nest.
         seed: Seed of the pair; doors may use it for choices of their own.
         places: Cells of the western room that have or had a thing.
+        read: Words that were read for claims: speaker, text, and what the speaker can name.
     """
 
     nest: bn.Nest
     seed: int
     places: tuple[Position, ...]
+    read: list[tuple[str, str, Nameable]]
 
 
 def pair_of(seed: int) -> Pair:
@@ -167,7 +170,14 @@ def played(pair: Pair, which: int) -> Iterator[Played]:
         places={"yard": (1, 1, 5), "garden": (4, 1, 1)},
         unique=frozenset(pair.unique),
     )
-    with bn.Nest.open(setting, "scripted", renderer=_renderer()) as nest:
+    read: list[tuple[str, str, Nameable]] = []
+
+    def claims(text: str, speaker: str, nameable: Nameable) -> list[bn.Claim]:
+        read.append((speaker, text, nameable))
+        places = (*nameable.containers, *nameable.doors)[-1:]
+        return [bn.Claim.located(item, at) for item in nameable.items[-1:] for at in places]
+
+    with bn.Nest.open(setting, "scripted", renderer=_renderer(), claims_from=claims) as nest:
         real = nest.scripted_world
         for seen, unseen in zip(pair.seen, pair.unseen[which], strict=True):
             _beat(real, [*seen, *unseen])
@@ -176,7 +186,7 @@ def played(pair: Pair, which: int) -> Iterator[Played]:
             _beat(real, [("place_agent", name, at) for name, at in _STANDS.items()])
             _beat(real, [("set_block", _GAP, "air")])
             _beat(real, [("place_agent", "ann", (5.5, 1, 3.5))])
-        yield Played(nest, pair.seed, tuple(sorted({*_WEST, *west.blocks})))
+        yield Played(nest, pair.seed, tuple(sorted({*_WEST, *west.blocks})), read)
 
 
 _STANDS: Mapping[str, Point] = {"carl": (9.5, 1, 1.5), "dora": (12.5, 1, 3.5)}
@@ -290,7 +300,7 @@ def _act(
         lambda: ("open", who, at),
         lambda: ("deposit", who, at, item),
         lambda: ("withdraw", who, at, item),
-        lambda: ("say", who, chance.choice(["hello", "look"]), [claim]),
+        lambda: ("say", who, chance.choice(["hello", "look"]), chance.choice([[claim], []])),
         lambda: ("whisper", who, other, "psst"),
         lambda: ("think", who, "hm"),
         lambda: ("use_lever", who, at, chance.random() < 0.5),

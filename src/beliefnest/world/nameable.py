@@ -9,16 +9,18 @@ from beliefnest.world.values import Box, Position
 
 @dataclass(frozen=True, slots=True)
 class Nameable:
-    """Things that a speaker may name.
+    """Things that a speaker can name: those of its belief just before it speaks.
 
     Attributes:
         box: Region of the scenario; claims outside it are invalid.
         agents: All agents, including the speaker, in order of names.
-        items: Items of the scenario, in order of names; lies may name others as well.
-        containers: Names of the containers by position: what people call them, else the block's
-            name.
-        doors: Block state texts of doors, trapdoors, gates, levers and buttons by position.
-        places: Positions of other named places.
+        items: Items that the speaker believes in or has come across, in order of names; lies may
+            name others as well.
+        containers: Names of the containers that the speaker believes in, by position: the label,
+            if the speaker knows it, else the block's name.
+        doors: Block state texts of doors, trapdoors, gates, levers and buttons by position, as
+            the speaker believes them to be.
+        places: Positions of other named places that the speaker knows.
         called: Names that people use for items, if they differ from the item's name.
     """
 
@@ -33,4 +35,4 @@ class Nameable:
 
 ClaimsFrom = Callable[[str, str, Nameable], Iterable[Claim]]
 """Function that extracts claims from an utterance. Arguments: its text, its speaker, and the
-things that can be named."""
+things that the speaker can name."""

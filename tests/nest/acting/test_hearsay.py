@@ -12,10 +12,12 @@ from tests.nest.comparing import values
 import beliefnest as bn
 from beliefnest.belief.view import State
 from beliefnest.cli.app import run_command_line
+from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline import codec
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.store import SqliteJournal
 from beliefnest.world.nameable import Nameable
+from beliefnest.world.values import Position
 
 LEFT, RIGHT, DOOR = (3, 0, 3), (17, 0, 3), (10, 0, 18)
 INFORMED = bn.Perception(max_visible_distance=6, testimony="informed", grace=100)
@@ -78,10 +80,34 @@ def test_what_is_found_in_words_is_claimed() -> None:
     ((text, speaker, nameable),) = listener.asked
     assert (text, speaker) == ("It is right there", "nora")
     assert nameable.agents == ("max", "nora")
-    assert nameable.items == ("apple", "diamond")
-    assert nameable.containers == {LEFT: "chest", RIGHT: "chest"}
-    assert list(nameable.doors) == [DOOR]
+    assert nameable.items == ("diamond",)
+    assert nameable.containers == {LEFT: "chest"}
+    assert nameable.doors == {}
     assert nameable.box == there.box
+
+
+@pytest.mark.parametrize("known", [(), [LEFT, RIGHT, DOOR]])
+def test_a_speaker_can_name_what_it_knows(known: list[Position]) -> None:
+    listener, there = Listener(), world()
+    setting = Setting(
+        "halls",
+        there.snapshot(),
+        INFORMED,
+        static_blocks=frozenset(known),
+        initial_beliefs=(bn.InitialBelief(("nora",), containers={RIGHT: ({"emerald": 1}, False)}),),
+        labels={LEFT: "left box", RIGHT: "right box"},
+        places={"here": (5, 0, 5), "there": (18, 0, 18)},
+        unique=frozenset({"nether_star"}),
+    )
+    with bn.Nest.open(setting, "scripted", claims_from=listener) as nest:
+        hide(nest.scripted_world)
+        nest.scripted_world.say("max", "x", claims=[bn.Claim.absent("bread", LEFT)])
+        nest.scripted_world.say("nora", "Well.")
+    ((_, _, nameable),) = listener.asked
+    assert nameable.items == ("bread", "diamond", "emerald", "nether_star")
+    assert list(nameable.containers.values()) == ["left box", "right box"][: 1 + bool(known)]
+    assert list(nameable.doors) == [DOOR][: len(known)]
+    assert nameable.places == {"here": (5, 0, 5)}
 
 
 def test_only_utterances_without_claims_of_their_own_are_read() -> None:

@@ -55,9 +55,7 @@ class Bodies:
         self.chat_listeners: list[ChatListener] = []
         self._recording = recording
         self._embodying = embodying
-        self._hearsay = None
-        if reader is not None:
-            self._hearsay = Hearsay(reader, recording.setting, recording.history)
+        self._hearsay = None if reader is None else Hearsay(reader, recording)
         self._embodied: dict[BeliefPath, _RecordedBody] = {}
         self._bodiless: set[BeliefPath] = set()
 

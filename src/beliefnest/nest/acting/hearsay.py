@@ -8,18 +8,23 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Protocol
 
-from beliefnest.belief.node_view import NodeView
-from beliefnest.nest.past.history import StateHistory
-from beliefnest.nest.past.setting import Setting
+from beliefnest.belief.view import State
+from beliefnest.nest.acting.sensing import believer_of
+from beliefnest.nest.past.labelled import Labelled
+from beliefnest.nest.past.observing import observations_of
+from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.timeline_state import TimelineState
+from beliefnest.prompts.naming import known_places
+from beliefnest.prompts.simulator_view import blocks_where
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.world.claims import Claim, with_claims
+from beliefnest.world.claims import Claim, claims_from_plain, with_claims
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.double_chests import holds_items
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.registry import block_name
+from beliefnest.world.registry import Registry, block_name
 from beliefnest.world.values import Event, Position
 
 
@@ -39,33 +44,34 @@ class ClaimReader(Protocol):
 class Hearsay:
     """Completion of frames: adds the claims that a reader finds in utterances."""
 
-    def __init__(self, reader: ClaimReader, setting: Setting, history: StateHistory) -> None:
+    def __init__(self, reader: ClaimReader, recording: Recording) -> None:
         self._reader = reader
-        self._setting = setting
-        self._history = history
+        self._recording = recording
 
     def completed(self, frame: Frame, key: TimelineKey) -> Frame:
         """Return the frame with claims added to its utterances that carry none.
 
-        Everything before the frame must be recorded already: it decides what claims can name.
+        Everything before the frame must be recorded already: it decides what a speaker can name.
 
         Raises:
             InputError: The reader returned something that is not a claim or does not fit the world.
         """
-        seen = self._history.state(key, key.path)
-        nameable = _nameable(self._setting, self._history, seen)
+        recording = self._recording.on(key)
         events = tuple(
-            self._read(event, frame.tick, key, nameable) if _is_unread(event) else event
+            self._read(event, frame.tick, recording, key) if _is_unread(event) else event
             for event in frame.events
         )
         return replace(frame, events=events)
 
-    def _read(self, event: Event, tick: int, key: TimelineKey, nameable: Nameable) -> Event:
+    def _read(self, event: Event, tick: int, recording: Recording, key: TimelineKey) -> Event:
         speaker, text = str(event.actor), str(event.detail["text"])
+        path = believer_of(key.path, speaker)
+        believed = recording.state(path)
+        nameable = _nameable(recording, path, believed)
         claims = tuple(self._reader.read(key.path, tick, text, speaker, nameable))
         if not claims:
             return event
-        whole = self._history.state(key, key.path).container_at
+        whole = believed.container_at
         found = with_claims(event.detail, claims, nameable.box, nameable.agents, whole)
         return replace(event, detail={**found, "claims_from": self._reader.name})
 
@@ -99,39 +105,49 @@ def _bare(event: Event) -> tuple[object, ...]:
     return event.kind, event.actor, detail["text"], detail.get("to")
 
 
-def _nameable(setting: Setting, history: StateHistory, seen: NodeView) -> Nameable:
-    start, registry = setting.snapshot, history.context.registry
-    known = {cell: registry.text(state) for cell, state in _fittings(history, seen).items()}
+def _nameable(recording: Recording, path: BeliefPath, believed: TimelineState) -> Nameable:
+    """Return the things that the owner of a belief can name: an utterance means no others."""
+    setting = recording.setting
+    labels = _labels(recording, path, believed) if setting.labels else {}
+    fittings = dict(blocks_where(believed, _is_fitting))
     containers = {
-        at: setting.labels.get(at, block_name(text))
-        for at, text in known.items()
-        if registry.is_container(block_name(text))
+        at: labels.get(at, block_name(text))
+        for at, text in fittings.items()
+        if Registry.load().is_container(block_name(text))
     }
-    holders: list[Iterable[str]] = [*start.containers.values()]
-    holders += [agent.inventory for agent in start.agents.values()]
-    holders += [content.items for content in seen.containers.values()]
-    holders += [agent.inventory for agent in seen.agents.values()]
-    holders.append(item.name for item in (*start.items.values(), *seen.items.values()))
     return Nameable(
-        box=start.box,
-        agents=history.context.agents,
-        items=tuple(sorted({name for names in holders for name in names})),
+        box=recording.box,
+        agents=recording.agents,
+        items=tuple(sorted(_items(recording, path, believed) | setting.unique)),
         containers=containers,
-        doors={at: text for at, text in known.items() if at not in containers},
-        places=dict(setting.places),
+        doors={at: text for at, text in fittings.items() if at not in containers},
+        places=dict(known_places(believed, setting.places)),
     )
 
 
-def _fittings(history: StateHistory, seen: NodeView) -> dict[Position, int]:
-    """Return the containers, doors and switches of a simulator, as block states."""
-    registry, box = history.context.registry, history.context.box
-    states = []
-    for state in seen.terrain.states:
-        name = registry.name(state) if state >= 0 else ""
-        if name and (holds_items(registry, state) or is_door(name) or is_switch(name)):
-            states.append(state)
-    x, y, z = box.low
-    return {
-        (x + i, y + j, z + k): seen.terrain[i, j, k]
-        for i, j, k in seen.terrain.find(states).tolist()
-    }
+def _is_fitting(text: str) -> bool:
+    """Return True for a container, door or switch; the left half of a double chest is none."""
+    registry, name = Registry.load(), block_name(text)
+    return holds_items(registry, registry.state_id(text)) or is_door(name) or is_switch(name)
+
+
+def _labels(recording: Recording, path: BeliefPath, believed: State) -> Mapping[Position, str]:
+    labelled = Labelled(recording, recording.moment(path))
+    observations = observations_of(recording, path)
+    return labelled.known(believed, observations, recording.setting.labels)
+
+
+def _items(recording: Recording, path: BeliefPath, believed: State) -> set[str]:
+    """Return the items that an agent believes in, at first or now, has seen moved or heard of."""
+    found: set[str] = set()
+    for state in (recording.state(path, recording.info(path).start), believed):
+        for content in state.containers.values():
+            found.update(content.items)
+        for agent in state.agents.values():
+            found.update(agent.inventory, (agent.equipment or {}).values())
+        found.update(item.name for item in state.items.values())
+    for event in believed.perceived:
+        found.update(event.detail.get("items", ()))
+        claims = claims_from_plain(event.detail.get("claims", ()))
+        found.update(claim.item for claim in claims if claim.item is not None)
+    return found

@@ -38,9 +38,8 @@ class StoryReader:
     def __call__(self, text: str, speaker: str, nameable: Nameable) -> Iterable[Claim]:
         """Return the claims in a text; raise errors as the inner extractor does."""
         called = {item: thing for thing, item in self.plan.items.items()}
-        containers = {
-            at: f"{place.container} of the {place.room}" for place, at in self.plan.places.items()
-        }
+        at = self.plan.place_at
+        containers = {p: f"{at(p).container} of the {at(p).room}" for p in nameable.containers}
         return self.reader(text, speaker, replace(nameable, called=called, containers=containers))
 
 
