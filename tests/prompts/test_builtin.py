@@ -8,7 +8,7 @@ from beliefnest.belief.grounds import AgentBelief, PerceivedEvent
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import TemplateError
 from beliefnest.prompts import BUILT_IN, render
-from beliefnest.prompts.example import ExampleBlocks, ExampleBranch, example_branch
+from beliefnest.prompts.example import ExampleBlocks, example_branch, example_mind
 from beliefnest.prompts.reference import EXAMPLES
 from beliefnest.prompts.text import number
 from beliefnest.world.event_words import EVENT_WORDS
@@ -22,13 +22,13 @@ def show(expression, branch=None, **variables):
 
 
 def changed(**changes):
-    return ExampleBranch(dataclasses.replace(example_branch().state, **changes))
+    return example_mind(dataclasses.replace(example_branch().state, **changes))
 
 
 def nothing_known(path=("sally",)):
     box = Box((0, 0, 0), (1, 1, 1))
     agents = {"sally": AgentBelief(), "anne": AgentBelief()}
-    return ExampleBranch(
+    return example_mind(
         FixedState(path, 0, box, ExampleBlocks(box, {}), {}, agents, {}, (), (), (), ())
     )
 
@@ -63,7 +63,7 @@ def test_numbers_have_at_most_three_decimals(value, text):
 def test_what_is_unknown_has_its_word(expression, text):
     branch = nothing_known()
     children = {"anne": nothing_known(("sally", "anne"))}
-    assert show(expression, ExampleBranch(branch.state, children)) == text
+    assert show(expression, example_mind(branch.state, children)) == text
 
 
 def test_known_to_have_nothing_is_empty():

@@ -7,7 +7,7 @@ import pytest
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.belief.view import FixedState
 from beliefnest.prompts import BUILT_IN, built_in_template, render
-from beliefnest.prompts.example import ExampleBlocks, ExampleBranch
+from beliefnest.prompts.example import ExampleBlocks, example_mind
 from beliefnest.world.values import Box, EventKind
 
 GOLDEN = Path(__file__).parents[2] / ".." / "shared" / "golden"
@@ -19,7 +19,7 @@ def sallys_belief(path=("sally",)):
     """Return the belief that the README beside the golden texts describes."""
     box = Box((-11, -52, -11), (11, -49, 11))
     early = Basis(12, Source.SEEN)
-    return ExampleBranch(
+    return example_mind(
         FixedState(
             path=path,
             tick=412,

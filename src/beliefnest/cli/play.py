@@ -295,9 +295,8 @@ def _help_lines(found: Mapping[str, Any], measures: Mapping[str, Any]) -> list[s
     """Return a line for each agent that needed help, and for each help that was given."""
     needed, given = (", ".join(found[key]) or "nobody" for key in ("needed", "given"))
     lines = [
-        f"help: needed by {needed}; given to {given}; "
-        f"superfluous: {measures['help_superfluous']} of {counted(len(found['acts']), 'program')} "
-        "in which something was said or given"
+        f"help: needed by {needed}; given to {given}; superfluous: {measures['help_superfluous']} "
+        f"of {counted(len(found['acts']), 'program')} in which something was said or given"
     ]
     for act in found["acts"]:
         first, last = act["rounds"]

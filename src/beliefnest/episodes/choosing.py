@@ -47,8 +47,7 @@ def chosen(
         if not isinstance(given, str) and not callable(getattr(given, "act", None)):
             raise InputError(
                 f"the policy of {agent} is {quoted(given)}; give the name of a policy, or an "
-                "object with "
-                "act(view)"
+                "object with act(view)"
             )
         names[agent] = name_of(given)
         if isinstance(given, str):

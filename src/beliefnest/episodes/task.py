@@ -329,8 +329,7 @@ def _written(name_or_path: str) -> Document:
     if name_or_path not in builtin_names() and not FilePath(name_or_path).is_file():
         raise UnknownNameError(
             f"no task {quoted(name_or_path)}, and no such file; there are "
-            f"{', '.join(Task.names())}, "
-            f"and of scenarios {', '.join(builtin_names())}"
+            f"{', '.join(Task.names())}, and of scenarios {', '.join(builtin_names())}"
         )
     return read_document(name_or_path)
 

@@ -264,16 +264,14 @@ def read_doubt(doubt: Mapping[str, Any] | None) -> tuple[Alternative, ...]:
             has, lacks = (first, each) if odd[0] in first.elements else (each, first)
             raise InputError(
                 f"alternative {quoted(has.name)} sets the {kind} {key}, {quoted(lacks.name)} does "
-                "not; "
-                "let all alternatives of a doubt set the same elements"
+                "not; let all alternatives of a doubt set the same elements"
             )
     for number, each in enumerate(read):
         for other in read[:number]:
             if _values(each) == _values(other):
                 raise InputError(
                     f"alternatives {quoted(other.name)} and {quoted(each.name)} are equal; "
-                    "alternatives "
-                    "exclude each other, so let them differ or remove one"
+                    "alternatives exclude each other, so let them differ or remove one"
                 )
     return tuple(read)
 
@@ -292,8 +290,7 @@ def _read_alternative(name: object, edits: object) -> Alternative:
     if not isinstance(edits, Mapping) or set(edits) - {"blocks", "containers", "agents"}:
         raise InputError(
             f"alternative {quoted(name)} is {quoted(edits)}; give a list of facts, or a mapping "
-            "with blocks, "
-            "containers or agents"
+            "with blocks, containers or agents"
         )
     registry = Registry.load()
     blocks = {}
@@ -306,8 +303,7 @@ def _read_alternative(name: object, edits: object) -> Alternative:
         if at in blocks and not registry.is_container(blocks[at].split("[")[0]):
             raise InputError(
                 f"alternative {quoted(name)} puts items into {quoted(blocks[at])} at {at}, which "
-                "is no "
-                "container; change its block or its contents"
+                "is no container; change its block or its contents"
             )
         containers[at] = _items(name, items)
     agents = {

@@ -22,6 +22,7 @@ from beliefnest.prompts.simulator_view import (
 from beliefnest.prompts.story_filters import FILTERS as STORY_FILTERS
 from beliefnest.world.double_chests import is_left_half
 from beliefnest.world.registry import Registry, block_name, parse_state
+from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import EQUIPMENT_SLOTS, Position
 
 _AIRS = frozenset({"air", "cave_air", "void_air"})
@@ -61,7 +62,7 @@ def thought(branch: BranchView) -> str:
     state = branch.state
     if not state.thoughts:
         return text.NO_THOUGHT
-    last = {thinker: text.one_line(words) for _, thinker, words in state.thoughts}
+    last = {thinker: on_one_line(words) for _, thinker, words in state.thoughts}
     if state.owner is None:
         return "\n".join(f"{thinker}: {last[thinker]}" for thinker in sorted(last))
     return last.get(state.owner, text.NO_THOUGHT)
@@ -78,7 +79,7 @@ def chat_log(branch: BranchView) -> str:
     if not state.chat:
         return text.NO_CHATS
     rows = [
-        f"{tick};{_speaker(speaker, to)};{text.one_line(words)}"
+        f"{tick};{_speaker(speaker, to)};{on_one_line(words)}"
         for (tick, speaker, words), to in zip(state.chat, state.addressees, strict=True)
     ]
     return "\n".join([_CHAT_HEADER, *rows])

@@ -7,6 +7,7 @@ from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.prompts import text
 from beliefnest.world.event_words import EVENT_WORDS, skill_of
 from beliefnest.world.signs import sign_words
+from beliefnest.world.texts import on_one_line
 
 _FIELDS: Mapping[str, Callable[[Any], str]] = {
     "block": str,
@@ -15,7 +16,7 @@ _FIELDS: Mapping[str, Callable[[Any], str]] = {
     "other": str,
     "to": str,
     "items": text.mapping,
-    "name": text.one_line,
+    "name": on_one_line,
     "text": sign_words,
 }
 """Formatter of each detail of an event, in output order."""

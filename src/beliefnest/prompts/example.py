@@ -1,14 +1,16 @@
 """A small hand-made belief for the filter reference and for trying out filters."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
 from beliefnest.belief.view import FixedState
 from beliefnest.errors import PathError, PositionError
-from beliefnest.prompts.observations import Found, Happened, Observation, Outset, Read, SightChange
+from beliefnest.prompts.mind_view import MindView, ToldMind
+from beliefnest.prompts.observations import Found, Happened, Outset, Read, SightChange
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath
@@ -86,42 +88,33 @@ class ExampleBlocks:
         return Basis(0, Source.SEEN) if position in self.known else None
 
 
-@dataclass(frozen=True)
-class ExampleBranch:
-    """A simulator that consists of its state and the nested beliefs only."""
+def example_mind(
+    state: FixedState,
+    children: Mapping[str, MindView] = MappingProxyType({}),
+    told: ToldMind | None = None,
+) -> MindView:
+    """Return a simulator that consists of its state, the nested beliefs, and what is observed."""
 
-    state: FixedState
-    children: Mapping[str, "ExampleBranch"] = field(default_factory=dict)
-    labels: Mapping[Position, str] = field(default_factory=dict)
-    names: Mapping[Position, str] = field(default_factory=dict)
-    places: Mapping[str, Position] = field(default_factory=dict)
-    observations: Sequence[Observation] = ()
-    unique: frozenset[str] = frozenset()
-
-    def child(self, agent: str) -> "ExampleBranch":
-        """Return the belief of an agent; for the owner, this belief itself.
-
-        Raises:
-            PathError: The example has no belief of that agent.
-        """
-        if agent == self.state.owner:
-            return self
-        if agent not in self.children:
+    def below(agent: str) -> MindView:
+        if agent not in children:
             raise PathError(f"the example has no belief of {agent!r}")
-        return self.children[agent]
+        return children[agent]
+
+    return MindView(state, lambda: told or ToldMind((), {}, {}, {}), below)
 
 
-def example_branch() -> ExampleBranch:
+def example_branch() -> MindView:
     """Return Sally's belief at tick 240, and her belief about Anne's belief."""
     deposit = PerceivedEvent(
         69, EventKind.DEPOSIT_ITEM_INTO_CHEST, "sally", {"position": _LEFT, "items": {"diamond": 1}}
     )
     lever = PerceivedEvent(131, EventKind.USE_LEVER, "anne", {"position": _LEVER, "powered": True})
-    outer = ExampleBranch(_state(("sally", "anne", "sally"), (deposit,), frozenset()))
-    anne = ExampleBranch(
+    outer = example_mind(_state(("sally", "anne", "sally"), (deposit,), frozenset()))
+    anne = example_mind(
         _state(("sally", "anne"), (deposit, lever), frozenset({_RIGHT})), {"sally": outer}
     )
-    told = (
+    names = {_LEFT: "western chest", _RIGHT: "eastern chest", _LEVER: "lever", _SIGN: "sign"}
+    observations = (
         Outset(
             0,
             "sally",
@@ -138,11 +131,10 @@ def example_branch() -> ExampleBranch:
         Happened(131, lever),
         SightChange(131, "sally", lost_agents={"anne": (2.5, -51, -5.5)}, lost_places=(_RIGHT,)),
     )
-    return ExampleBranch(
+    return example_mind(
         _state(("sally",), (deposit, lever), frozenset({_LEFT, _LEVER})),
         {"anne": anne},
-        names={_LEFT: "western chest", _RIGHT: "eastern chest", _LEVER: "lever", _SIGN: "sign"},
-        observations=told,
+        ToldMind(observations, names, {}, {}),
     )
 
 

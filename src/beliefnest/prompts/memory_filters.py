@@ -9,6 +9,7 @@ from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.event_words import skill_of
 from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.signs import sign_words
+from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import TICKS_PER_SECOND, Position
 
 
@@ -29,7 +30,7 @@ def _container(branch: BranchView, at: Position, content: ContainerBelief) -> st
     block = branch.state.blocks[at]
     name = "container" if block is None else block_name(block)
     label = branch.labels.get(at)
-    called = "" if label is None else f" ({text.one_line(label)})"
+    called = "" if label is None else f" ({on_one_line(label)})"
     return f"{text.position(at)} {name}{called}: {_holds(branch.state, content)}"
 
 

@@ -235,7 +235,7 @@ class _Teller:
                 yield _sentence(happened(event, self._subject(event.actor), self._words(each)))
                 self._it = (event.actor, event.detail.get("position"))
                 if each.heard is not None:
-                    yield self._told_to(each.heard, {event.actor})
+                    yield self._common(each.heard, {event.actor}, "heard it")
             case SightChange():
                 yield from self._changes([each])
             case Found(place=place, items=items):
@@ -271,7 +271,8 @@ class _Teller:
             if things:
                 yield _sentence(f"There {'was' if len(things) == 1 else 'were'} {listed(things)}")
         if self._unique:
-            yield _sentence(f"There was only {listed([f'one {n}' for n in self._singles()])}")
+            singles = [f"one {name.replace('_', ' ')}" for name in sorted(self._unique)]
+            yield _sentence(f"There was only {listed(singles)}")
         for name, point in outset.feet.items():
             where = self._near(point)
             if where:
@@ -281,7 +282,7 @@ class _Teller:
             knowing = outset.known.get(name, ())
             # Only a narrator knows for sure that nobody knows.
             if knowing or (self._owner is None and len(self._agents) > 1):
-                yield self._told_of(knowing, {name})
+                yield self._common(knowing, {name}, "knew that")
 
     def _first_sights(self, sights: Sequence[SightChange]) -> Iterator[str]:
         """Yield sentences about what can be seen at first."""
@@ -413,18 +414,8 @@ class _Teller:
             return "".join(words)
         return f"{''.join(words) or preposition} {point_words(point)}"
 
-    def _singles(self) -> list[str]:
-        return [name.replace("_", " ") for name in sorted(self._unique)]
-
-    def _told_to(self, heard: Sequence[str], without: set[str | None]) -> str:
-        """Return a sentence about who else heard an utterance."""
-        return self._common(heard, without, "heard it")
-
-    def _told_of(self, knowing: Sequence[str], without: set[str | None]) -> str:
-        """Return a sentence about who else knew of possessions."""
-        return self._common(knowing, without, "knew that")
-
     def _common(self, those: Sequence[str], without: set[str | None], did: str) -> str:
+        """Return a sentence about who else heard or knew something."""
         others = {*self._agents} - without - {self._owner}
         if not those:
             words = f"nobody else {did}"

@@ -5,7 +5,6 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Final
 
-from beliefnest.world.texts import on_one_line
 from beliefnest.world.values import Point, Position
 
 NO_DATA: Final = "No data"
@@ -40,11 +39,6 @@ def mapping(values: Mapping[str, object]) -> str:
 def as_json(value: object) -> str:
     """Return a value as JSON on several lines, indented by two spaces."""
     return json.dumps(value, indent=2, ensure_ascii=False)
-
-
-def one_line(text: str) -> str:
-    """Return an agent's text on one line, so that it cannot imitate a section of the prompt."""
-    return on_one_line(text)
 
 
 def nearest(name: str, names: Iterable[str]) -> str:

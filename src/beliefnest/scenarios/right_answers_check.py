@@ -63,8 +63,7 @@ def _several(probes: Sequence[Probe]) -> Iterator[ScenarioWarning]:
             right = listed([repr(each) for each in question.right])
             yield ScenarioWarning(
                 f"{question.believed.where}probe {quoted(probe.label)} has {len(question.right)} "
-                "right "
-                f"answers, {right}: {question.believed.thing} is believed to be in each; "
+                f"right answers, {right}: {question.believed.thing} is believed to be in each; "
                 "list it under 'unique', or change the script",
                 f"several {question.believed.where}",
             )
@@ -102,8 +101,7 @@ def _intended(
 def _other(probe: Probe, said: str, computed: str) -> ScenarioWarning:
     return ScenarioWarning(
         f"{probe.where}probe {quoted(probe.label)} is meant as {quoted(said)}, but {computed}; "
-        "change the "
-        "script, or what is intended",
+        "change the script, or what is intended",
         f"intended {probe.where}",
     )
 

@@ -176,8 +176,7 @@ def _options(file: ScenarioFile) -> _Found:
                         "options",
                         ("probes", number, "expect", "answers", place, "options"),
                         f"{quoted(' '.join(one))} is contained in {quoted(' '.join(other))}, so "
-                        "that an answer "
-                        "may name both; give options without a common name",
+                        "that an answer may name both; give options without a common name",
                     )
 
 

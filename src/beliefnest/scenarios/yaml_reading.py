@@ -83,9 +83,8 @@ def template_text(document: Document, path: KeyPath, name: str) -> str:
         return read_regular_text(file)
     except FileNotFoundError:
         message = (
-            f"there is no template {quoted(name)}; give a file beside the scenario, or the name "
-            "of a "
-            f"built-in template: {', '.join(BUILT_IN_TEMPLATES)}"
+            f"there is no template {quoted(name)}; give a file beside the scenario, or the name of "
+            f"a built-in template: {', '.join(BUILT_IN_TEMPLATES)}"
         )
         raise document.fault(path, message) from None
     except (OSError, ValueError) as error:

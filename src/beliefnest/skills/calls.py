@@ -50,9 +50,8 @@ class Call:
         if self.skill == OPEN_CONTAINER.name:
             place = _code(self.args[0])
             return (
-                f"await goToPosition(bot, {place}, 2)\n"
-                f"const container = await bot.openContainer(bot.blockAt({place}))\n"
-                "container.close()"
+                f"await goToPosition(bot, {place}, 2)\nconst container = await "
+                f"bot.openContainer(bot.blockAt({place}))\ncontainer.close()"
             )
         args = ", ".join(["bot", *map(_code, self.args)])
         return f"await {self.skill}({args})"

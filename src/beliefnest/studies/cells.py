@@ -236,8 +236,7 @@ def plan_cells(
             raise StudyKeyError(
                 "design",
                 f"{name} has one condition, and design {quoted(design.design)} allocates several; "
-                "give "
-                "the scenario conditions, or leave `design` out",
+                "give the scenario conditions, or leave `design` out",
             )
         invalid += _unknown_conditions(design, name, document)
         found: list[dict[int, list[Cell]]] = []

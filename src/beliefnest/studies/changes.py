@@ -93,8 +93,7 @@ class MovedBySymmetry:
         if found := _DIRECTIONAL.search(text):
             raise InputError(
                 f"says {quoted(found[0])}, which is another direction in a scene that is "
-                f"{self._name}; "
-                "name places by parameters"
+                f"{self._name}; name places by parameters"
             )
         return self._text(text)
 

@@ -530,8 +530,7 @@ def _told_sessions(sessions: Mapping[str, Any]) -> str:
     told = (
         f"Of {counted(sessions['began'], 'participant')} who began, {sessions['complete']} "
         f"answered all questions, {sessions['partial']} stopped in the middle (complete probes "
-        "count) and "
-        f"{sessions['unanswered']} gave no answer"
+        f"count) and {sessions['unanswered']} gave no answer"
     )
     if sessions["repeated"]:
         told += f"; {sessions['repeated']} took part more than once, and the first session counts"

@@ -363,8 +363,7 @@ class Study:
         if PARTICIPANT in self.columns:
             raise InputError(
                 f"the parameter {quoted(PARTICIPANT)} has the name of the column of people; give "
-                "it "
-                "another name"
+                "it another name"
             )
         found = join_answers(
             design,

@@ -54,8 +54,7 @@ def event_from(
         ):
             raise InputError(
                 f"event {quoted(kind)} has the detail 'claims', which only a chat and a "
-                "block_update "
-                "with the text of a sign have"
+                "block_update with the text of a sign have"
             )
         values["claims"] = tuple(claim.plain() for claim in claims_from_plain(values["claims"]))
     elif "claims_from" in values:

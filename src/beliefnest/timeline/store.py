@@ -330,10 +330,9 @@ class SqliteJournal:
     def _write(self, row: _TimelineRow) -> None:
         marks = ", ".join("?" * (len(row) + 1))
         self._database.execute(
-            f"INSERT INTO timeline ({_COLUMNS}, seal) VALUES ({marks}) "
-            "ON CONFLICT (id) DO UPDATE SET branch = excluded.branch, head = excluded.head, "
-            "entries = excluded.entries, packed = excluded.packed, "
-            "description = excluded.description, seal = excluded.seal",
+            f"INSERT INTO timeline ({_COLUMNS}, seal) VALUES ({marks}) ON CONFLICT (id) DO UPDATE "
+            "SET branch = excluded.branch, head = excluded.head, entries = excluded.entries, "
+            "packed = excluded.packed, description = excluded.description, seal = excluded.seal",
             (*row, checksum(*row)),
         )
 

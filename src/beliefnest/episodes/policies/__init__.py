@@ -153,8 +153,7 @@ def _of_user(name: str) -> Policy:
     if not callable(getattr(policy, "act", None)):
         raise InputError(
             f"{quoted(name)} makes no policy: {type(policy).__name__} has no method act(view), "
-            "which "
-            "returns a program"
+            "which returns a program"
         )
     found: Policy = policy
     return found

@@ -51,8 +51,7 @@ class EventLog:
         if len(self._events) < count:
             raise StoreError(
                 f"the run file is damaged: it counts {count} events of branch "
-                f"{quoted(self._key.branch)} "
-                f"and holds {len(self._events)}; restore it from a copy"
+                f"{quoted(self._key.branch)} and holds {len(self._events)}; restore it from a copy"
             )
         return self._events
 

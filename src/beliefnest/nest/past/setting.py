@@ -146,8 +146,7 @@ class Setting:
             if label is not None:
                 return (
                     f"{name} is played by a person but has a program in step {quoted(label)}; "
-                    "remove the "
-                    "program"
+                    "remove the program"
                 )
         return None
 

@@ -48,8 +48,7 @@ def unique_fault(item: str, world: Snapshot, initial: Sequence[InitialBelief]) -
         if fault := _more_than_one(item, believed):
             return (
                 f"{quoted(item)} is unique, but initial_beliefs give {quoted(path_text(path))} "
-                f"{fault}; "
-                "remove all but one"
+                f"{fault}; remove all but one"
             )
     return None
 

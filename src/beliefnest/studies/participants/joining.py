@@ -128,9 +128,8 @@ def _checked(answer: PersonAnswer, items: Mapping[str, Item]) -> PersonAnswer:
         raise answer.fault(
             "cell",
             f"{quoted(answer.cell)} is no cell of this study; the study, its scenarios, seed or "
-            "world "
-            "have changed since this participant's page was written: read the answers with the "
-            "files of that time",
+            "world have changed since this participant's page was written: read the answers with "
+            "the files of that time",
         )
     asked = next((each.asked for each in item.questions if each.id == answer.question), None)
     if asked is None:

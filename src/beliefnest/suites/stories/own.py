@@ -124,8 +124,7 @@ def _question(asked: _Asked) -> Question:
     if len(parts) != 1 or (asked.question is not None and asked.believers):
         raise InputError(
             f"the question {quoted(parts)} must have one of: 'question', a sentence; 'believers' "
-            "and "
-            "'thing'; 'believers' and 'door' or 'sign', the name of its room"
+            "and 'thing'; 'believers' and 'door' or 'sign', the name of its room"
         )
     if asked.question is not None:
         return parse_question(asked.question)
@@ -150,6 +149,5 @@ def _check_answer(story: Story, item: BatteryItem) -> None:
     if item.expected not in there:
         raise InputError(
             f"{quoted(item.question.text)}: {quoted(item.expected)} is no possible answer; answers "
-            "are "
-            f"{', '.join(map(repr, sorted(there)))}, and null for unknown"
+            f"are {', '.join(map(repr, sorted(there)))}, and null for unknown"
         )

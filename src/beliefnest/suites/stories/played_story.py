@@ -231,8 +231,7 @@ def check_question(story: Story, question: Question) -> None:
             there = ", ".join(story.doors) or "none"
             raise InputError(
                 f"{quoted(question.text)}: nobody opens or shuts a door of the {question.door}; "
-                "there "
-                f"are doors of: {there}"
+                f"there are doors of: {there}"
             )
         return
     if question.sign is not None:
@@ -240,8 +239,7 @@ def check_question(story: Story, question: Question) -> None:
             there = ", ".join(story.signs) or "none"
             raise InputError(
                 f"{quoted(question.text)}: nobody writes on a sign of the {question.sign}; there "
-                "are "
-                f"signs of: {there}"
+                f"are signs of: {there}"
             )
         return
     if question.thing not in story.things:

@@ -82,8 +82,7 @@ def parse_question(text: str) -> Question:
             )
     raise InputError(
         f"{quoted(text)} is no question about a story; ask 'Where is the X really?', 'Where was "
-        "the X "
-        "at the beginning?', 'Where will A look for the X?', 'Where does A think B thinks the "
-        "X is?', 'Does A think the door of the R is open?' or 'What does A think the sign of the "
-        "R says?'"
+        "the X at the beginning?', 'Where will A look for the X?', 'Where does A think B thinks "
+        "the X is?', 'Does A think the door of the R is open?' or 'What does A think the sign of "
+        "the R says?'"
     )

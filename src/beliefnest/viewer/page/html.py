@@ -79,8 +79,7 @@ def self_contained(
         body_class: Class of the body; None: no class.
     """
     policy = (
-        f"default-src 'none'; script-src {_source_hash(program)}; "
-        f"style-src {_source_hash(style)}; "
+        f"default-src 'none'; script-src {_source_hash(program)}; style-src {_source_hash(style)}; "
         f"img-src {pictures}; connect-src {connect}; base-uri 'none'; form-action 'none'"
     )
     return _SHELL.format(
