@@ -142,21 +142,21 @@ def test_what_a_program_does_is_judged_and_not_what_it_says(server: FakeOpenAI) 
 
 
 @pytest.mark.parametrize(
-    ("behave", "hint"),
+    ("behave", "hint", "counted"),
     [
-        (lambda fake: fake.fails(401, "bad key"), "OPENAI_API_KEY"),
-        (lambda fake: fake.garbles, MODEL),
+        (lambda fake: fake.fails(401, "bad key"), "OPENAI_API_KEY", "in no rate"),
+        (lambda fake: fake.garbles, MODEL, "as not right"),
     ],
     ids=["key", "garbage"],
 )
 def test_a_model_that_fails_ends_with_3_and_one_line_and_what_was_done_is_kept(
-    server: FakeOpenAI, capsys: pytest.CaptureFixture[str], behave: Fault, hint: str
+    server: FakeOpenAI, capsys: pytest.CaptureFixture[str], behave: Fault, hint: str, counted: str
 ) -> None:
     server.will(server.says(GOOD), behave(server))
     assert run("--attempts", "1", scenario="two.yaml") == 3
     errors = capsys.readouterr().err
     line = errors.splitlines()[-1]
-    assert line.startswith("beliefnest: 1 of 2 have no result")
+    assert line.startswith(f"beliefnest: 1 of 2 cells have no answer, counted {counted}; ")
     assert hint in line
     assert "Traceback" not in errors
     assert KEY not in errors

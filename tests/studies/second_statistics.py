@@ -11,8 +11,8 @@ from scipy import optimize, stats
 
 __all__ = [
     "bonett_price",
-    "bootstrap_interval",
-    "crossed_bootstrap",
+    "bootstrap_means",
+    "crossed_bootstrap_means",
     "difference_width",
     "firth",
     "gee",
@@ -27,8 +27,8 @@ __all__ = [
 ]
 
 
-def bootstrap_interval(clusters, seed, draws=20_000):
-    """Draw clusters with replacement; percentiles of the mean of all values."""
+def bootstrap_means(clusters, seed, draws=6_000):
+    """Draw clusters with replacement; return the mean of all values of each draw."""
     chance = np.random.default_rng(seed)
     means = []
     for _ in range(draws // 10):
@@ -36,10 +36,10 @@ def bootstrap_interval(clusters, seed, draws=20_000):
         for chosen in chance.integers(0, len(clusters), (10, len(clusters))):
             values = [value for number in chosen for value in clusters[number]]
             means.append(sum(values) / len(values))
-    return np.percentile(means, [2.5, 97.5])
+    return np.array(means)
 
 
-def crossed_bootstrap(values, rows, columns, seed, draws=4_000):
+def crossed_bootstrap_means(values, rows, columns, seed, draws=2_000):
     """Draw rows and columns with replacement; a value counts as often as both were drawn."""
     chance = np.random.default_rng(seed)
     kinds = [list(dict.fromkeys(each)) for each in (rows, columns)]
@@ -52,7 +52,7 @@ def crossed_bootstrap(values, rows, columns, seed, draws=4_000):
         weights = [counts[0][r] * counts[1][c] for r, c in zip(rows, columns, strict=True)]
         if sum(weights):
             means.append(np.average(values, weights=weights))
-    return np.percentile(means, [2.5, 97.5])
+    return np.array(means)
 
 
 def bonett_price(only_one, only_other, pairs):
@@ -242,7 +242,7 @@ def firth(y, x, weights):
     return beta, np.array(bounds), np.array(tests)
 
 
-def least_squares_bootstrap(y, x, groups, seed, draws=4_000):
+def least_squares_bootstrap(y, x, groups, seed, draws=2_000):
     """Draw groups with replacement, and fit by least squares; return the estimates."""
     chance = np.random.default_rng(seed)
     owners = [np.flatnonzero(groups == g) for g in range(groups.max() + 1)]

@@ -240,11 +240,49 @@ def test_a_world_that_fails_is_a_row_that_says_why(tmp_path):
             "yaml:2: variations.spot: variations of",
         ),
         ("scenarios: [small.yaml]\nvariations: {spot: []}\n", "variations of 'spot' are []"),
-        ("scenarios: [small.yaml]\nvariations: {spto: [1]}\n", "there is no parameter 'spto'"),
+        (
+            "scenarios: [small.yaml]\nvariations:\n  item: [bone]\n  spto: [1]\n",
+            "study.yaml:4: variations.spto: there is no parameter 'spto'; did you mean 'spot'?",
+        ),
+        (
+            "scenarios: [small.yaml]\nvariations: {agents: [{an: tom}]}\n",
+            "study.yaml:2: variations: no combination is valid; the reason of the first: there is",
+        ),
         ("scenarios: [small.yaml]\nworld: moon\n", "there is no world 'moon'"),
-        ("scenarios: [small.yaml]\nmodels: [ofline]\n", "did you mean offline?"),
-        ("scenarios: [smal.yaml]\n", "smal.yaml"),
-        ("scenarios: [small.yaml]\ntemplates: [none.txt]\n", "none.txt"),
+        (
+            "scenarios: [small.yaml]\nmodels:\n- offline\n- ofline\n",
+            "study.yaml:4: models[1]: no model 'ofline'; did you mean offline?",
+        ),
+        (
+            "scenarios: [small.yaml]\nmodels:\n- offline\n- 3\n",
+            "study.yaml:4: models[1]: expected 'str', got 'int'",
+        ),
+        (
+            "scenarios: [small.yaml]\nclaims_from: ofline\n",
+            "study.yaml:2: claims_from: no model 'ofline'",
+        ),
+        (
+            "scenarios:\n- small.yaml\n- sally-ann\n",
+            "study.yaml:3: scenarios[1]: there is no file",
+        ),
+        ("scenarios:\n- sally-ann\n", "did you mean 'sally-anne'?"),
+        (
+            "scenarios:\n- label: one\n  scenarios:\n  - small.yaml\n  - smal.yaml\n",
+            "study.yaml:5: scenarios[0].scenarios[1]: there is no file",
+        ),
+        ("tasks:\n- help-find\n- recip\npolicies: random\n", "study.yaml:3: tasks[1]: there is no"),
+        (
+            "tasks: help-find\npolicies:\n- random\n- {anne: serch}\n",
+            "study.yaml:4: policies[1]: ",
+        ),
+        (
+            "tasks: help-find\nmodels:\n- ofline\norders: [1]\n",
+            "study.yaml:3: models[0]: ",
+        ),
+        (
+            "scenarios: [small.yaml]\ntemplates:\n- story\n- none.txt\n",
+            "study.yaml:4: templates[1]: there is no template file",
+        ),
         ("- small.yaml\n", "study.yaml: is not a mapping of keys to values"),
         ("scenarios: small.yaml\nmax_cost: .nan\n", "study.yaml:2: max_cost: max_cost is nan"),
     ],
@@ -256,6 +294,17 @@ def test_a_wrong_study_is_told_in_one_line(text, told, tmp_path, capsys):
     assert status == 2
     assert told in shown[-1]
     assert "Traceback" not in "".join(shown)
+
+
+def test_a_template_that_fails_is_named_with_its_probe_and_variable(tmp_path, capsys):
+    (tmp_path / "mine.txt").write_text("{{ task }}\n{{ branch }} {{ tsk }} {{ other }}\n")
+    file = study_in(tmp_path, "scenarios: [small.yaml]\ntemplates: [mine.txt]\nworld: scripted\n")
+    command = ["study", str(file), "--out", str(tmp_path / "out"), "--jobs", "1"]
+    assert run_command_line(command) == 3
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert "1 of 1 cells have no answer, counted as not right" in last
+    place = f"{tmp_path / 'small.yaml'}:17: probes[0]: {tmp_path / 'mine.txt'}, line 2: "
+    assert last.endswith(f"{place}'tsk' is undefined; did you mean task?")
 
 
 @pytest.mark.parametrize(

@@ -38,6 +38,7 @@ from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.pictures.overview import ConditionPicture, overview
+from beliefnest.scenarios.judging import without_result_words
 from beliefnest.scenarios.probing import Asking
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
@@ -307,10 +308,8 @@ def _failures_text(
 ) -> str:
     if total == 1:
         return str(failures[0]["error"])
-    return (
-        f"{missing} of {total} have no result, run again with --out {folder.path} to go on; "
-        f"the first: {failures[0]['error']}"
-    )
+    told = without_result_words(missing, total, sum(f["outcome"] == "no_answer" for f in failures))
+    return f"{told}; run again with --out {folder.path} to go on; the first: {failures[0]['error']}"
 
 
 def _print(

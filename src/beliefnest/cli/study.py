@@ -18,7 +18,7 @@ from beliefnest.cli.report import cost_text
 from beliefnest.cli.streams import noted_warnings
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError, ModelError, UnknownNameError
-from beliefnest.scenarios.judging import OUTCOMES, unanswered_words
+from beliefnest.scenarios.judging import OUTCOMES, unanswered_words, without_result_words
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.checking import checked_columns
 from beliefnest.studies.copies import text_of_copies
@@ -126,7 +126,7 @@ def _report(result: StudyResult, by: Sequence[str]) -> dict[str, Any]:
 def _print(result: StudyResult, by: Sequence[str], warned: Mapping[str, str]) -> None:
     console = stdout()
     print_table(console, _table(by, result.counted(by)))
-    told = [f"no result: {why}" for why in dict.fromkeys(result.failed.values())]
+    told = [f"no answer: {why}" for why in dict.fromkeys(result.failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
     told += [*_lost_rounds(result.rows), *_not_read(result.rows), *warned.values()]
     for line in told[:_MOST_TOLD]:
@@ -199,8 +199,10 @@ def _status(result: StudyResult) -> int:
     rows = [row for row in result.rows if row.get(PARTICIPANT) is None]
     failed = result.failed
     if failed:
+        counting = {row["cell"] for row in rows if row["ok"] is False} & failed.keys()
+        told = without_result_words(len(failed), len(result.plan["cells"]), len(counting))
         raise ModelError(
-            f"{len(failed)} of {len(result.plan['cells'])} cells have no result; run the same "
-            f"command to try them again; the first: {next(iter(failed.values()))}"
+            f"{told}; run the same command to try them again; the first: "
+            f"{next(iter(failed.values()))}"
         )
     return 0 if all(row["ok"] is not False for row in rows) else 1

@@ -122,8 +122,9 @@ class Renderer:
         except Exception as error:
             line = _line_of(error, compiled.filename)
             known = {*values, *self._environment.globals}
-            hint = _unknown_variables(compiled.tree, line, known)
-            raise TemplateError(f"{compiled.name}, line {line}: {_words(error)}{hint}") from error
+            said = _words(error)
+            hint = _unknown_variable(compiled.tree, line, known, said)
+            raise TemplateError(f"{compiled.name}, line {line}: {said}{hint}") from error
 
     @functools.cached_property
     def _environment(self) -> "_ReadingEnvironment":
@@ -285,12 +286,14 @@ def _line_of(error: BaseException, filename: str) -> int:
     return line
 
 
-def _unknown_variables(tree: nodes.Template, line: int, known: set[str]) -> str:
-    """Return the end of a message: names similar to the unknown variables of a line."""
+def _unknown_variable(tree: nodes.Template, line: int, known: set[str], said: str) -> str:
+    """Return the end of a message about an unknown variable of a line: names similar to it."""
     missing = meta.find_undeclared_variables(tree) - known
     here = {name.name for name in tree.find_all(nodes.Name) if name.lineno == line} & missing
     variables = sorted(known - set(jinja2.defaults.DEFAULT_NAMESPACE))
-    return "".join(nearest(name, variables) for name in sorted(here))
+    # Jinja tells of the first, and only in words.
+    first = next((name for name in sorted(here) if repr(name) in said), None)
+    return "" if first is None else nearest(first, variables)
 
 
 def _words(error: Exception) -> str:

@@ -205,6 +205,7 @@ class _Builder:
             timeout_ticks=entry.timeout_ticks,
             senses=entry.senses or self._file.senses,
             intended=entry.intended,
+            template_name=entry.template or "template",
             where=self._document.key_at(path),
         )
 

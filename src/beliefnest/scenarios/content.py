@@ -48,6 +48,7 @@ class Probe:
         senses: Source of what the program reads: the world, or its agent's percepts.
         infer: Inference from `path`, which takes the place of the request; None: none.
         intended: Intended right answer, `true belief` or `false belief`; empty: none is said.
+        template_name: Name of the template for messages.
         where: Start of a message about the probe: file, line and key.
     """
 
@@ -62,6 +63,7 @@ class Probe:
     senses: Senses = "world"
     infer: Inferring | None = None
     intended: str = ""
+    template_name: str = field(default="template", compare=False)
     where: str = field(default="", compare=False)
 
     @property

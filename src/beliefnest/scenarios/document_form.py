@@ -12,7 +12,8 @@ from beliefnest.world.texts import is_well_formed, quoted, shortened
 from beliefnest.world.words import nearest_or_all
 
 _FAULT = re.compile(r"(?P<what>.*?)(?: - at (?P<key>`key` in )?`(?P<path>\$.*)`)?", re.DOTALL)
-_FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\])")
+FAULT_STEP = re.compile(r"\.(?P<name>\w+)|\[(?P<index>\d+)\]|(?P<any>\[\.\.\.\])")
+"""Step of a place as msgspec writes it: a name, an index, or any key of a mapping."""
 _UNKNOWN_FIELD = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
 _MISSING_FIELD = re.compile(r"Object missing required field `(?P<name>.*)`")
 
@@ -81,7 +82,7 @@ def _fault(document: Document, error: str, form: _Form) -> ScenarioError:
     if match is None:
         return document.fault((), shortened(error, _LONGEST_FAULT))
     what = match["what"]
-    steps = [step.groupdict() for step in _FAULT_STEP.finditer(match["path"] or "$")]
+    steps = [step.groupdict() for step in FAULT_STEP.finditer(match["path"] or "$")]
     path = _locate(document.root, steps, error, form)
     if unknown := _UNKNOWN_FIELD.fullmatch(what):
         name = unknown["name"]

@@ -47,3 +47,16 @@ def unanswered_words(counts: Mapping[str, int]) -> str:
     return ", ".join(
         f"{counts[name]} {name.replace('_', ' ')}" for name in LOST if counts.get(name)
     )
+
+
+def without_result_words(count: int, total: int, counting: int) -> str:
+    """Return how many of all cells have no answer, and how many of these count in rates.
+
+    Args:
+        count: Number of cells without an answer.
+        total: Number of all cells.
+        counting: Number of those that count as not right.
+    """
+    those = f"{counting} of them " if 0 < counting < count else ""
+    told = f"{those}counted as not right" if counting else "counted in no rate"
+    return f"{count} of {total} cells have no answer, {told}"

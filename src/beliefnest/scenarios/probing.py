@@ -1,9 +1,11 @@
 """Probing of a model: ask for a program, run and judge it, and ask questions."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 from beliefnest.belief.view import State
-from beliefnest.errors import ModelError
+from beliefnest.errors import ModelError, TemplateError
 from beliefnest.llm.asking import NoUsableProgramError, Prompt, Round, ask_for_program, asked_again
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Model, Sampling, Usage
@@ -89,14 +91,16 @@ def run_probe(
     programs = _Programs((), None, ())
     if probe.asks_for_program:
         noting = asking.settings.around(believer.noting(model, probe=name, task=probe.task))
-        programs = _ask_for_program(nest, number, probe, noting, asking)
+        with _naming(probe):
+            programs = _ask_for_program(nest, number, probe, noting, asking)
     replies: dict[Answers, Reply] = {}
     usage = sum((each.answer.usage for each in programs.attempts), programs.usage)
     for question in probe.questions:
         noting = asking.settings.around(believer.noting(model, probe=name, task=question.question))
-        replies[question], used = ask_question(
-            nest, probe, question, noting, seed, asking.sampling, asking.settings
-        )
+        with _naming(probe):
+            replies[question], used = ask_question(
+                nest, probe, question, noting, seed, asking.sampling, asking.settings
+            )
         usage += used
     judged = iter(programs.verdicts)
     verdicts = tuple(
@@ -124,6 +128,15 @@ def run_probe(
         replies=tuple(replies.values()),
         fault=programs.fault,
     )
+
+
+@contextmanager
+def _naming(probe: Probe) -> Iterator[None]:
+    """Name file, line and probe in errors of its template."""
+    try:
+        yield
+    except TemplateError as error:
+        raise TemplateError(f"{probe.where}{error}") from error
 
 
 def resolved(nest: Nest, probe: Probe) -> Probe:
@@ -212,7 +225,7 @@ class _Prompts:
         if probe.template is None:
             self._template = built_in_template("paper")
         else:
-            self._template = Template("template of the probe", probe.template)
+            self._template = Template(probe.template_name, probe.template)
         self.system = instructions(skills_at(detail))
 
     @property

@@ -47,7 +47,7 @@ def ask_question(
     options = shuffled(question, seed)
     template = built_in_template("question")
     if probe.template is not None:
-        template = Template("template of the probe", probe.template)
+        template = Template(probe.template_name, probe.template)
     asked = {
         "question": question.question,
         "options": options,

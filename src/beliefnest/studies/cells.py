@@ -12,14 +12,16 @@ from beliefnest.prompts.templates import BUILT_IN_TEMPLATES, Template
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.expected import expected_json
 from beliefnest.scenarios.loading import condition_numbers
+from beliefnest.scenarios.parameters import declared_in
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.studies.allocation import LABEL, LIST, balanced, latin_lists
 from beliefnest.studies.chance import scenario_draws
 from beliefnest.studies.checking import StudyKeyError
 from beliefnest.studies.design import Design
 from beliefnest.studies.random_variations import drawn_variations
-from beliefnest.studies.variation import Variation, listed_variations
+from beliefnest.studies.variation import CHANGES, Variation, listed_variations
 from beliefnest.world.texts import quoted
+from beliefnest.world.words import nearest_or_all
 
 SEEDS = 2**32
 """Number of possible seeds of cells."""
@@ -224,8 +226,9 @@ def plan_cells(
 
     Raises:
         ScenarioError: A scenario is wrong even without any variation.
-        InputError: Two scenarios have the same name.
+        InputError: Two scenarios have the same name, or no scenario declares a parameter.
     """
+    _check_parameters(design, documents)
     cells: list[Cell] = []
     invalid: list[Invalid] = []
     called: dict[str, str] = {}
@@ -260,6 +263,18 @@ def plan_cells(
     # Order cells in rounds, so that the cells played first form a smaller study of this design.
     cells.sort(key=lambda cell: (cell.key.repeat, cell.list_number or 0, order[cell.key.model]))
     return Plan(tuple(cells), tuple(invalid))
+
+
+def _check_parameters(design: Design, documents: Mapping[str, Document]) -> None:
+    """Raise StudyKeyError if no scenario declares a parameter that a design varies."""
+    if isinstance(design.variations, int):
+        return
+    declared = {name for each in documents.values() for name in declared_in(each)}
+    known = (*sorted(declared), *CHANGES)
+    for name in design.variations:
+        if name not in known:
+            told = f"there is no parameter {quoted(name)}{nearest_or_all(name, known)}"
+            raise StudyKeyError(("variations", name), told)
 
 
 def _allocated(
@@ -382,7 +397,9 @@ def _with_template(
     text = template.text
     if template.name not in BUILT_IN_TEMPLATES:
         text = variation.template(text, document)
-    probes = tuple(replace(probe, template=text) for probe in scenario.probes)
+    probes = tuple(
+        replace(probe, template=text, template_name=template.name) for probe in scenario.probes
+    )
     return replace(scenario, probes=probes)
 
 

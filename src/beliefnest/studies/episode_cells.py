@@ -1,7 +1,8 @@
 """Plan of a study of episodes: its cells."""
 
 import itertools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -104,11 +105,13 @@ def plan_episodes(design: EpisodeDesign) -> Plan[EpisodeCell]:
     study of the same design.
 
     Raises:
-        UnknownNameError: A task or policy does not exist.
+        UnknownNameError: A task does not exist.
         ScenarioError: A task's file is wrong.
         InputError: A policy's file cannot be read.
     """
-    texts = {player.text: _texts(player) for player in design.players}
+    texts = {
+        player.text: [text_of_policy(name) for name in _names(player)] for player in design.players
+    }
     found: list[EpisodeCell | Invalid] = []
     called: dict[str, str] = {}
     for name in design.tasks:
@@ -217,18 +220,14 @@ def _policies(task: Task, player: Player) -> dict[str, str]:
     return dict(player.policies)
 
 
-def _texts(player: Player) -> list[str]:
-    """Return the texts of the files that define a player's policies.
-
-    Raises:
-        UnknownNameError: A policy does not exist.
-    """
-    policies = player.policies
-    names = [policies] if isinstance(policies, str) else list(policies.values())
-    for name in names:
-        try:
+def check_player(player: Player) -> None:
+    """Raise UnknownNameError if a policy of a player does not exist."""
+    for name in _names(player):
+        # Machines of a cluster may have keys that this machine does not have.
+        with suppress(ModelError):
             resolve_policy(name)
-        except ModelError:
-            # Machines of a cluster may have keys that this machine does not have.
-            continue
-    return [text_of_policy(name) for name in names]
+
+
+def _names(player: Player) -> Sequence[str]:
+    policies = player.policies
+    return [policies] if isinstance(policies, str) else list(policies.values())

@@ -30,11 +30,13 @@ class Player:
         name: `search`, `model:MODEL`, the name of a policy, or that of policies by agent.
         order: Order of Theory of Mind; None: the name is complete without it.
         policies: A policy as the command line takes it, or policies by agent.
+        place: Key of the study, and number of the entry that names the player.
     """
 
     name: str
     order: Order | None
     policies: str | Mapping[str, str]
+    place: tuple[str, int]
 
     @property
     def text(self) -> str:
@@ -124,18 +126,19 @@ class EpisodeDesign:
         return tuple(self._players())
 
     def _players(self) -> Iterator[Player]:
-        for policies in self.policies:
+        for number, policies in enumerate(self.policies):
+            place = ("policies", number)
             if isinstance(policies, str) and policies in _ORDERED:
                 for order in self.orders:
-                    yield Player(policies, order, policy_named(policies, str(order)))
+                    yield Player(policies, order, policy_named(policies, str(order)), place)
             else:
                 name, own = _named(policies)
-                yield Player(name, None, _with_query(own, self.query))
-        for model in self.models:
+                yield Player(name, None, _with_query(own, self.query), place)
+        for number, model in enumerate(self.models):
             for order in self.orders:
                 name = f"model:{model}"
                 policy = with_query(policy_named(name, str(order)), self.query)
-                yield Player(name, order, policy)
+                yield Player(name, order, policy, ("models", number))
 
     @property
     def setting(self) -> dict[str, Any]:

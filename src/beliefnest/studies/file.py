@@ -10,9 +10,9 @@ from msgspec.structs import replace
 from beliefnest.episodes.policies import policy_beside
 from beliefnest.episodes.task import Task
 from beliefnest.errors import ScenarioError
-from beliefnest.scenarios.document import Document, plain
+from beliefnest.scenarios.document import Document, KeyPath, plain
+from beliefnest.scenarios.document_form import FAULT_STEP
 from beliefnest.scenarios.sources import builtin_names
-from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.studies.checking import StudyKeyError, several
 from beliefnest.studies.design import Design, template_named
 from beliefnest.studies.episode_design import EpisodeDesign, Policies, listed
@@ -21,20 +21,22 @@ from beliefnest.world.words import nearest_or_all
 from beliefnest.worlds.names import check_world
 
 
-def read_design(path: Path, instead: Mapping[str, Any] | None = None) -> Design | EpisodeDesign:
+def read_design(
+    document: Document, instead: Mapping[str, Any] | None = None
+) -> Design | EpisodeDesign:
     """Return the design in a YAML file; paths in the file are relative to its folder.
 
     Args:
-        path: The file.
+        document: Document of the file.
         instead: Values of keys in place of those of the file, with paths as given; None: none.
 
     Raises:
         ScenarioError: The file is wrong; the message names file, line and key.
     """
-    document = read_yaml(path)
     if {"agents", "map"} & document.root.value.keys():
         raise ScenarioError(
-            f"{path} is a scenario, no study; write a study file with `scenarios: [{path.name}]`"
+            f"{document.source} is a scenario, no study; write a study file with "
+            f"`scenarios: [{Path(document.source).name}]`"
         )
     try:
         keys = msgspec.convert(plain(document.root), StudyKeys)
@@ -43,42 +45,53 @@ def read_design(path: Path, instead: Mapping[str, Any] | None = None) -> Design 
     if keys.world is not None:
         with document.naming(("world",)):
             check_world(keys.world, servers=False)
-    with document.naming(("templates",)):
-        names = several("templates", keys.templates or ())
-        templates = tuple(template_named(name, path.parent) for name in names)
+    templates = []
+    for number, name in enumerate(several("templates", keys.templates or ())):
+        with document.naming(("templates", number)):
+            templates.append(template_named(name, document.folder))
     try:
         constraints = several("constraints", keys.constraints)
-        beside = _beside(keys, path)
+        beside = _beside(keys, document.folder)
         return design_of(
             replace(beside, **(instead or {})),
-            templates,
+            tuple(templates),
             constraints,
         )
     except StudyKeyError as fault:
         raise document.fault(fault.path, str(fault)) from None
 
 
-def _beside(keys: StudyKeys, path: Path) -> StudyKeys:
+def _beside(keys: StudyKeys, folder: Path) -> StudyKeys:
     """Return the keys with the paths of files in them, which are relative to the file's folder."""
 
-    def located(key: str, names: object, known: Sequence[str]) -> tuple[str, ...]:
-        return tuple(
-            name if name in known else str(path.parent / name) for name in several(key, names)
-        )
+    def located(place: KeyPath, name: str, known: Sequence[str]) -> str:
+        file = folder / name
+        if name in known:
+            return name
+        if not file.exists():
+            told = nearest_or_all(name, known, "built in are")
+            raise StudyKeyError(place, f"there is no file {file}{told}")
+        return str(file)
 
+    scenarios: list[str | Mapping[str, Any]] = []
+    for number, (label, names) in enumerate(labelled_scenarios(keys.scenarios)):
+        place: KeyPath = ("scenarios", number)
+        if label:
+            own = [
+                located((*place, "scenarios", n), name, builtin_names())
+                for n, name in enumerate(names)
+            ]
+            scenarios.append({"label": label, "scenarios": own})
+        else:
+            scenarios += [located(place, name, builtin_names()) for name in names]
     known = (*Task.names(), *builtin_names())
+    tasks = None if keys.tasks is None else several("tasks", keys.tasks)
     return replace(
         keys,
-        scenarios=[
-            {"label": label, "scenarios": names} if label else names[0]
-            for label, names in (
-                (label, located("scenarios", names, builtin_names()))
-                for label, names in labelled_scenarios(keys.scenarios)
-            )
-        ],
-        system=None if keys.system is None else str(path.parent / keys.system),
-        tasks=None if keys.tasks is None else located("tasks", keys.tasks, known),
-        policies=tuple(_policies_beside(each, path.parent) for each in listed(keys.policies)),
+        scenarios=scenarios,
+        system=None if keys.system is None else str(folder / keys.system),
+        tasks=tasks and [located(("tasks", n), name, known) for n, name in enumerate(tasks)],
+        policies=tuple(_policies_beside(each, folder) for each in listed(keys.policies)),
     )
 
 
@@ -94,10 +107,14 @@ def _policies_beside(policies: Policies, folder: Path) -> Policies:
 
 
 def _fault(document: Document, error: str) -> ScenarioError:
-    what, _, place = error.partition(" - at `$.")
-    key = place.rstrip("`").partition("[")[0].partition(".")[0]
+    what, _, place = error.partition(" - at `$")
+    path: list[str | int] = []
+    for step in FAULT_STEP.finditer(place):
+        if step["any"]:
+            break
+        path.append(step["name"] or int(step["index"]))
     if what.startswith("Object contains unknown field"):
-        key = what.split("`")[1]
-        what = f"unknown key{nearest_or_all(key, StudyKeys.__struct_fields__)}"
+        path = [what.split("`")[1]]
+        what = f"unknown key{nearest_or_all(str(path[0]), StudyKeys.__struct_fields__)}"
     what = what[:1].lower() + what[1:].replace("`", "'")
-    return document.fault((key,) if key else (), what)
+    return document.fault(tuple(path), what)

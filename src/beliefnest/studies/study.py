@@ -1,27 +1,28 @@
 """Studies: from a design to a folder of results."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import msgspec
 
-from beliefnest.errors import InputError, ModelError
-from beliefnest.files import read_regular_text
+from beliefnest.errors import InputError, ModelError, UnknownNameError
 from beliefnest.llm.model_settings import AskedForm, ModelSettings
 from beliefnest.llm.resolve import check_model, check_structured
 from beliefnest.locking import holding
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.prompts.templates import Template
-from beliefnest.scenarios.document import Document
+from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.sources import read_document
+from beliefnest.scenarios.yaml_reading import read_yaml
 from beliefnest.skills.manifests import SkillDetail
 from beliefnest.studies.allocation import LABEL, PARTICIPANT
 from beliefnest.studies.cells import C, Cell, Plan, plan_cells
 from beliefnest.studies.checking import StudyKeyError, is_whole, several
 from beliefnest.studies.design import Constraint, Design, template_named
-from beliefnest.studies.episode_cells import EpisodeCell, plan_episodes
+from beliefnest.studies.episode_cells import EpisodeCell, check_player, plan_episodes
 from beliefnest.studies.episode_design import EpisodeDesign, Order, Policies
 from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.file import read_design
@@ -187,12 +188,13 @@ class Study:
         study = cls.__new__(cls)
         if claims_from is not None:
             requests["claims_from"] = claims_from
-        study._hold(read_design(Path(file), requests), read_regular_text(Path(file)))
+        document = read_yaml(Path(file))
+        study._hold(read_design(document, requests), document)
         return study
 
-    def _hold(self, design: Design | EpisodeDesign, written: str = "") -> None:
+    def _hold(self, design: Design | EpisodeDesign, written: Document | None = None) -> None:
         self._design = design
-        # Text of the study's file; empty: the study was made in Python.
+        # Document of the study's file; None: the study was made in Python.
         self._written = written
         scenarios = design.scenarios if isinstance(design, Design) else ()
         self._table = PROBES if isinstance(design, Design) else EPISODES
@@ -219,15 +221,36 @@ class Study:
             UnknownNameError: A task or policy does not exist.
         """
         if self._plan is None:
-            design = self._design
-            if isinstance(design, Design):
-                plan = plan_cells(design, self._documents, on_variation)
-                if design.design == "latin-square":
-                    plan = with_balanced_lists(plan)
-                self._plan = _told_apart(plan, self._table)
-            else:
-                self._plan = _told_apart(plan_episodes(design), self._table)
+            with self._naming():
+                self._plan = self._planned(on_variation)
         return self._plan
+
+    def _planned(self, on_variation: Callable[[int, int], None]) -> Plan[Cell] | Plan[EpisodeCell]:
+        design = self._design
+        if not isinstance(design, Design):
+            for player in design.players:
+                with self._naming(player.place):
+                    check_player(player)
+            return _told_apart(plan_episodes(design), self._table)
+        plan = plan_cells(design, self._documents, on_variation)
+        if design.design == "latin-square":
+            plan = with_balanced_lists(plan)
+        return _told_apart(plan, self._table)
+
+    @contextmanager
+    def _naming(self, path: KeyPath = ()) -> Iterator[None]:
+        """Name file, line and key in errors about a value of the study's file, if there is one.
+
+        Args:
+            path: Place of the value; empty: errors name it.
+        """
+        try:
+            yield
+        except (InputError, UnknownNameError) as error:
+            place = error.path if isinstance(error, StudyKeyError) else path
+            if self._written is None or not place:
+                raise
+            raise self._written.fault(place, str(error)) from None
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -269,7 +292,7 @@ class Study:
         place = StudyFolder.open(folder)
         plan = self.plan()
         part = plan if shard is None else plan.shard(*checked_shard(shard))
-        _check_valid(plan)
+        self._check_valid(plan)
         place.check_subjects(self._plan_json(plan))
         terms = Terms(
             answers=place.answers.absolute(),
@@ -392,7 +415,7 @@ class Study:
                 "participants see scenarios and answer their questions; this study plays episodes"
             )
         cells = [cell for cell in plan.cells if isinstance(cell, Cell)]
-        _check_valid(plan)
+        self._check_valid(plan)
         return design, cells
 
     def _write_plan(self, place: StudyFolder, plan: Mapping[str, Any]) -> None:
@@ -470,8 +493,8 @@ class Study:
             InputError: A file cannot be read.
         """
         inputs = Inputs()
-        if self._written:
-            inputs.add_study(self._written)
+        if self._written is not None:
+            inputs.add_study(self._written.text)
         if isinstance(self._design, Design):
             for document in self._documents.values():
                 inputs.add_document("scenarios", document.root.value["name"].value, document)
@@ -509,16 +532,25 @@ class Study:
         A model needs no key if the study's folder has its answers in the cache.
         """
         design = self._design
-        if isinstance(design, Design) and design.settings.answer == "structured":
-            for name in design.models:
-                check_structured(name)
-        for name in design.asked:
+        is_structured = isinstance(design, Design) and design.settings.answer == "structured"
+        for number, name in enumerate(design.asked):
+            is_asked = number < len(design.models)
             try:
-                check_model(name, terms.surroundings, terms.connection())
+                with self._naming(("models", number) if is_asked else ("claims_from",)):
+                    if is_structured and is_asked:
+                        check_structured(name)
+                    check_model(name, terms.surroundings, terms.connection())
             except ModelError:
                 # Machines of a cluster may have keys that this machine does not have.
                 if backend == "loky":
                     raise
+
+    def _check_valid(self, plan: Plan[Cell] | Plan[EpisodeCell]) -> None:
+        """Raise InputError if no combination of a plan is valid."""
+        if not plan.cells and plan.invalid:
+            told = f"no combination is valid; the reason of the first: {plan.invalid[0].why}"
+            with self._naming(("variations",)):
+                raise InputError(told)
 
     def _plan_json(self, plan: Plan[Cell] | Plan[EpisodeCell]) -> dict[str, Any]:
         return {
@@ -586,12 +618,6 @@ def _two(shard: object) -> tuple[int, int]:
     raise InputError(
         f"shard is {quoted(shard)}; give its number and the number of shards, such as (1, 4)"
     )
-
-
-def _check_valid(plan: Plan[Cell] | Plan[EpisodeCell]) -> None:
-    """Raise InputError if no combination of a plan is valid."""
-    if not plan.cells and plan.invalid:
-        raise InputError(f"no combination is valid; the reason of the first: {plan.invalid[0].why}")
 
 
 def _say_nothing_of_items(what: str, done: int, total: int) -> None:
