@@ -8,6 +8,7 @@ from typing import Any
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Block, Items, Point, Position
+from beliefnest.world.words import counted
 
 
 class Source(StrEnum):
@@ -120,3 +121,37 @@ class InitialBelief:
     blocks: Mapping[Position, Block] = field(default_factory=dict)
     agents: Mapping[str, Point] = field(default_factory=dict)
     inventories: Mapping[str, Items] = field(default_factory=dict)
+
+
+def age_text(ticks: int) -> str:
+    """Return the age of a memory in words."""
+    return f"{counted(ticks, 'tick')} ago"
+
+
+def told_text(source: Source | None, teller: str, ticks: int) -> str:
+    """Return the source and the age of hearsay in words, or the age of a memory.
+
+    It is empty for what has been perceived at this tick.
+
+    Args:
+        source: Source of an entry that is not perceived now; None: it is, or it is not known.
+        teller: The speaker, if it is hearsay.
+        ticks: The age.
+    """
+    match source:
+        case Source.PRIOR:
+            return "believed from the start"
+        case Source.HEARD:
+            return f"told by {teller}{f' {age_text(ticks)}' if ticks else ''}"
+        case Source.EDITED:
+            return f"edited{f' {age_text(ticks)}' if ticks else ''}"
+        case _:
+            return age_text(ticks) if ticks else ""
+
+
+def seen_text(source: Source | None, teller: str, ticks: int) -> str:
+    """Return the same with `seen` before the age of a memory that was perceived."""
+    if source is None:
+        return "seen now"
+    told = told_text(source, teller, ticks)
+    return f"seen {told or 'now'}" if source in (Source.SEEN, Source.WITNESSED) else told

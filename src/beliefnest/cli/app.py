@@ -252,9 +252,7 @@ def template(
 
 
 @app.command(rich_help_panel=_WRITE)
-def new(
-    name: Annotated[str, typer.Argument(help="Name of the scenario and of its file.")],
-) -> None:
+def new(name: Annotated[str, typer.Argument(help="Name of the scenario and of its file.")]) -> None:
     """Write a commented scenario to start from."""
     from beliefnest.cli.new import write_starter
 

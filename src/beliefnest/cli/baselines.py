@@ -98,8 +98,7 @@ def _played(names: Sequence[str], options: PlayOptions) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     for name in names:
         trained = trained_rule(
-            partial(Task.load, name),
-            range(_TRAINED, _TRAINED + min(_TRAINING, options.seeds)),
+            partial(Task.load, name), range(_TRAINED, _TRAINED + min(_TRAINING, options.seeds))
         )
         policies, orders = (
             (_HIDDEN_POLICIES, _HIDDEN_ORDERS) if _hides_goals(name) else (_POLICIES, _ORDERS)

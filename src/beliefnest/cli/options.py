@@ -125,8 +125,7 @@ class RunOptions(ModelOptions):
     ] = None
     repeat: Annotated[int, typer.Option(help="Runs of each condition with each model.")] = 1
     out: Annotated[
-        Path | None,
-        typer.Option(help="Run folder to write; an interrupted run continues in it."),
+        Path | None, typer.Option(help="Run folder to write; an interrupted run continues in it.")
     ] = None
     seed: Annotated[
         int, typer.Option(help="Seed of all random numbers; each further repeat adds 1.")
@@ -140,8 +139,7 @@ class RunOptions(ModelOptions):
     max_tokens: Annotated[
         int,
         typer.Option(
-            help="Token limit of the whole run; the default does not count free models.",
-            min=1,
+            help="Token limit of the whole run; the default does not count free models.", min=1
         ),
     ] = 1_000_000
     max_cost: Annotated[
@@ -157,8 +155,7 @@ class RunOptions(ModelOptions):
         ),
     ] = 3
     claims_from: Annotated[
-        str | None,
-        typer.Option(help="Model that extracts claims from utterances; default: none."),
+        str | None, typer.Option(help="Model that extracts claims from utterances; default: none.")
     ] = None
     json: Json = False
 
@@ -381,8 +378,7 @@ class ParticipantsOptions:
     ] = None
     title: Annotated[str, typer.Option(help="Title of the browser's tab.")] = "Study"
     post: Annotated[
-        str | None,
-        typer.Option(metavar="URL", help="Send the answers to this address as JSON."),
+        str | None, typer.Option(metavar="URL", help="Send the answers to this address as JSON.")
     ] = None
     read: Annotated[
         list[Path] | None,
@@ -463,8 +459,7 @@ class PowerOptions:
         Path, typer.Argument(help="YAML file of a study to plan, or folder of one to draw from.")
     ]
     size: Annotated[
-        list[int] | None,
-        typer.Option(help="Number of variations; can be repeated.", min=1),
+        list[int] | None, typer.Option(help="Number of variations; can be repeated.", min=1)
     ] = None
     accuracy: Annotated[float | None, typer.Option(help="Assumed accuracy; default: 0.8.")] = None
     difference: Annotated[

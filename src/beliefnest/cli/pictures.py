@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
+from beliefnest.belief.grounds import told_text
 from beliefnest.belief.view import State
 from beliefnest.facts.states import StateFacts
 from beliefnest.nest.explain.comparison import false_things
 from beliefnest.nest.face.drawing import wrong_things
 from beliefnest.nest.face.nest import Nest
 from beliefnest.pictures.overview import Card, ConditionPicture, Note
-from beliefnest.pictures.palette import Mark, told_text
+from beliefnest.pictures.palette import Mark
 from beliefnest.pictures.scene import Scene, Wrong, best_height, read_stores
 from beliefnest.scenarios.expected_acts import Arrives
 from beliefnest.scenarios.expected_answers import Answers

@@ -88,10 +88,7 @@ def run_scenarios(options: RunOptions, launch: Launch | None = None) -> int:
 
 
 def _run_in(
-    folder: RunFolder,
-    options: RunOptions,
-    scenarios: Sequence[Scenario],
-    launch: Launch | None,
+    folder: RunFolder, options: RunOptions, scenarios: Sequence[Scenario], launch: Launch | None
 ) -> int:
     """Run the conditions in an open folder; return the exit status."""
     first, settings = scenarios[0], options.settings

@@ -12,9 +12,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import cycle
 
-from beliefnest.belief.grounds import Source
-from beliefnest.world.words import counted
-
 INK = "#2b2a33"
 PAPER = "#fcfbf8"
 QUIET = "#6a6870"
@@ -169,40 +166,6 @@ def _named_colour(name: str) -> str | None:
     words = " ".join(re.findall("[a-z]+", name.lower()))
     found = {_NAMED[word] for word in _COLOUR_WORD.findall(words)}
     return found.pop() if len(found) == 1 else None
-
-
-def age_text(ticks: int) -> str:
-    """Return the age of a memory in words."""
-    return f"{counted(ticks, 'tick')} ago"
-
-
-def told_text(source: Source | None, teller: str, ticks: int) -> str:
-    """Return the source and the age of hearsay in words, or the age of a memory.
-
-    It is empty for what has been perceived at this tick.
-
-    Args:
-        source: Source of an entry that is not perceived now; None: it is, or it is not known.
-        teller: The speaker, if it is hearsay.
-        ticks: The age.
-    """
-    match source:
-        case Source.PRIOR:
-            return "believed from the start"
-        case Source.HEARD:
-            return f"told by {teller}{f' {age_text(ticks)}' if ticks else ''}"
-        case Source.EDITED:
-            return f"edited{f' {age_text(ticks)}' if ticks else ''}"
-        case _:
-            return age_text(ticks) if ticks else ""
-
-
-def seen_text(source: Source | None, teller: str, ticks: int) -> str:
-    """Return the same with `seen` before the age of a memory that was perceived."""
-    if source is None:
-        return "seen now"
-    told = told_text(source, teller, ticks)
-    return f"seen {told or 'now'}" if source in (Source.SEEN, Source.WITNESSED) else told
 
 
 def mix(first: str, second: str, share: float) -> str:

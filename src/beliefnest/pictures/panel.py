@@ -3,20 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from beliefnest.belief.grounds import seen_text, told_text
 from beliefnest.pictures import icons
 from beliefnest.pictures.lettering import ASCENT, text_width, wrap
 from beliefnest.pictures.marks import XY, Text
 from beliefnest.pictures.marks import DrawnMark as Drawn
-from beliefnest.pictures.palette import (
-    INK,
-    MARKS,
-    QUIET,
-    AgentLook,
-    Mark,
-    mix,
-    seen_text,
-    told_text,
-)
+from beliefnest.pictures.palette import INK, MARKS, QUIET, AgentLook, Mark, mix
 from beliefnest.pictures.plan import draw_plan
 from beliefnest.pictures.scene import Device, DrawnAgent, Scene, Store
 

@@ -8,24 +8,13 @@ from functools import cache
 
 import numpy as np
 
-from beliefnest.belief.grounds import Source
+from beliefnest.belief.grounds import Source, age_text, told_text
 from beliefnest.pictures import icons
 from beliefnest.pictures.labels import LINE, Label, PlacedLabel, leader, put_labels
 from beliefnest.pictures.lettering import ASCENT, text_width
 from beliefnest.pictures.marks import XY, Bounds, Lines, Pixels, Polygon, Rectangle, Text
 from beliefnest.pictures.marks import DrawnMark as Drawn
-from beliefnest.pictures.palette import (
-    INK,
-    MARKS,
-    PAPER,
-    QUIET,
-    AgentLook,
-    Mark,
-    age_text,
-    mix,
-    parts,
-    told_text,
-)
+from beliefnest.pictures.palette import INK, MARKS, PAPER, QUIET, AgentLook, Mark, mix, parts
 from beliefnest.pictures.relief import UNKNOWN, Relief, standing_columns
 from beliefnest.pictures.room import Room
 from beliefnest.pictures.scene import DEVICES, Device, DrawnAgent, PlanColumn, Scene, Store

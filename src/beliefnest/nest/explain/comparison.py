@@ -13,7 +13,7 @@ from beliefnest.belief.grounds import AgentBelief, ContainerBelief, Source
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
-from beliefnest.pictures.words import html_lines, html_table, where_words
+from beliefnest.nest.past.shown_words import html_lines, html_table, where_words
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.terrain import BlockStates, Counts
 from beliefnest.world.values import Point, Position

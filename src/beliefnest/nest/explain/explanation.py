@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from beliefnest.nest.explain.parts import BaseFact, Element, Level
 from beliefnest.nest.explain.wording import explanation_lines
-from beliefnest.pictures.words import html_lines
+from beliefnest.nest.past.shown_words import html_lines
 
 
 @dataclass(frozen=True, slots=True)

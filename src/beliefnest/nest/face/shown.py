@@ -22,9 +22,9 @@ from beliefnest.nest.past.over_time import each_tick
 from beliefnest.nest.past.percepts import percepts_of
 from beliefnest.nest.past.placing import placed_in
 from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.shown_words import state_words
 from beliefnest.nest.past.telling import mind_view
 from beliefnest.nest.past.views import visible_from
-from beliefnest.pictures.words import state_words
 from beliefnest.prompts import Template
 from beliefnest.prompts.mind_view import MindView
 from beliefnest.prompts.observations import Observation

@@ -9,7 +9,7 @@ from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis
 from beliefnest.belief.node_view import NodeView, Part
-from beliefnest.pictures.words import state_words
+from beliefnest.nest.past.shown_words import state_words
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.world.frames import BlockGrid
 from beliefnest.world.paths import BeliefPath, path_text

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Sequence
 from html import escape
 
+from beliefnest.belief.grounds import told_text
 from beliefnest.belief.view import State
-from beliefnest.pictures.palette import told_text
 from beliefnest.world.texts import visible
 from beliefnest.world.values import Point
 from beliefnest.world.words import contents_words, point_words
