@@ -69,7 +69,7 @@ class BranchError(BeliefNestError):
 
 
 class StoreError(BeliefNestError):
-    """A run file is damaged, foreign, of a newer format, or locked by a writer."""
+    """A run file is damaged, foreign, of another format, or locked by a writer."""
 
 
 class NotBegunError(StoreError):

@@ -141,6 +141,28 @@ def test_a_run_goes_on_only_with_the_template_it_began_with(
     assert "another template" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("command", [["methods"], ["run", "x.yaml"]])
+def test_the_folder_of_an_earlier_version_is_refused(
+    kept: tuple[Path, Path],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    command: list[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(kept[0], "failed")
+    report = json.loads(Path("failed/run.json").read_text(encoding="utf-8"))
+    del report["form"]
+    Path("failed/run.json").write_text(json.dumps(report), encoding="utf-8")
+    Path("x.yaml").write_text(ROOM.replace("../texts/short.txt", "default"), encoding="utf-8")
+    name, *others = command
+    folder = ["--out", "failed"] if name == "run" else ["failed"]
+    assert run_command_line([name, *others, *folder]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "run.json was written by another version of beliefnest" in line
+    assert "in a new folder" in line
+
+
 def test_all_that_ran_is_exported_with_its_versions(
     kept: tuple[Path, Path], tmp_path: Path
 ) -> None:

@@ -156,25 +156,15 @@ def test_a_list_that_is_none_is_told_by_its_own_key(
     assert told in capsys.readouterr().err
 
 
-def test_folders_of_earlier_versions_are_read(result: bn.StudyResult, tmp_path: Path) -> None:
+def test_folders_of_earlier_versions_are_refused(result: bn.StudyResult, tmp_path: Path) -> None:
     old = StudyFolder.open(tmp_path / "old")
-    plan = result.plan
-    for cell in plan["cells"]:
-        old.write_cell(cell["name"], result.folder.cell(cell["name"]) or {})
-    cells = [{k: v for k, v in cell.items() if k != "variation"} for cell in plan["cells"]]
-    old.write_plan({**plan, "cells": cells})
-    read = bn.StudyResult.read(tmp_path / "old").frame()
-    assert read.equals(result.frame())
-
-
-def test_a_cell_that_was_played_with_another_seed_is_played_again(tmp_path: Path) -> None:
-    study = bn.Study(small_in(tmp_path), world="scripted")
-    result = study.run(tmp_path / "out", jobs=1)
-    (cell,) = result.plan["cells"]
-    content = result.folder.cell(cell["name"]) or {}
-    result.folder.write_cell(cell["name"], {**content, "seed": 0, "ticks": -1})
-    (row,) = study.run(tmp_path / "out", jobs=1).rows
-    assert row["seed"] == cell["seed"] and row["script_ticks"] == content["ticks"]
+    old.write_plan(result.plan)
+    file = old.path / "study.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    file.write_text(json.dumps({**content, "form": "beliefnest study 1"}), encoding="utf-8")
+    with pytest.raises(bn.InputError, match=r"another version of beliefnest.* in a new folder"):
+        bn.StudyResult.read(old.path)
+    assert run_command_line(["stats", str(old.path)]) == 2
 
 
 NARRATED = """

@@ -81,13 +81,17 @@ def test_another_programs_database_is_named_and_left_alone(tmp_path):
     assert path.read_bytes() == before
 
 
-def test_a_newer_format_is_refused_and_left_alone(run_file):
+@pytest.mark.parametrize(
+    ("version", "advice"),
+    [(SCHEMA_VERSION + 1, "use a newer version"), (SCHEMA_VERSION - 1, "play the run again")],
+)
+def test_another_format_is_refused_and_left_alone(run_file, version, advice):
     with closing(sqlite3.connect(run_file)) as other, other:
-        other.execute(f"PRAGMA user_version = {SCHEMA_VERSION + 1}")
+        other.execute(f"PRAGMA user_version = {version}")
     other.close()
     before = run_file.read_bytes()
     for opened in (SqliteJournal.open, SqliteJournal.read):
-        with pytest.raises(StoreError, match=rf"format {SCHEMA_VERSION + 1}, .*a newer version"):
+        with pytest.raises(StoreError, match=f"format {version}, .*{advice}"):
             opened(run_file)
     assert run_file.read_bytes() == before
 

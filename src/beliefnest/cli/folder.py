@@ -12,9 +12,11 @@ from typing import Any
 
 import msgspec
 
+from beliefnest.cli.report import report_json
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular_text, replace_file
 from beliefnest.locking import holding, is_lock
+from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.record_forms import (
     ExpectationForm,
@@ -25,18 +27,23 @@ from beliefnest.scenarios.record_forms import (
 )
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.yaml_reading import templates_file
+from beliefnest.studies.run_result import REPORT, read_report
 from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.timeline.lock import writer_lock
 
 STORE = "run.bn"
 PICTURE = "picture.png"
 PAGE = "report.html"
-_REPORT = "run.json"
 _RESULT = "result.json"
 _SCENARIO = "scenario.yaml"
 _ANSWERS = "answers"
 _MOST_NAMED = 10
 _OTHER = "name another folder"
+
+
+class _TableForm(msgspec.Struct):
+    cells: dict[str, str]
+    notes: list[str]
 
 
 class _ResultForm(msgspec.Struct):
@@ -55,6 +62,7 @@ class _ResultForm(msgspec.Struct):
     failures: list[str]
     usage: UsageForm
     run_dir: str
+    table: _TableForm
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,19 +112,19 @@ class ConditionFolder:
 
     def write_result(self, result: Mapping[str, object]) -> None:
         """Write the result of the condition."""
-        _write(self.path / _RESULT, _json(result))
+        replace_file(self.path / _RESULT, _json(result))
 
     def write_probe(self, number: int, outcome: ProbeOutcome) -> None:
         """Write the prompts and answers of a probe, and the program in the answer."""
         folder = self.path / f"probe-{number}"
         folder.mkdir(exist_ok=True)
         if outcome.probe.asks_for_program:
-            _write(folder / "prompt.txt", outcome.prompt)
-            _write(folder / "answer.txt", outcome.answer)
-            _write(folder / "program.js", outcome.program)
+            replace_file(folder / "prompt.txt", outcome.prompt)
+            replace_file(folder / "answer.txt", outcome.answer)
+            replace_file(folder / "program.js", outcome.program)
         for place, reply in enumerate(outcome.replies, start=1):
-            _write(folder / f"question-{place}.txt", reply.prompt)
-            _write(folder / f"reply-{place}.txt", reply.text)
+            replace_file(folder / f"question-{place}.txt", reply.prompt)
+            replace_file(folder / f"reply-{place}.txt", reply.text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,12 +172,11 @@ class RunFolder:
         if any(each.name != _ANSWERS and not is_lock(each) for each in self.path.iterdir()):
             _check_same(self.path, settings, scenario)
             return
-        name = scenario.name
-        report = {"scenario": name, "status": "running", "settings": settings, "runs": []}
-        self.write_report(report)
-        _write(self.path / _SCENARIO, scenario.text)
+        report = report_json(scenario.name, settings, "running", [], [])
+        self.write_report({**report, "versions": own_versions()})
+        replace_file(self.path / _SCENARIO, scenario.text)
         if scenario.templates:
-            _write(templates_file(self.path / _SCENARIO), _json(scenario.templates))
+            replace_file(templates_file(self.path / _SCENARIO), _json(scenario.templates))
 
     def cell(self, folder: Path) -> ConditionFolder:
         """Return the folder of one condition; `folder` is relative to the run folder."""
@@ -192,15 +199,15 @@ class RunFolder:
 
     def write_report(self, report: Mapping[str, object]) -> None:
         """Replace the report."""
-        _write(self.path / _REPORT, _json(report))
+        replace_file(self.path / REPORT, _json(report))
 
     def write_page(self, text: str) -> None:
         """Write the HTML page of the run."""
-        _write(self.path / PAGE, text)
+        replace_file(self.path / PAGE, text)
 
     def write_summary(self, text: str) -> None:
         """Write the table as text."""
-        _write(self.path / "summary.txt", text)
+        replace_file(self.path / "summary.txt", text)
 
 
 def store_in(run: Path) -> Path:
@@ -294,11 +301,10 @@ def _unwritable(path: Path, error: OSError) -> InputError:
 
 def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) -> None:
     """Raise InputError if a folder holds another run, or a run that has ended."""
-    file = path / _REPORT
-    found = read_json(file, _OTHER) if file.is_file() else {}
-    if not isinstance(found.get("settings"), dict):
+    if not (path / REPORT).is_file():
         raise InputError(f"{path} is not empty; name another folder with --out")
-    if found.get("status") == "done":
+    found = read_report(path)
+    if found["status"] == "done":
         raise InputError(f"{path} holds a run that has ended; name another folder with --out")
     kept, templates = path / _SCENARIO, templates_file(path / _SCENARIO)
     # Compare settings as JSON has them, in which a tuple is a list.
@@ -318,8 +324,3 @@ def _check_same(path: Path, settings: Mapping[str, object], scenario: Scenario) 
 
 def _json(value: Mapping[str, object]) -> str:
     return json.dumps(value, indent=2) + "\n"
-
-
-def _write(path: Path, text: str) -> None:
-    """Replace a file as a whole, so that readers never find half of it."""
-    replace_file(path, text)

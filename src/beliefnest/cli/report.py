@@ -25,6 +25,7 @@ from beliefnest.scenarios.naming import container_name
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.records import expectation_json, probe_json, usage_json
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.run_result import FORM
 from beliefnest.world.values import Placements, Point, Position
 from beliefnest.world.words import point_text
 
@@ -82,6 +83,7 @@ def report_json(
     models = settings["models"]
     assert isinstance(models, Sequence)
     return {
+        "form": FORM,
         "scenario": scenario,
         "world": settings["world"],
         "model": ",".join(models),
@@ -97,8 +99,8 @@ def count_outcomes(
     runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
 ) -> dict[str, int]:
     """Return the number of probes by outcome; a run without a result counts as one."""
-    found = Counter(probe.get("outcome") for run in runs for probe in run["probes"])
-    found.update(failure.get("outcome") for failure in failures)
+    found = Counter(probe["outcome"] for run in runs for probe in run["probes"])
+    found.update(failure["outcome"] for failure in failures)
     return {outcome: found[outcome] for outcome in OUTCOMES}
 
 
@@ -125,10 +127,8 @@ class OutcomeRow:
     seconds: float
 
     @classmethod
-    def of(cls, scenario: Scenario, result: Mapping[str, Any]) -> "OutcomeRow | None":
-        """Return the row of a result; None if an earlier version wrote it without these texts."""
-        if "table" not in result:
-            return None
+    def of(cls, scenario: Scenario, result: Mapping[str, Any]) -> "OutcomeRow":
+        """Return the row of a result."""
         return cls(
             scenario,
             result["table"]["cells"],

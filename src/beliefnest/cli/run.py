@@ -187,9 +187,7 @@ class _Run:
 
     def _keep(self, cell: RunCell, result: dict[str, Any]) -> None:
         self.results.append(result)
-        row = OutcomeRow.of(cell.scenario, result)
-        if row is not None:
-            self.rows.append(row)
+        self.rows.append(OutcomeRow.of(cell.scenario, result))
 
     def _hook(self, seed: int) -> ClaimsFrom | None:
         """Return the function that extracts claims from utterances; None: no extraction."""

@@ -68,7 +68,6 @@ def _run(run: Mapping[str, Any], conditions: Mapping[int, str]) -> dict[str, Any
     probes = []
     for index, probe in enumerate(run["probes"], start=1):
         place = folder / f"probe-{index}"
-        words = {key: probe.get(key, []) for key in ("happened", "judged", "why")}
         texts = {name: _text(place / f"{name}.txt") for name in ("prompt", "answer")}
         replies = [
             {
@@ -78,8 +77,7 @@ def _run(run: Mapping[str, Any], conditions: Mapping[int, str]) -> dict[str, Any
             }
             for count, reply in enumerate(probe["replies"], start=1)
         ]
-        # Results of earlier versions have no inferred means.
-        probes.append({"inferred": None, **probe, **words, **texts, "replies": replies})
+        probes.append({**probe, **texts, "replies": replies})
     return {
         **run,
         "title": "run" if number is None else f"condition {number}",

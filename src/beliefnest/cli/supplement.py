@@ -83,11 +83,11 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
 
             if isinstance(result, StudyRecord):
                 found = reproduce_study(folder, again, jobs, told, trust=trust)
-                recorded = dict(result.plan.get("versions", {}))
+                recorded = dict(result.plan["versions"])
             else:
                 on_progress("playing", 0, 0)
                 found = _reproduce_run(result, again, trust=trust)
-                recorded = dict(result.report.get("versions", {}))
+                recorded = dict(result.report["versions"])
         differences = [*damaged, *found.differences]
     other = _other_versions(recorded)
     if as_json:
@@ -212,7 +212,7 @@ def _reproduce_run(result: RunResult, again: Path, *, trust: bool) -> Reproducti
     played = RunResult.read(again)
     return Reproduction(
         cells=len(result.report["runs"]),
-        left_out=len(result.report.get("failures", [])),
+        left_out=len(result.report["failures"]),
         rows=sum(row["outcome"] != "error" for row in result.rows),
         differences=tuple(_differences(result, played, models)),
     )

@@ -2,7 +2,7 @@
 
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -23,10 +23,6 @@ CacheMode = Literal["read", "only", "write", "off"]
 """Mode of the cache. `read`: use cached answers, ask for the others and store them. `only`:
 use cached answers, and ask for no others. `write`: always ask, and store the answers. `off`:
 neither use nor store answers."""
-
-_EARLIER_MOST_TOKENS = 4096
-"""Cap of earlier versions where none was set. They kept complete answers only, so that the cap had
-no effect on these."""
 
 
 @dataclass(frozen=True)
@@ -58,9 +54,6 @@ class CachedModel:
         path = self._path(messages, sampling)
         if self.mode in ("read", "only"):
             kept = _read(path)
-            if kept is None and sampling.max_output_tokens is None:
-                capped = replace(sampling, max_output_tokens=_EARLIER_MOST_TOKENS)
-                kept = _read(self._path(messages, capped))
             if kept is not None:
                 return kept.answer
         answer = self.model.answer(messages, sampling)

@@ -18,8 +18,8 @@ class Exchange(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_def
         sampling: Sampling parameters.
         text: Text of the answer.
         usage: Resources that the answer used.
-        date: Day of the answer, as in `Answer`; earlier versions did not store it.
-        finish: Reason for its end, as in `Answer`; earlier versions kept complete answers only.
+        date: Day of the answer, as in `Answer`.
+        finish: Reason for its end, as in `Answer`.
         form: Form that the request asked for, as in `Answer`.
     """
 

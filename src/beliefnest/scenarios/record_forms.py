@@ -57,7 +57,7 @@ class ProbeForm(msgspec.Struct):
     outcome: str
     why_not: str
     ticks: int
-    inferred: dict[str, float] | None = None
+    inferred: dict[str, float] | None
 
 
 def checked_form(content: object, form: type[Any], file: Path, remedy: str) -> None:

@@ -11,7 +11,6 @@ from beliefnest.llm.secrets import Secrets, secrets_in
 from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.archive import check_secrets, with_manifest
 from beliefnest.studies.filter_packages import PACKAGES, filter_packages
-from beliefnest.studies.inputs import no_inputs
 from beliefnest.studies.methods import RunFacts, methods_text, run_facts, study_facts
 from beliefnest.studies.page import page_text
 from beliefnest.studies.plainframe import csv_text
@@ -51,7 +50,7 @@ def bundled(result: Results, environment: Mapping[str, str], *, runs: bool) -> d
         runs: Include the recorded run files.
 
     Raises:
-        InputError: A file contains a secret, or the folder lacks the study's inputs.
+        InputError: A file contains a secret.
     """
     files = _files(result, runs=runs)
     check_secrets(files, _secrets(environment))
@@ -65,8 +64,6 @@ def kind_of(result: Results) -> str:
 
 def _files(result: Results, *, runs: bool) -> dict[str, bytes]:
     if isinstance(result, StudyRecord):
-        if "inputs" not in result.plan:
-            raise no_inputs(result.folder.path)
         files = dict(_study_files(result, runs=runs))
     else:
         files = dict(_run_files(result, runs=runs))

@@ -36,8 +36,7 @@ def rows_with_copies(
         found = folder.cell(cell["name"])
         if found is None:
             continue
-        # Plans of earlier versions do not have this key.
-        if cell.get("alike") is not None and found["error"] is None:
+        if cell["alike"] is not None and found["error"] is None:
             alike.setdefault(cell["alike"], {})[cell["name"]] = _what_came(found)
         rows += rows_of(cell, found)
     first_of = {

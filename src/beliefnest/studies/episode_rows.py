@@ -3,12 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from beliefnest.studies.cells import variation_id
 from beliefnest.studies.episode_design import policy_named
 from beliefnest.studies.table import (
     Column,
     ColumnType,
-    RowSource,
     Table,
     lost,
     of_key,
@@ -28,14 +26,6 @@ def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapp
     yield {**found["measures"], **told}
 
 
-def _variation(source: RowSource) -> str:
-    key = source.cell["key"]
-    # Plans of earlier versions do not have this key.
-    return source.cell.get("variation") or variation_id(
-        key["task"], key["variation"], key["instance"]
-    )
-
-
 def _measure(name: str, kind: ColumnType = "int64", *, shown: bool = False) -> Column:
     """Return the column of a measure, see `Measures`."""
     return Column(name, kind, of_result(name, plain_value), shown)
@@ -49,7 +39,7 @@ EPISODES = Table(
     ),
     columns=(
         # The independent variation of a row; each instance of a built-in task is one.
-        Column("variation", "string", _variation, shown=True),
+        Column("variation", "string", lambda source: source.cell["variation"], shown=True),
         Column("player", "string", of_key("player"), identifies=True),
         # The order of the player.
         Column(

@@ -1,11 +1,14 @@
 """Forms of a study's files, used to check files that are read."""
 
+from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from beliefnest.episodes.measures import Measures
-from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm
+from beliefnest.errors import InputError
+from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, checked_form, read_json
+from beliefnest.studies.inputs import InputIndex
 
 
 class _Failed(msgspec.Struct):
@@ -22,7 +25,7 @@ class _Played(msgspec.Struct):
     ticks: int
     expectations: list[ExpectationForm]
     probes: list[_StudyProbe]
-    run: str = ""
+    run: str
 
 
 class _Episode(msgspec.Struct):
@@ -30,7 +33,7 @@ class _Episode(msgspec.Struct):
     seed: int
     why_not: str
     measures: Measures
-    run: str = ""
+    run: str
 
 
 class _ScenarioKey(msgspec.Struct):
@@ -65,15 +68,17 @@ class _PlannedScenario(msgspec.Struct):
     name: str
     seed: int
     key: _ScenarioKey
+    variation: str
+    alike: str | None
     probes: list[_PlannedProbe]
-    alike: str | None = None
 
 
 class _PlannedEpisode(msgspec.Struct):
     name: str
     seed: int
     key: _TaskKey
-    alike: str | None = None
+    variation: str
+    alike: str | None
 
 
 class _Invalid(msgspec.Struct):
@@ -86,6 +91,8 @@ class _Invalid(msgspec.Struct):
 class _ScenariosPlan(msgspec.Struct):
     cells: list[_PlannedScenario]
     invalid: list[_Invalid]
+    versions: dict[str, str]
+    inputs: InputIndex
 
 
 class _PersonKey(_ScenarioKey):
@@ -102,20 +109,22 @@ class _Sessions(msgspec.Struct):
     partial: int
     unanswered: int
     repeated: int
-    excluded: dict[str, int] = {}
+    excluded: dict[str, int]
 
 
 class PeopleForm(msgspec.Struct):
     """Entries of cells that participants answered."""
 
     cells: list[_PlannedPerson]
-    sessions: dict[str, _Sessions] = {}
+    sessions: dict[str, _Sessions]
 
 
 class _EpisodesPlan(msgspec.Struct):
     cells: list[_PlannedEpisode]
     invalid: list[_Invalid]
     tasks: Any
+    versions: dict[str, str]
+    inputs: InputIndex
 
 
 class SecondsForm(msgspec.Struct):
@@ -135,3 +144,25 @@ def cell_form(content: dict[str, Any]) -> type[Any]:
 def plan_form(content: dict[str, Any]) -> type[Any]:
     """Return the form that a study's plan must have."""
     return _EpisodesPlan if "tasks" in content else _ScenariosPlan
+
+
+def read_marked(file: Path, mark: str, form: type[Any], remedy: str) -> dict[str, Any]:
+    """Return the JSON object in a file of this version.
+
+    Args:
+        file: The file.
+        mark: Value of its key `form`, which names the kind of file and the version of its form.
+        form: Expected form.
+        remedy: What to do if the file is damaged, for the end of the message.
+
+    Raises:
+        InputError: The file cannot be read, is damaged, or was written by another version.
+    """
+    content = read_json(file, remedy)
+    if content.get("form") != mark:
+        raise InputError(
+            f"{file} was written by another version of beliefnest, and this one reads {mark!r}; "
+            "start again in a new folder, or use the version that wrote it"
+        )
+    checked_form(content, form, file, remedy)
+    return content

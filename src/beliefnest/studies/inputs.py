@@ -46,14 +46,6 @@ class InputIndex(msgspec.Struct, frozen=True):
     study: str = ""
 
 
-def no_inputs(folder: Path) -> InputError:
-    """Return the error about a folder of a study that holds no inputs."""
-    return InputError(
-        f"{folder} was written by an earlier version and does not hold its scenarios; run "
-        "`beliefnest study` with --out on it once more, which plays no finished cell again"
-    )
-
-
 @dataclass
 class Inputs:
     """Inputs of a study, collected before they are written.

@@ -104,8 +104,7 @@ def run_cells(
 
 def _is_open(folder: StudyFolder, cell: Keyed) -> bool:
     known = folder.cell(cell.key.name)
-    # An earlier version may have given the cell another seed.
-    return known is None or known["error"] is not None or known["seed"] != cell.key.seed
+    return known is None or known["error"] is not None
 
 
 class _Counting:

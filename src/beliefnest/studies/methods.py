@@ -172,7 +172,7 @@ def study_facts(result: StudyRecord) -> RunFacts:
     judged = [row for row in rows if row["ok"] is not None and row["copy_of"] is None]
     return RunFacts(
         kind="study",
-        versions=plan.get("versions", {}),
+        versions=plan["versions"],
         world=plan["world"],
         subjects=_subjects(plan),
         factors=list(_factors(plan)),
@@ -238,7 +238,7 @@ def run_facts(result: RunResult) -> RunFacts:
     }
     return RunFacts(
         kind="run",
-        versions=report.get("versions", {}),
+        versions=report["versions"],
         world=settings["world"],
         subjects=f"{told} under {_several('condition', numbers, '')}" if numbers else told,
         factors=factors,
@@ -246,7 +246,7 @@ def run_facts(result: RunResult) -> RunFacts:
         models=answered(names, result.exchanges()),
         asking=_asking(settings, rows),
         templates={},
-        cells=len(report["runs"]) + len(report.get("failures", [])),
+        cells=len(report["runs"]) + len(report["failures"]),
         rows=len(rows),
         judged=len(judged),
         variations=len({row["variation"] for row in judged}),
@@ -359,7 +359,7 @@ def _asking(plan: Mapping[str, Any], rows: Sequence[Row]) -> str:
 
 
 def _templates(result: StudyRecord) -> dict[str, str | None]:
-    index = result.plan.get("inputs", {}).get("templates", {})
+    index = result.plan["inputs"]["templates"]
     found: dict[str, str | None] = {}
     for name in result.plan.get("templates", []):
         if name in BUILT_IN_TEMPLATES:

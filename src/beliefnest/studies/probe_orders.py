@@ -20,6 +20,5 @@ def order_of(path: str, expected: Mapping[str, Any] | None) -> int:
     # Plans have the source of an answer in the place of the answer.
     sources = (each.get("right_from", each["right"]) for each in questions)
     beliefs = [each for each in sources if isinstance(each, Mapping)]
-    # Folders of earlier versions have `believed` for `path`.
-    paths = [path, *(each.get("path") or each["believed"] for each in beliefs)]
+    paths = [path, *(each["path"] for each in beliefs)]
     return max(len(normalised(filter(None, each.split("/")))) for each in paths)

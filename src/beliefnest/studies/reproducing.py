@@ -22,7 +22,7 @@ from beliefnest.studies.cells import Cell, CellKey, Keyed, planned_cell
 from beliefnest.studies.comparing import ERROR, PairedDifference, differing_contents, differing_rows
 from beliefnest.studies.episode_cells import EpisodeCell, EpisodeKey, task_of_cell
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
-from beliefnest.studies.inputs import InputIndex, no_inputs
+from beliefnest.studies.inputs import InputIndex
 from beliefnest.studies.jobs import OnStudyProgress, run_cells
 from beliefnest.studies.plainframe import csv_rows, read_csv_rows
 from beliefnest.studies.study_folder import StudyFolder
@@ -205,12 +205,7 @@ class _Inputs:
     @classmethod
     def of(cls, folder: Path, plan: Mapping[str, Any]) -> "_Inputs":
         """Return the inputs of a plan; raise InputError if the folder does not have them."""
-        if "inputs" not in plan:
-            raise no_inputs(folder)
-        try:
-            index = msgspec.convert(plan["inputs"], InputIndex)
-        except msgspec.ValidationError as error:
-            raise InputError(f"{folder / 'study.json'} is damaged: {error}") from None
+        index = msgspec.convert(plan["inputs"], InputIndex)
         documents = {
             name: _document(inside(folder, file))
             for name, file in {**index.scenarios, **index.tasks}.items()

@@ -261,8 +261,8 @@ class StudyResult(StudyRecord):
             runs: Include the recorded run files.
 
         Raises:
-            InputError: A file contains a key or password that is set on this machine, the file
-                cannot be written, or the folder is that of an earlier version.
+            InputError: A file contains a key or password that is set on this machine, or the file
+                cannot be written.
         """
         path = Path(file)
         write_zip(bundled(self.whole, os.environ, runs=runs), path)

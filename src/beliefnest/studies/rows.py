@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from beliefnest.studies.allocation import LIST
-from beliefnest.studies.cells import variation_id
 from beliefnest.studies.guessing import chance_of
 from beliefnest.studies.probe_orders import order_of
 from beliefnest.studies.table import (
@@ -45,12 +44,6 @@ def _beliefs(expectations: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         "outcome": "wrong" if wrong else "ok",
         "why_not": "; ".join(wrong),
     }
-
-
-def _variation(source: RowSource) -> str:
-    key = source.cell["key"]
-    # Plans of earlier versions do not have this key.
-    return source.cell.get("variation") or variation_id(key["scenario"], key["variation"])
 
 
 def _order(source: RowSource) -> int | None:
@@ -97,7 +90,7 @@ PROBES = Table(
     ),
     columns=(
         # The independent variation of a row.
-        Column("variation", "string", _variation, shown=True),
+        Column("variation", "string", lambda source: source.cell["variation"], shown=True),
         Column("model", "string", of_key("model"), shown=True, identifies=True),
         Column("template", "string", of_key("template"), shown=True, identifies=True),
         Column("repeat", "int64", of_key("repeat"), shown=True, identifies=True),

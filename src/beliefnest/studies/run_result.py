@@ -11,21 +11,52 @@ import msgspec
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular
 from beliefnest.llm.stored_exchange import Exchange, decode_exchange
-from beliefnest.scenarios.record_forms import read_json
+from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm
+from beliefnest.studies.cells import variation_id
+from beliefnest.studies.forms import read_marked
 from beliefnest.studies.plainframe import Typed
 from beliefnest.studies.rows import PROBES
 
-_REPORT = "run.json"
+REPORT = "run.json"
+FORM = "beliefnest run 1"
+"""Mark of reports of this version."""
 _OTHER = "name another folder"
+
+
+class _RunForm(msgspec.Struct):
+    run_dir: str
+    probes: list[ProbeForm]
+    expectations: list[ExpectationForm]
+
+
+class _FailureForm(msgspec.Struct):
+    condition: int | None
+    model: str
+    seed: int
+    error: str
+    outcome: str
 
 
 class _ReportForm(msgspec.Struct):
     scenario: str
     status: str
     settings: dict[str, Any]
-    runs: list[dict[str, Any]]
-    failures: list[dict[str, Any]] = []
-    versions: dict[str, str] = {}
+    runs: list[_RunForm]
+    failures: list[_FailureForm]
+    versions: dict[str, str]
+
+
+def read_report(folder: Path, remedy: str = _OTHER) -> dict[str, Any]:
+    """Return the report in a run folder.
+
+    Args:
+        folder: The run folder.
+        remedy: What to do if the report is damaged, for the end of the message.
+
+    Raises:
+        InputError: The report cannot be read, is damaged, or was written by another version.
+    """
+    return read_marked(folder / REPORT, FORM, _ReportForm, remedy)
 
 
 @dataclass(frozen=True)
@@ -42,14 +73,8 @@ class RunResult:
 
     @classmethod
     def read(cls, folder: Path) -> "RunResult":
-        """Return the results in a run folder; raise InputError if it is damaged."""
-        file = folder / _REPORT
-        report = read_json(file, _OTHER)
-        try:
-            msgspec.convert(report, _ReportForm)
-        except msgspec.ValidationError as error:
-            raise InputError(f"{file} is damaged: {error}; {_OTHER}") from None
-        return cls(folder, report)
+        """Return the results in a run folder; raise InputError as `read_report` does."""
+        return cls(folder, read_report(folder))
 
     @cached_property
     def rows(self) -> list[dict[str, Any]]:
@@ -58,10 +83,9 @@ class RunResult:
         for number, run in enumerate(self.report["runs"], 1):
             cell = self._cell(f"run-{number}", run)
             rows += PROBES.rows_of(cell, {"error": None, **run, "run": ""}, ())
-        for number, failure in enumerate(self.report.get("failures", []), 1):
+        for number, failure in enumerate(self.report["failures"], 1):
             cell = self._cell(f"failure-{number}", failure)
-            # Runs of earlier versions have no outcome.
-            there = failure.get("outcome") != "error"
+            there = failure["outcome"] != "error"
             kind = "ModelError" if there else "UnavailableModelError"
             found = {"error": failure["error"], "kind": kind}
             rows += PROBES.rows_of({**cell, "probes": self._probes}, found, ())
@@ -84,7 +108,11 @@ class RunResult:
             "template": "",
             "repeat": 1 + run["seed"] - self.report["settings"]["seed"],
         }
-        return {"name": name, "seed": run["seed"], "key": key, "probes": []}
+        variation = variation_id(key["scenario"], {})
+        return {
+            **{"name": name, "seed": run["seed"], "key": key},
+            **{"variation": variation, "probes": []},
+        }
 
     def typed(self) -> dict[str, Typed]:
         """Return the columns of `rows`."""

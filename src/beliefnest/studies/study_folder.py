@@ -14,11 +14,11 @@ from beliefnest.errors import InputError
 from beliefnest.files import replace_file, replacing
 from beliefnest.locking import is_lock
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
-from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form
+from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form, read_marked
 
 _PLAN = "study.json"
 _PEOPLE = "people.json"
-_FORM = "beliefnest study 1"
+_FORM = "beliefnest study 2"
 _PEOPLE_FORM = "beliefnest people 1"
 _READ_AGAIN = "delete it and read the answers of people again"
 _AGAIN = "delete it to run it again"
@@ -129,7 +129,7 @@ class StudyFolder:
 
     def write_cell(self, name: str, content: Mapping[str, Any]) -> None:
         """Write the file of a cell, completely or not at all."""
-        _write(self.cells / f"{name}.json", _json(content))
+        replace_file(self.cells / f"{name}.json", _json(content))
 
     def note_seconds(self, name: str, seconds: float) -> None:
         """Append the wall time of a cell."""
@@ -141,7 +141,7 @@ class StudyFolder:
 
     def write_plan(self, plan: Mapping[str, Any]) -> None:
         """Write the plan."""
-        _write(self.path / _PLAN, _json({"form": _FORM, **plan}))
+        replace_file(self.path / _PLAN, _json({"form": _FORM, **plan}))
 
     @property
     def has_plan(self) -> bool:
@@ -151,9 +151,7 @@ class StudyFolder:
     def plan(self) -> dict[str, Any]:
         """Return the latest plan; raise InputError if it is missing or damaged."""
         file = self.path / _PLAN
-        found = read_json(file, _PLAN_AGAIN)
-        if found.get("form") != _FORM:
-            raise InputError(f"{file} is no plan of this version; {_PLAN_AGAIN}")
+        found = read_marked(file, _FORM, dict[str, Any], _PLAN_AGAIN)
         checked_form(found, plan_form(found), file, _PLAN_AGAIN)
         return found
 
@@ -166,11 +164,7 @@ class StudyFolder:
         file = self.path / _PEOPLE
         if not file.is_file():
             return []
-        found = read_json(file, _READ_AGAIN)
-        if found.get("form") != _PEOPLE_FORM:
-            raise InputError(f"{file} is no file of this version; {_READ_AGAIN}")
-        checked_form(found, PeopleForm, file, _READ_AGAIN)
-        return list(found["cells"])
+        return list(read_marked(file, _PEOPLE_FORM, PeopleForm, _READ_AGAIN)["cells"])
 
     def sessions(self) -> dict[str, dict[str, Any]]:
         """Return how many participants of each name began, ended and stopped; empty: not noted.
@@ -182,7 +176,7 @@ class StudyFolder:
         """
         self.people()
         file = self.path / _PEOPLE
-        return dict(read_json(file, _READ_AGAIN).get("sessions", {})) if file.is_file() else {}
+        return dict(read_json(file, _READ_AGAIN)["sessions"]) if file.is_file() else {}
 
     def write_people(
         self, name: str, cells: Iterable[PersonCell], sessions: Mapping[str, Any]
@@ -209,7 +203,7 @@ class StudyFolder:
         self, entries: Iterable[Mapping[str, Any]], sessions: Mapping[str, Mapping[str, Any]]
     ) -> None:
         content = {"form": _PEOPLE_FORM, "cells": list(entries), "sessions": sessions}
-        _write(self.path / _PEOPLE, _json(content))
+        replace_file(self.path / _PEOPLE, _json(content))
 
     def check_subjects(self, plan: Mapping[str, Any]) -> None:
         """Refuse a folder that holds another study than the given one.
@@ -312,8 +306,3 @@ def _copy(source: Path, target: Path) -> None:
     target.parent.mkdir(exist_ok=True)
     with source.open("rb") as theirs, replacing(target) as ours:
         shutil.copyfileobj(theirs, ours)
-
-
-def _write(path: Path, text: str) -> None:
-    """Replace a file as a whole, so that readers never find half of it."""
-    replace_file(path, text)

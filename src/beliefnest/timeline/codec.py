@@ -50,8 +50,7 @@ class _SnapshotBody(msgspec.Struct, forbid_unknown_fields=True, omit_defaults=Tr
 
     A box of one chunk has the states of all cells in `blocks`, and `chunks` is 0. Otherwise
     `chunks` is the number of different chunks (see `world.terrain`), and `blocks` has, compressed,
-    the number of the chunk at each place and then the states of each chunk. Files of older versions
-    have the states of all cells for every box.
+    the number of the chunk at each place and then the states of each chunk.
     """
 
     tick: int

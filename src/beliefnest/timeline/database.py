@@ -9,9 +9,8 @@ import ctypes
 import os
 import sqlite3
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -115,21 +114,6 @@ def checked(row: DatabaseRow, path: Path, what: str, form: type[T]) -> T:
     raise damage(path, f"wrong checksum of {what}")
 
 
-@dataclass(frozen=True, slots=True)
-class OlderFormat:
-    """An older format of run files, which is converted when a file is opened.
-
-    Attributes:
-        version: Format number.
-        statements: SQL statements that define its tables.
-        convert: Converts a database of this format to the current one.
-    """
-
-    version: int
-    statements: tuple[str, ...]
-    convert: Callable[["Database"], None]
-
-
 class Database(Owned):
     """An open run file, created by `create`, `temporary`, `open` or `read`.
 
@@ -187,39 +171,32 @@ class Database(Owned):
         return database
 
     @classmethod
-    def open(cls, path: Path, older: Sequence[OlderFormat] = ()) -> "Database":
-        """Open a run file for writing; a file of an older format is converted for good.
-
-        StoreError as of `SqliteJournal.open`.
-        """
+    def open(cls, path: Path) -> "Database":
+        """Open a run file for writing; StoreError as of `SqliteJournal.open`."""
         _recognise_start(path)
         if not os.access(path, os.W_OK):
             raise StoreError(f"{path} {_FAULTS[sqlite3.SQLITE_READONLY]}")
         database = cls._locked(path, "rw")
         with database.closed_on_fault():
-            found = database._recognise(older)
+            database._recognise()
             database.execute("PRAGMA synchronous = NORMAL")
             with database.transaction():
-                database._convert(found)
                 database._check_small_tables()
         return database
 
     @classmethod
-    def read(cls, path: Path, older: Sequence[OlderFormat] = ()) -> "Database":
-        """Open a run file for reading; StoreError as of `SqliteJournal.read`.
-
-        The file itself stays as it is: if its format is older, a converted copy in memory is read.
-        """
+    def read(cls, path: Path) -> "Database":
+        """Open a run file for reading; StoreError as of `SqliteJournal.read`."""
         _recognise_start(path)
         database = cls(_connected(path, "ro"), path, None)
         try:
-            database._look(older)
+            database._look()
         except StoreError as fault:
             if not _is_unshareable(fault) or _wal(path).exists():
                 raise
             # SQLite could not share this file with a writer, so nobody can be writing it now.
             database = cls(_connected(path, "ro&immutable=1"), path, None)
-            database._look(older)
+            database._look()
         return database
 
     @classmethod
@@ -360,25 +337,14 @@ class Database(Owned):
             if found != ("ok",):
                 raise damage(self.path, found[0] if found else "check failed")
 
-    def _look(self, older: Sequence[OlderFormat]) -> None:
-        """Validate a file opened for reading; read a converted copy if its format is older."""
+    def _look(self) -> None:
+        """Validate a file opened for reading."""
         with self.closed_on_fault():
-            found = self._recognise(older)
-            if found is not None:
-                copy = sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False)
-                self._connection.backup(copy)
-                self._connection.close()
-                self._connection = copy
-                self._convert(found)
+            self._recognise()
             self._check_small_tables()
 
-    def _convert(self, found: OlderFormat | None) -> None:
-        if found is not None:
-            found.convert(self)
-            self.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
-
-    def _recognise(self, older: Sequence[OlderFormat]) -> OlderFormat | None:
-        """Check that the file is a run; return its format if that is older than the current one."""
+    def _recognise(self) -> None:
+        """Raise StoreError if the file is no run, or a run of another format."""
         application = self.row("PRAGMA application_id")
         version = self.row("PRAGMA user_version")
         if application != (APPLICATION_ID,):
@@ -391,19 +357,17 @@ class Database(Owned):
                 )
             raise StoreError(f"{self.path} is not a run file: it is {what}; give a run file")
         number = version[0] if version else None
-        found = next((each for each in older if each.version == number), None)
-        if number != SCHEMA_VERSION and found is None:
+        if number != SCHEMA_VERSION:
             is_older = isinstance(number, int) and number < SCHEMA_VERSION
             raise StoreError(
                 f"{self.path} has format {number}, but this program reads {SCHEMA_VERSION}; "
-                f"use {'an older' if is_older else 'a newer'} version of beliefnest"
+                f"{'play the run again' if is_older else 'use a newer version of beliefnest'}"
             )
-        self._check_schema(STATEMENTS if found is None else found.statements)
-        return found
+        self._check_schema()
 
-    def _check_schema(self, statements: Iterable[str]) -> None:
+    def _check_schema(self) -> None:
         """Refuse a file with other definitions: a view can be endless, a trigger acts by itself."""
-        expected = expected_schema(statements)
+        expected = expected_schema(STATEMENTS)
         found = self.rows(
             "SELECT type, name, tbl_name, sql FROM sqlite_master LIMIT ?", [len(expected) + 1]
         )

@@ -79,7 +79,7 @@ class ProgramRecord:
         step: Index of its step in the scenario's script, from 0; None if it is not part of a
             script.
         kept: True if its effects were recorded; False if the world's process died under it.
-        senses: `world` or `percepts`: what it could read. Older files lack it, which means `world`.
+        senses: `world` or `percepts`: what it could read.
         past: Its calls before it was interrupted, if it was resumed; otherwise unset.
     """
 

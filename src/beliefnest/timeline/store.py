@@ -13,8 +13,7 @@ from beliefnest.errors import BranchError
 from beliefnest.timeline import codec
 from beliefnest.timeline.bounds import RunBounds
 from beliefnest.timeline.chunks import Chunks
-from beliefnest.timeline.database import Database, OlderFormat, checksum, damage
-from beliefnest.timeline.format_2 import FORMAT_2, convert_2
+from beliefnest.timeline.database import Database, checksum, damage
 from beliefnest.timeline.journal import (
     Entry,
     EntryFilter,
@@ -35,8 +34,6 @@ from beliefnest.world.limits import LATEST_TICK
 from beliefnest.world.paths import path_text
 from beliefnest.world.texts import quoted, shortened
 from beliefnest.world.values import AgentState
-
-_OLDER = (OlderFormat(2, FORMAT_2, convert_2),)
 
 
 class _TimelineRow(NamedTuple):
@@ -114,19 +111,19 @@ class SqliteJournal:
         """Open a run file for writing, to continue the run.
 
         Raises:
-            StoreError: The file is missing, no run file, of a newer format, damaged or read-only,
+            StoreError: The file is missing, no run file, of another format, damaged or read-only,
                 or another writer has it open.
         """
-        return cls._sound(Database.open(Path(path), _OLDER))
+        return cls._sound(Database.open(Path(path)))
 
     @classmethod
     def read(cls, path: Path | str) -> "SqliteJournal":
         """Open a run file for reading; another process may write it at the same time.
 
         Raises:
-            StoreError: The file is missing, no run file, of a newer format or damaged.
+            StoreError: The file is missing, no run file, of another format or damaged.
         """
-        return cls._sound(Database.read(Path(path), _OLDER))
+        return cls._sound(Database.read(Path(path)))
 
     @classmethod
     def _sound(cls, database: Database) -> "SqliteJournal":

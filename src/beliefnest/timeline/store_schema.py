@@ -11,21 +11,10 @@ from contextlib import closing
 APPLICATION_ID = 0x42656C4E
 """SQLite application id that marks a file as a run ("BelN")."""
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 
 SMALL_TABLES = ("timeline", "meta", "selected", "program", "prompt")
 """Tables whose structure is checked whenever a file is opened; the others can be large."""
-
-# Compressed internal state of a timeline's body, which cannot be perceived: after the first
-# `entries` entries, at tick `tick`. This is not a cache: the state cannot be computed again.
-BODY_STATE = """CREATE TABLE body_state (
-        timeline INTEGER NOT NULL,
-        entries INTEGER NOT NULL,
-        tick INTEGER NOT NULL,
-        state BLOB NOT NULL,
-        seal INTEGER NOT NULL,
-        PRIMARY KEY (timeline, entries, tick)
-    )"""
 
 RECORDS = (
     """CREATE TABLE meta (
@@ -59,8 +48,7 @@ PAST = (
     # A chunk holds the entries `first` to `first + count - 1` of a timeline, joined by codec.join.
     # `events` is the number of their events. `changes` is the number of entries that change more
     # than agents. In compressed chunks `agents` holds the last state of every agent up to the end
-    # of the chunk. The names piece and seal are older than the word chunk; they stay as they are,
-    # so that files of all versions have the same names.
+    # of the chunk.
     """CREATE TABLE piece (
         id INTEGER PRIMARY KEY,
         timeline INTEGER NOT NULL,
@@ -90,7 +78,16 @@ PAST = (
         seal INTEGER NOT NULL,
         UNIQUE (timeline, name, entries)
     )""",
-    BODY_STATE,
+    # Compressed internal state of a timeline's body, which cannot be perceived: after the first
+    # `entries` entries, at tick `tick`. This is not a cache: the state cannot be computed again.
+    """CREATE TABLE body_state (
+        timeline INTEGER NOT NULL,
+        entries INTEGER NOT NULL,
+        tick INTEGER NOT NULL,
+        state BLOB NOT NULL,
+        seal INTEGER NOT NULL,
+        PRIMARY KEY (timeline, entries, tick)
+    )""",
 )
 """SQL statements of the tables for entries, checkpoints and internal states of bodies."""
 

@@ -336,11 +336,13 @@ def test_merged_shards_keep_people(study, answers, tmp_path):
 def test_a_folder_that_was_changed_by_hand_is_refused(study, answers, tmp_path):
     result, _ = study.read_participants(tmp_path / "out", [answers])
     file = result.folder.path / "people.json"
-    file.write_text('{"form": "beliefnest people 1", "cells": [1]}', encoding="utf-8")
+    file.write_text(
+        '{"form": "beliefnest people 1", "cells": [1], "sessions": {}}', encoding="utf-8"
+    )
     with pytest.raises(bn.InputError, match=r"people\.json is damaged"):
         _ = bn.StudyResult.read(result.folder.path).rows
     file.write_text('{"form": "another"}', encoding="utf-8")
-    with pytest.raises(bn.InputError, match=r"people\.json is no file of this version"):
+    with pytest.raises(bn.InputError, match=r"people\.json was written by another version"):
         _ = bn.StudyResult.read(result.folder.path).rows
 
 

@@ -5,33 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from beliefnest.errors import InputError
-from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm, checked_form, read_json
 from beliefnest.studies.result import StudyResult
+from beliefnest.studies.run_result import REPORT, read_report
 
 FrameSource = str | Path | StudyResult
 """A run file, the folder of a run, the folder of a study, or a study's result."""
 
 _RUN_FILE = "run.bn"
-_REPORT = "run.json"
 _AGAIN = "move it away to read the recorded runs alone"
-
-
-class _RunForm(msgspec.Struct):
-    """Result of one condition."""
-
-    run_dir: str
-    probes: list[ProbeForm]
-    expectations: list[ExpectationForm]
-
-
-class _ReportForm(msgspec.Struct):
-    """The report of a run."""
-
-    scenario: str = ""
-    runs: list[_RunForm] = []
 
 
 @dataclass(frozen=True)
@@ -71,8 +53,8 @@ def cells_of(source: FrameSource) -> Iterator[RecordedCell]:
     if path.is_file():
         yield RecordedCell(path.stem, {}, path)
         return
-    report = _report(path)
-    known = {Path(run["run_dir"]).absolute(): run for run in report.get("runs", [])}
+    report = read_report(path, _AGAIN) if (path / REPORT).is_file() else {"runs": []}
+    known = {Path(run["run_dir"]).absolute(): run for run in report["runs"]}
     files = sorted(path.rglob(_RUN_FILE))
     if not files:
         raise InputError(
@@ -81,7 +63,7 @@ def cells_of(source: FrameSource) -> Iterator[RecordedCell]:
     for file in files:
         relative = file.parent.relative_to(path).as_posix()
         about = known.get(file.parent.absolute(), {})
-        named = {"scenario": report.get("scenario"), **about} if about else {}
+        named = {"scenario": report["scenario"], **about} if about else {}
         yield RecordedCell(relative, named, file)
 
 
@@ -91,16 +73,7 @@ def _cells_of_study(study: StudyResult) -> Iterator[RecordedCell]:
         found = folder.cell(planned["name"])
         if found is None:
             continue
-        run = found.get("run", "")
+        run = found.get("run")
         file = folder.path / run if run else None
         about = {**planned["key"], "seed": planned["seed"], **found}
         yield RecordedCell(planned["name"], about, file)
-
-
-def _report(path: Path) -> dict[str, Any]:
-    file = path / _REPORT
-    if not file.is_file():
-        return {}
-    content = read_json(file, _AGAIN)
-    checked_form(content, _ReportForm, file, _AGAIN)
-    return content
