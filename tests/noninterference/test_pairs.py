@@ -6,7 +6,8 @@ import tests.noninterference.asked_doors
 import tests.noninterference.environment_doors
 import tests.noninterference.page_doors
 import tests.noninterference.prose_doors
-import tests.noninterference.shown_doors  # noqa: F401 - these modules register doors
+import tests.noninterference.shown_doors
+import tests.noninterference.spaces_doors  # noqa: F401 - these modules register doors
 from tests.noninterference.doors import DOORS, Door
 from tests.noninterference.pairs import PATHS, Played, pair_of, played
 from tests.profiles import NIGHTLY, at_night

@@ -262,10 +262,10 @@ class Episode:
         """True if the episode has ended."""
         if self._nest is None:
             return False
-        return self._is_decided or self._is_at_end
+        return self.is_decided or self._is_at_end
 
     @property
-    def _is_decided(self) -> bool:
+    def is_decided(self) -> bool:
         """True if the goal is reached, or can no longer be reached."""
         progress = self._watch()
         return progress.reached is not None or progress.violated is not None
@@ -540,7 +540,7 @@ class Episode:
         if self._people:
             if self._parts and not self._parts[-1].ended:
                 self._parts[-1] = play_part_with_people(
-                    nest, self._parts, ticks, self._policies, lambda: self._is_decided
+                    nest, self._parts, ticks, self._policies, lambda: self.is_decided
                 )
                 self._watch()
                 self._keep()

@@ -247,15 +247,15 @@ def test_what_memory_has_no_room_for_is_refused_before_it_is_made(monkeypatch):
     with pytest.raises(bn.InputError) as fault:
         parallel_env(Scenario.from_mapping(hall))
     assert str(fault.value) == (
-        "observations as arrays need at least 1,201 MB, 201 MB for each of 2 agents and 0 nested "
+        "observations as arrays need at least 301 MB, 51 MB for each of 2 agents and 0 nested "
         "beliefs, in a box of 500 x 100 x 1000 blocks. This process may use 300 MB, a test's "
         "limit: choose observations='dict', or take fewer agents or a smaller box"
     )
-    hall["box"] = [[0, 0, 0], [999, 99, 999]]
+    hall["box"] = [[0, 0, 0], [1999, 199, 999]]
     with pytest.raises(bn.InputError) as fault:
         parallel_env(Scenario.from_mapping(hall))
     assert str(fault.value) == (
-        "an observation as arrays would have 401 MB in a box of 1000 x 100 x 1000 blocks, new for "
+        "an observation as arrays would have 401 MB in a box of 2000 x 200 x 1000 blocks, new for "
         "each agent and step; at most 256 MB are possible: choose observations='dict', or take a "
         "smaller box"
     )

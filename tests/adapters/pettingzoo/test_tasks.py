@@ -198,7 +198,7 @@ def test_copies_are_stepped_together_and_begin_again() -> None:
     assert env.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
     observations, _ = env.reset(seed=7)
     assert env.observation_space.contains(observations)
-    assert observations["me"].tolist() == [0, 1, 0, 1]
+    assert observations["me"].tolist() == [[0], [1], [0], [1]]
     env.action_space.seed(0)
     ticks = []
     for step in range(5):
@@ -207,7 +207,7 @@ def test_copies_are_stepped_together_and_begin_again() -> None:
         assert rewards.shape == ended.shape == (4,)
         assert cut.all() if step == 2 else not cut.any()
         assert infos["success"].tolist() == [False] * 4 if step != 3 else "success" not in infos
-        ticks.append(int(observations["tick"][0]))
+        ticks.append(int(observations["tick"][0, 0]))
     assert ticks[3] < ticks[2]
     assert ticks[3] < ticks[4]
     env.close()

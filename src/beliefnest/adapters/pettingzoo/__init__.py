@@ -41,6 +41,8 @@ def parallel_env(
     timeout_ticks: int | None = None,
     plays_script: bool = False,
     senses: "Senses | None" = None,
+    render_mode: Literal["rgb_array", "human"] | None = None,
+    render_path: str = "/",
     seed: int = 0,
 ) -> "BeliefEnv":
     """Return a scenario or a task as a PettingZoo parallel environment.
@@ -59,8 +61,8 @@ def parallel_env(
         actions: `skills`, calls of skills in a structured space, or `programs`, JavaScript.
         observations: `arrays` of a fixed layout, or a `dict` of plain data.
         agents: Agents that act; None for all, in tasks for the players.
-        nested: Beliefs about beliefs, which the infos hold under `beliefs`: paths such as
-            `/anne/sally`, or the greatest depth of all such paths.
+        nested: Beliefs about beliefs, which observations, and infos under `beliefs`, hold too:
+            paths such as `/anne/sally`, or the greatest depth of all such paths.
         phrases: Utterances to choose from; a mapping gives the claims of each.
         items: Names of items that may appear later but that no agent or container has at the
             start.
@@ -80,6 +82,9 @@ def parallel_env(
         senses: `percepts`: skills plan and programs read with the knowledge of their agent only;
             `world`: with the actual world. None: `percepts` in tasks, otherwise `world`. See
             docs/programs.md.
+        render_mode: `rgb_array`: `render` returns a picture; `human`: `render`, `reset` and `step`
+            print a line.
+        render_path: Path of the simulator that is shown: the real world, or a belief.
         seed: Seed of the first episode, if `reset` gets none.
 
     Raises:
@@ -106,6 +111,8 @@ def parallel_env(
         timeout_ticks=timeout_ticks,
         plays_script=plays_script,
         senses=senses,
+        render_mode=render_mode,
+        render_path=render_path,
         seed=seed,
     )
     source = _loaded(scenario, condition, parameters or {}, max_steps, step_ticks)

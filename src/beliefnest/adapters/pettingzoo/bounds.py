@@ -11,18 +11,35 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from beliefnest.adapters.pettingzoo.order import KINDS, KnownOrder, Things
+from beliefnest.adapters.pettingzoo.order import (
+    BLOCK_CLASSES,
+    KINDS,
+    KnownOrder,
+    Things,
+    block_classes,
+    moved_state,
+)
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.world.claims import Claim
-from beliefnest.world.registry import parse_state
-from beliefnest.world.values import Box, Position
+from beliefnest.world.paths import BeliefPath
+from beliefnest.world.values import Box
 
 Arrays = dict[str, npt.NDArray[Any]]
 """An observation or a belief as arrays by name."""
 
+ArrayShape = tuple[tuple[int, ...], type[np.generic], float, float]
+"""Shape, type, least and greatest value of an array; a least value of -1 means unknown."""
+
 Phrases = Mapping[str, Sequence[Claim]]
 """Utterances that agents can choose, with the claims of each."""
+
+_MOVED = ("doors", "levers", "buttons")
+_BELOW = "beliefs_"
+_OF_OBSERVER = ("tick", "me")
+"""Arrays that are the same in beliefs below that of an observer."""
+_FARTHEST = 3.0e7
+"""Distance of Minecraft's border from the origin, in blocks."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,11 +65,14 @@ class SpaceBounds:
         box: Region of the scenario; `blocks` has its shape.
         most: Greatest number of things of each kind.
         phrases: Texts that can be said and written on signs.
+        nested: Greatest number of beliefs of one agent about beliefs, and of names below its own
+            in their paths.
     """
 
     box: Box
     most: Mapping[str, int]
     phrases: tuple[str, ...]
+    nested: tuple[int, int] = (0, 0)
 
     @classmethod
     def of(cls, layouts: Iterable[ThingsLayout], given: Mapping[str, int]) -> "SpaceBounds":
@@ -97,14 +117,31 @@ class SpaceBounds:
                     f"for {self.most[kind]}; make the environment with sizes={{{kind!r}: {count}}}"
                 )
 
-    def shapes(self) -> dict[str, tuple[tuple[int, ...], type[np.generic], float, float]]:
-        """Return shape, type, least and greatest value of each array by name."""
-        agents, items, containers = (self.most[kind] for kind in ("agents", "items", "containers"))
+    def shapes(self) -> Mapping[str, ArrayShape]:
+        """Return shape, type, least and greatest value of each array of an observation."""
+        own = self.own_shapes()
+        if not self.nested[0]:
+            return own
+        rows = self.nested[0]
+        below: dict[str, ArrayShape] = {
+            _BELOW + name: ((rows, *shape), kind, low, high)
+            for name, (shape, kind, low, high) in own.items()
+            if name not in _OF_OBSERVER
+        }
+        most = max(self.most["agents"] - 1, 1)
+        return {**own, "beliefs": (self.nested, np.int32, -1, most), **below}
+
+    def own_shapes(self) -> Mapping[str, ArrayShape]:
+        """Return the same of the arrays of one belief."""
+        # An array without elements fits few learners: one row of nothing in place of none.
+        agents, items, containers = (
+            max(1, self.most[kind]) for kind in ("agents", "items", "containers")
+        )
         most = float(np.iinfo(np.int32).max)
-        shapes: dict[str, tuple[tuple[int, ...], type[np.generic], float, float]] = {
-            "tick": ((), np.int32, 0, most),
-            "me": ((), np.int32, 0, max(agents - 1, 0)),
-            "agents": ((agents, 5), np.float32, -np.inf, np.inf),
+        shapes: dict[str, ArrayShape] = {
+            "tick": ((1,), np.int32, 0, most),
+            "me": ((1,), np.int32, 0, max(agents - 1, 1)),
+            "agents": ((agents, 5), np.float32, -_FARTHEST, _FARTHEST),
             "agents_known": ((agents, 2), np.int8, 0, 1),
             "agents_seen": ((agents,), np.int32, -1, most),
             "inventories": ((agents, items), np.int32, 0, most),
@@ -112,10 +149,10 @@ class SpaceBounds:
             "containers": ((containers, items), np.int32, 0, most),
             "containers_known": ((containers, 3), np.int8, 0, 1),
             "containers_seen": ((containers,), np.int32, -1, most),
-            "blocks": (self.box.shape, np.int32, -1, most),
+            "blocks": (self.box.shape, np.int8, -1, len(BLOCK_CLASSES) - 1),
             "heard": ((agents, len(self.phrases) + 1), np.int32, 0, most),
         }
-        for name in ("levers", "buttons"):
+        for name in _MOVED:
             if self.most[name]:
                 shapes[name] = ((self.most[name],), np.int8, -1, 1)
         if self.most["signs"]:
@@ -136,28 +173,41 @@ class SpaceBounds:
             InputError: There is no room for a thing that has come to be known.
         """
         self._check_room(order.things)
-        found: Arrays = {
-            name: np.zeros(shape, dtype) for name, (shape, dtype, _, _) in self.shapes().items()
-        }
+        found = _blank(self.own_shapes())
         found["tick"][...] = state.tick
-        found["me"][...] = 0 if state.owner is None else order.number("agents", state.owner)
+        found["me"][...] = order.number("agents", state.owner) or 0
         _tell_agents(found, order, state)
         _tell_containers(found, order, state)
         for first, states in state.blocks.terrain.slabs():
-            found["blocks"][first : first + len(states)] = states
+            found["blocks"][first : first + len(states)] = block_classes()[states]
         things = order.things
-        for name in ("levers", "buttons"):
-            if name in found:
-                found[name][:] = -1
-                for row, place in enumerate(getattr(things, name)):
-                    found[name][row] = _power(state, place)
+        for name in found.keys() & _MOVED:
+            for row, place in enumerate(getattr(things, name)):
+                found[name][row] = moved_state(state.blocks.terrain[state.box.index(place)])
         if "signs" in found:
-            found["signs"][:] = -1
             for row, place in enumerate(things.signs):
                 found["signs"][row] = self._written(state.signs.get(place))
         for _, speaker, text in lines:
             column = self.phrases.index(text) if text in self.phrases else len(self.phrases)
             found["heard"][order.number("agents", speaker), column] += 1
+        return found
+
+    def with_nested(
+        self, own: Arrays, order: KnownOrder, beliefs: Mapping[BeliefPath, Arrays]
+    ) -> Arrays:
+        """Return an observation: an agent's belief, and its beliefs about beliefs by row.
+
+        A row without a belief is as one about which nothing is known.
+        """
+        if not self.nested[0]:
+            return own
+        found = {**_blank(self.shapes()), **own}
+        for path, row in order.rows(beliefs).items():
+            numbers = [order.number("agents", name) for name in path[1:]]
+            found["beliefs"][row, : len(numbers)] = numbers
+            for name, array in beliefs[path].items():
+                if name not in _OF_OBSERVER:
+                    found[_BELOW + name][row] = array
         return found
 
     def _check_room(self, things: Things) -> None:
@@ -181,8 +231,15 @@ class SpaceBounds:
         return 1 + (self.phrases.index(text) if known else len(self.phrases))
 
 
+def _blank(shapes: Mapping[str, ArrayShape]) -> Arrays:
+    """Return arrays of nothing known: -1 where that means unknown, 0 elsewhere."""
+    return {
+        name: np.full(shape, -1 if low == -1 else 0, dtype)
+        for name, (shape, dtype, low, _) in shapes.items()
+    }
+
+
 def _tell_agents(found: Arrays, order: KnownOrder, state: State) -> None:
-    found["agents_seen"][:] = -1
     for row, name in enumerate(order.things.agents):
         agent = state.agents[name]
         if agent.position is not None:
@@ -196,7 +253,6 @@ def _tell_agents(found: Arrays, order: KnownOrder, state: State) -> None:
 
 def _tell_containers(found: Arrays, order: KnownOrder, state: State) -> None:
     beliefs = state.containers
-    found["containers_seen"][:] = -1
     for row, place in enumerate(order.things.containers):
         known = beliefs.get(place)
         if known is not None:
@@ -208,10 +264,3 @@ def _tell_containers(found: Arrays, order: KnownOrder, state: State) -> None:
 def _count(row: npt.NDArray[Any], order: KnownOrder, items: Mapping[str, int]) -> None:
     for name, count in items.items():
         row[order.number("items", name)] = count
-
-
-def _power(state: State, place: Position) -> int:
-    """Return 1 for a switch that is believed to be on, 0 for off; -1: unknown or no switch."""
-    text = state.blocks[place]
-    powered = None if text is None else parse_state(text)[1].get("powered")
-    return -1 if powered is None else int(powered == "true")

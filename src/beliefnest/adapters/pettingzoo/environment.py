@@ -1,19 +1,22 @@
 """Scenario as a multi-agent environment with PettingZoo's parallel interface."""
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, cast
 
 import numpy as np
+import numpy.typing as npt
 from gymnasium import spaces
 from pettingzoo import ParallelEnv
 
 from beliefnest.adapters.pettingzoo.acting import Acting, ActionState, ProgramActing, SkillActing
 from beliefnest.adapters.pettingzoo.actions import MOST_ITEMS, Calls, NamedAction, NotKnownError
-from beliefnest.adapters.pettingzoo.bounds import Phrases, SpaceBounds, ThingsLayout
+from beliefnest.adapters.pettingzoo.bounds import ArrayShape, Phrases, SpaceBounds, ThingsLayout
 from beliefnest.adapters.pettingzoo.layout import layout_of
 from beliefnest.adapters.pettingzoo.order import KnownOrder, Things
 from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
+from beliefnest.adapters.pettingzoo.rendering import line, picture
 from beliefnest.adapters.pettingzoo.room import check_arrays, check_nested
 from beliefnest.adapters.pettingzoo.saving import Choice, SavedEpisode, check_no_options
 from beliefnest.belief.plain import belief_json
@@ -34,6 +37,7 @@ from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.names import check_world
 
+_RENDER_MODES = ("human", "rgb_array")
 _MAX_STEPS = 100
 _TIMEOUT_TICKS = 1200
 _TRIED = 8
@@ -68,6 +72,8 @@ class EnvironmentOptions:
     timeout_ticks: int | None = None
     plays_script: bool = False
     senses: Senses | None = None
+    render_mode: Literal["rgb_array", "human"] | None = None
+    render_path: str = "/"
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -78,6 +84,10 @@ class EnvironmentOptions:
             raise InputError(f"actions is {self.actions!r}; it is 'skills' or 'programs'")
         if self.observations not in ("arrays", "dict"):
             raise InputError(f"observations is {self.observations!r}; it is 'arrays' or 'dict'")
+        if self.render_mode not in (None, *_RENDER_MODES):
+            raise InputError(
+                f"render_mode is {self.render_mode!r}; it is {' or '.join(_RENDER_MODES)}, or None"
+            )
         checked_seed(self.seed)
         counts = ("max_steps", "step_ticks", "timeout_ticks")
         for name in counts:
@@ -156,8 +166,12 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         nest: Nest of this episode, for any further query.
     """
 
-    metadata = {"name": "beliefnest_v0", "render_modes": [], "is_parallelizable": True}  # noqa: RUF012 - as PettingZoo declares it
-    render_mode = None
+    metadata = {  # noqa: RUF012 - as PettingZoo declares it
+        "name": "beliefnest_v0",
+        "render_modes": list(_RENDER_MODES),
+        "render_fps": 4,
+        "is_parallelizable": True,
+    }
 
     def __init__(self, source: Scenario | Instances, options: EnvironmentOptions) -> None:
         self._source, self._options = source, options
@@ -186,6 +200,15 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if isinstance(options.nested, int):
             check_nested(context, self.possible_agents, options.nested)
         self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
+        self._nested_of = {
+            agent: tuple(path for path in self._nested if path[0] == agent)
+            for agent in self.possible_agents
+        }
+        rows = max(map(len, self._nested_of.values()))
+        depth = max((len(path) - 1 for path in self._nested), default=0)
+        self._bounds = replace(self._bounds, nested=(rows, depth))
+        self.render_mode = options.render_mode
+        self._render_path = path_text(parse_path(options.render_path, self.layout.agents))
         if options.observations == "arrays":
             check_arrays(context, self._bounds, len(self.possible_agents), len(self._nested))
         self.agents: list[str] = []
@@ -203,7 +226,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._by_hand = False
         self._left: TimelineInfo | None = None
         self._heard: dict[str, int] = {}
-        self._orders: dict[str | None, KnownOrder] = {}
+        self._orders: dict[str, KnownOrder] = {}
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy has: everything but the world, and the episode as it was saved."""
@@ -287,19 +310,18 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """Return the space of an agent's actions; the same object on each call."""
         return self._spaces[agent][1]
 
-    def _spaces_of(self) -> tuple[spaces.Space[Any], spaces.Space[Any]]:
-        """Return new spaces of an agent's observations and actions."""
-        return self._new_observation_space(), self._new_action_space()
-
-    def _new_observation_space(self) -> spaces.Space[Any]:
+    @property
+    def state_space(self) -> spaces.Space[Any]:
+        """Space of `state`: numbers in one row, or plain data as observations are."""
         if self._options.observations == "dict":
             return BeliefSpace()
-        return spaces.Dict(
-            {
-                name: spaces.Box(low, high, shape, cast(Any, dtype))
-                for name, (shape, dtype, low, high) in self._bounds.shapes().items()
-            }
-        )
+        return spaces.flatten_space(_space_of(self._bounds.own_shapes()))
+
+    def _spaces_of(self) -> tuple[spaces.Space[Any], spaces.Space[Any]]:
+        """Return new spaces of an agent's observations and actions."""
+        is_plain = self._options.observations == "dict"
+        seen = BeliefSpace() if is_plain else _space_of(self._bounds.shapes())
+        return seen, self._new_action_space()
 
     def _new_action_space(self) -> spaces.Space[Any]:
         if self._options.actions == "programs":
@@ -370,11 +392,11 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._played, self._by_hand = [], False
         self._heard = {}
         self._orders = {
-            None: KnownOrder(),
-            **{a: KnownOrder(self._declared(a)) for a in self.agents},
+            agent: KnownOrder(Things(items=tuple(self._declared(agent)))) for agent in self.agents
         }
         told = self._told({agent: ActionState() for agent in self.agents}, spoken=True)
         self._left = self._reality()
+        self._show()
         return told
 
     def save(self) -> SavedEpisode:
@@ -490,6 +512,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         truncations = dict.fromkeys(self.agents, cut)
         if ended or cut:
             self.agents = []
+        self._show()
         return observations, rewards, terminations, truncations, infos
 
     def _chosen(self, agent: str, actions: Mapping[str, Any]) -> Choice:
@@ -531,14 +554,34 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             return ended or (self._acting.is_over and not is_cut), is_cut
         return ended, len(self._played) >= (self._options.max_steps or _MAX_STEPS)
 
-    def render(self) -> None:
-        """Do nothing; `nest.figure()` draws any belief."""
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """Return a picture of the simulator `render_path` (height, width, 3), or print a line.
+
+        Raises:
+            InputError: No episode has begun.
+        """
+        if self.render_mode == "rgb_array":
+            return picture(self.nest, self._render_path)
+        if self.render_mode == "human":
+            sys.stdout.write(f"{line(self.nest, self._render_path)}\n")
+        return None
+
+    def _show(self) -> None:
+        """Show a step to people who watch."""
+        if self.render_mode == "human":
+            self.render()
 
     def state(self) -> Any:
-        """Return the real world in the form of an observation."""
-        state, order = self.nest["/"].state, self._orders[None]
+        """Return the real world: the arrays of an observation in one row, or plain data.
+
+        Things have the order of `layout`, and later ones follow.
+        """
+        state, order = self.nest["/"].state, KnownOrder(self.layout)
         order.note(state)
-        return self._form(order, state, ())
+        told = self._form(order, state, ())
+        if self._options.observations == "dict":
+            return told
+        return spaces.flatten(_space_of(self._bounds.own_shapes()), told)
 
     def close(self) -> None:
         """End the episode and close the world."""
@@ -573,13 +616,19 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         }
         for agent in self.agents:
             self._orders[agent].note(self.nest[path_text((agent,))].state)
-        # Deepest paths first: computing a belief also computes those above it.
-        for path in self._nested:
-            agent = path[0]
-            if agent in infos:
-                beliefs = infos[agent].setdefault("beliefs", {})
-                beliefs[path_text(path)] = self._belief(path, spoken=spoken)
-        return {agent: self._belief((agent,), spoken=spoken) for agent in self.agents}, infos
+        observations = {}
+        for agent in self.agents:
+            # Deepest paths first: computing a belief also computes those above it.
+            below = {p: self._belief(p, spoken=spoken) for p in self._nested_of[agent]}
+            own = self._belief((agent,), spoken=spoken)
+            told = {path_text(path): each for path, each in below.items()}
+            if told:
+                infos[agent]["beliefs"] = told
+            if self._options.observations == "arrays":
+                observations[agent] = self._bounds.with_nested(own, self._orders[agent], below)
+            else:
+                observations[agent] = {**own, "beliefs": told} if told else own
+        return observations, infos
 
     def _belief(self, path: BeliefPath, *, spoken: bool) -> Any:
         text = path_text(path)
@@ -596,6 +645,16 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if self._options.observations == "dict":
             return {"tick": state.tick, **belief_json(state)}
         return self._bounds.arrays(order, state, lines)
+
+
+def _space_of(shapes: Mapping[str, ArrayShape]) -> spaces.Dict:
+    """Return the space of arrays by name."""
+    return spaces.Dict(
+        {
+            name: spaces.Box(low, high, shape, cast(Any, dtype))
+            for name, (shape, dtype, low, high) in shapes.items()
+        }
+    )
 
 
 def _nested(

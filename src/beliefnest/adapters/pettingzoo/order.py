@@ -4,12 +4,13 @@ An order holds what one simulator believes and nothing else. It cannot reach the
 number in observations and actions depends on anything that the agent has not perceived.
 """
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from beliefnest.belief.view import State
 from beliefnest.world.doors import is_door, is_switch
@@ -53,6 +54,30 @@ class Things:
         return {kind: len(getattr(self, kind)) for kind in KINDS}
 
 
+BLOCK_CLASSES = ("free", "solid", *PLACED)
+"""Classes of blocks in observations, by number; -1: unknown."""
+
+
+@cache
+def block_classes() -> npt.NDArray[np.int8]:
+    """Return the class of each block state, by state number; the last one is for the unknown."""
+    registry = Registry.load()
+    found = np.full(len(registry.state_shape) + 1, -1, np.int8)
+    for name in registry.block_names:
+        kind = _kind_of(registry, name) or ("solid" if registry.is_solid(name) else "free")
+        states = registry.state_ids(name)
+        found[states.start : states.stop] = BLOCK_CLASSES.index(kind)
+    return found
+
+
+@cache
+def moved_state(state: int) -> int:
+    """Return 1 for a switch that is on or a door that is open, 0 for off or shut, else -1."""
+    properties = {} if state < 0 else Registry.load().properties(state)
+    value = properties.get("open", properties.get("powered"))
+    return -1 if value is None else int(value == "true")
+
+
 @cache
 def placed_states() -> Mapping[str, tuple[int, ...]]:
     """Return by kind the block states of things that are blocks."""
@@ -89,16 +114,18 @@ class KnownOrder:
     never changes: a new thing gets the next one, and a thing that is gone keeps its own.
 
     Args:
-        declared: Names of items that everybody knows by the rules; they come first.
+        declared: Things that the holder knows by the rules; they come first.
     """
 
-    declared: Collection[str] = ()
+    declared: Things = Things()
     _known: dict[str, dict[Any, int]] = field(init=False)
+    _rows: dict[BeliefPath, int] = field(default_factory=dict, init=False)
     _seen: dict[BeliefPath, tuple[Terrain, int]] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
         self._known = {kind: {} for kind in KINDS}
-        self._add("items", self.declared)
+        for kind in KINDS:
+            self._add(kind, getattr(self.declared, kind))
 
     @property
     def things(self) -> Things:
@@ -108,6 +135,17 @@ class KnownOrder:
     def number(self, kind: str, thing: object) -> int | None:
         """Return the number of a thing; None: the beliefs have had no such thing so far."""
         return self._known[kind].get(thing)
+
+    def rows(self, paths: Iterable[BeliefPath]) -> Mapping[BeliefPath, int]:
+        """Return rows of beliefs below the holder's own, as soon as it knows all their agents.
+
+        They are in the order in which it came to know these, as things are.
+        """
+        numbers = self._known["agents"]
+        new = [p for p in paths if p not in self._rows and numbers.keys() >= {*p}]
+        for path in sorted(new, key=lambda path: [numbers[name] for name in path]):
+            self._rows[path] = len(self._rows)
+        return self._rows
 
     def note(self, state: State) -> None:
         """Take in a later state of the agent's belief, or of a belief below it."""
@@ -137,7 +175,8 @@ def _agents_in(state: State, said: int) -> set[str]:
         if agent.position is not None or agent.basis is not None or agent.inventory
     }
     found |= {speaker for _, speaker, _ in state.chat[said:]}
-    return found if state.owner is None else found | {state.owner}
+    # The holder of an order knows itself; whom its nested beliefs are about it may not know.
+    return found | {*state.path} if len(state.path) == 1 else found
 
 
 def _items_in(state: State) -> set[str]:

@@ -106,9 +106,8 @@ class TaskActing:
 
     @property
     def is_cut(self) -> bool:
-        """True if the episode has ended because its rounds are over, with the goal not reached."""
-        rounds = self._episode.rounds >= self._task.form.rounds
-        return self.is_over and rounds and not self.success
+        """True if the episode has ended only because its rounds are over."""
+        return self.is_over and not self._episode.is_decided and not self.success
 
     @property
     def success(self) -> bool:

@@ -1,11 +1,11 @@
 """Refusal of environments for which memory has no room, before anything is made."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from beliefnest.adapters.pettingzoo.bounds import SpaceBounds
+from beliefnest.adapters.pettingzoo.bounds import ArrayShape, SpaceBounds
 from beliefnest.belief.context import BeliefContext
 from beliefnest.belief.node_memory import check_depth, check_room
 from beliefnest.errors import InputError
@@ -41,9 +41,8 @@ def check_arrays(context: BeliefContext, bounds: SpaceBounds, acting: int, neste
         acting: Number of agents that act.
         nested: Number of further beliefs in infos.
     """
-    shapes = bounds.shapes().values()
-    each = sum(math.prod(shape) * np.dtype(kind).itemsize for shape, kind, _, _ in shapes)
-    limit, needed = context.memory, each * (acting * (1 + _BOUNDS) + nested)
+    each, own = _bytes(bounds.shapes()), _bytes(bounds.own_shapes())
+    limit, needed = context.memory, each * acting * (1 + _BOUNDS) + own * nested
     sides = " x ".join(map(str, bounds.box.shape))
     if each > _MOST_BYTES:
         raise InputError(
@@ -59,6 +58,11 @@ def check_arrays(context: BeliefContext, bounds: SpaceBounds, acting: int, neste
         f"may use {_megabytes(limit.bytes)}, {limit.source}: choose observations='dict', or take "
         "fewer agents or a smaller box"
     )
+
+
+def _bytes(shapes: Mapping[str, ArrayShape]) -> int:
+    sizes = (math.prod(shape) * np.dtype(kind).itemsize for shape, kind, _, _ in shapes.values())
+    return sum(sizes)
 
 
 def _megabytes(size: int) -> str:

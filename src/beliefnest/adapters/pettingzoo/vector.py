@@ -52,6 +52,7 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.metadata = {**first.metadata, "autoreset_mode": AutoresetMode.NEXT_STEP}
+        self.render_mode = first.render_mode
         self._batch: Any = create_empty_array(self.single_observation_space, self.num_envs)
         self._latest: dict[tuple[int, str], Any] | None = None
         self._seeds = [first.first_seed + number for number in range(copies)]
@@ -104,6 +105,11 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
                 ended[row], cut[row] = terminations[agent], truncations[agent]
         observations, infos = self._gathered(told)
         return observations, rewards, ended, cut, infos
+
+    def render(self) -> tuple[Any, ...]:
+        """Return the picture of its copy for each row, as the mode of the copies says."""
+        shown = [env.render() for env in self.envs]
+        return tuple(shown[number] for number, _ in self.rows)
 
     def close_extras(self, **kwargs: Any) -> None:
         """Close all copies."""
