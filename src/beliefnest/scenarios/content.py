@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from beliefnest.nest.past.setting import Setting
+from beliefnest.prompts.templates import Template, built_in_template
 from beliefnest.scenarios.expected import Expected
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_state import Expectation
@@ -65,6 +66,12 @@ class Probe:
     intended: str = ""
     template_name: str = field(default="template", compare=False)
     where: str = field(default="", compare=False)
+
+    def template_or(self, usual: str) -> Template:
+        """Return the prompt template; if none is named, a built-in one."""
+        if self.template is None:
+            return built_in_template(usual)
+        return Template(self.template_name, self.template)
 
     @property
     def questions(self) -> tuple[Answers, ...]:

@@ -12,7 +12,7 @@ from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.face.simulator import Simulator
-from beliefnest.prompts import Template, built_in_template, instructions
+from beliefnest.prompts import instructions
 from beliefnest.prompts.rendering import LAST_ERROR
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected import Deed, Judgement
@@ -63,6 +63,12 @@ class _Programs:
     outcome: str = ""
     usage: Usage = field(default_factory=Usage)
 
+    @property
+    def last(self) -> Round | None:
+        """Return the last round with a program, or else the last one; None: there is none."""
+        given = [each for each in self.attempts if each.program is not None]
+        return (given or self.attempts)[-1] if self.attempts else None
+
 
 def run_probe(
     nest: Nest, number: int, probe: Probe, model: Model, seed: int, asking: Asking
@@ -81,8 +87,7 @@ def run_probe(
         ModelError: The model cannot be asked. An answer that is missing or cannot be used is no
             error, but an outcome.
         BodyError: The Minecraft side died.
-        ScenarioError: The inference does not fit the recorded events, or a belief gives no right
-            answer.
+        ScenarioError: The inference does not fit the events, or a belief gives no right answer.
     """
     if probe.infer is not None:
         return _infer(nest, probe, probe.infer)
@@ -108,15 +113,12 @@ def run_probe(
         for each in probe.expect
     )
     trial = programs.trial
-    outcome = outcome_of(verdicts, None if trial is None else trial.result)
-    if probe.asks_for_program and trial is None:
-        outcome = programs.outcome
-    given = [each for each in programs.attempts if each.program is not None]
-    last = (given or programs.attempts)[-1] if programs.attempts else None
+    result = None if trial is None else trial.result
+    last = programs.last
     return ProbeOutcome(
         probe=probe,
         verdicts=verdicts,
-        outcome=outcome,
+        outcome=programs.outcome or outcome_of(verdicts, result),
         usage=usage,
         prompt="" if last is None else last.messages[-1].text,
         answer="" if last is None else last.answer.text,
@@ -222,10 +224,7 @@ class _Prompts:
     def __init__(self, believer: Simulator, probe: Probe, detail: SkillDetail) -> None:
         self._believer = believer
         self._task = probe.task
-        if probe.template is None:
-            self._template = built_in_template("paper")
-        else:
-            self._template = Template(probe.template_name, probe.template)
+        self._template = probe.template_or("paper")
         self.system = instructions(skills_at(detail))
 
     @property

@@ -11,7 +11,7 @@ from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.llm.reading_answers import read_answer, read_words
 from beliefnest.llm.statements import given_reason
 from beliefnest.nest.face.nest import Nest
-from beliefnest.prompts import Template, built_in_template
+from beliefnest.prompts import built_in_template
 from beliefnest.prompts.mind_view import MindView
 from beliefnest.scenarios.content import Probe
 from beliefnest.scenarios.expected_answers import Answers
@@ -45,9 +45,6 @@ def ask_question(
     """
     believer = nest[probe.path]
     options = shuffled(question, seed)
-    template = built_in_template("question")
-    if probe.template is not None:
-        template = Template(probe.template_name, probe.template)
     asked = {
         "question": question.question,
         "options": options,
@@ -55,7 +52,7 @@ def ask_question(
         "places": _places(believer.view),
     }
     system = believer.render(built_in_template("answering"), **asked)
-    prompt = believer.render(template, task=question.question, **asked)
+    prompt = believer.render(probe.template_or("question"), task=question.question, **asked)
     messages = [Message("system", system), Message("user", prompt)]
     usage = Usage()
     structured = settings.answer == "structured" and bool(options)

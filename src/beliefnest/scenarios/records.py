@@ -85,16 +85,8 @@ def probe_json(outcome: ProbeOutcome, run_dir: Path | str) -> dict[str, object]:
 
 
 def _reply_json(reply: Reply) -> dict[str, object]:
-    return {
-        "question": reply.question,
-        "options": list(reply.options),
-        "answer": reply.answer,
-        "reason": reply.reason,
-        "outcome": reply.outcome,
-        "why_not": reply.why_not,
-        "asked_again": reply.asked_again,
-        "form": reply.form,
-    }
+    told: dict[str, object] = msgspec.to_builtins(reply)
+    return {key: value for key, value in told.items() if key not in ("prompt", "text")}
 
 
 def _list(point: Point | None) -> list[float] | None:

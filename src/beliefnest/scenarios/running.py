@@ -41,17 +41,14 @@ def run_scenario(
         BodyError: The Minecraft side died.
         ScenarioError: A belief gives no right answer; no model was asked.
     """
-    _check_functions(scenario)
+    for expected in (each for probe in scenario.probes for each in probe.expect):
+        if isinstance(expected, Deed):
+            expected.check()
     warn_of_scene(scenario)
     nest.play(on_progress)
     ticks = nest.tick
     steps = len(scenario.setting.script)
-    from beliefnest.belief import kernel
-    from beliefnest.perception.compiling import is_compiled
-
-    # Report progress only if a model reads claims: only then is there a wait.
-    compiling = "" if is_compiled(kernel.fold) else " (this very first time code is compiled)"
-    on_progress(f"working out beliefs{compiling}", steps, steps)
+    on_progress(_wait_words(), steps, steps)
     paths = _paths(scenario)
     states = nest.states(["/", *paths])
     expectations = tuple(
@@ -79,6 +76,15 @@ def run_scenario(
     )
 
 
+def _wait_words() -> str:
+    """Return what to say while beliefs are computed."""
+    from beliefnest.belief import kernel
+    from beliefnest.perception.compiling import is_compiled
+
+    compiling = "" if is_compiled(kernel.fold) else " (this very first time code is compiled)"
+    return f"working out beliefs{compiling}"
+
+
 def _paths(scenario: Scenario) -> list[str]:
     """Return the paths of all beliefs that the scenario names, normalized, shallow ones first."""
     agents = scenario.setting.snapshot.agents
@@ -94,9 +100,3 @@ def _reading(nest: Nest) -> Usage:
     asked = [each for each in nest.prompts() if "claims_from" in each.detail]
     took = [Usage(a.requests, a.input_tokens, a.output_tokens, a.cost) for a in asked]
     return sum(took, Usage())
-
-
-def _check_functions(scenario: Scenario) -> None:
-    for expected in (each for probe in scenario.probes for each in probe.expect):
-        if isinstance(expected, Deed):
-            expected.check()

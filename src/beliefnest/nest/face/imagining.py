@@ -70,13 +70,11 @@ def imagine_in(
         agent: {name: candidates.of(agent, name, given) for name, given in named.items()}
         for agent, named in asked.actors.items()
     }
-    for agent in asked.actors:
-        if agent not in snapshot.agents:
-            raise InputError(
-                f"where {agent} was at tick {base.tick} is not known in {path_text(path)}; imagine "
-                "from a tick at which it was seen"
-            )
-    owner = path[-1] if path else None
+    if absent := [agent for agent in asked.actors if agent not in snapshot.agents]:
+        raise InputError(
+            f"where {absent[0]} was at tick {base.tick} is not known in {path_text(path)}; imagine "
+            "from a tick at which it was seen"
+        )
     plan = CoursePlan(
         tuple(asked.actors),
         [percept for percept, _ in percepts],
@@ -85,8 +83,7 @@ def imagine_in(
     )
     agreement = None
     if checked.evidence is None:
-        witness = _witness(recording, path, base, starts, plan, owner, checked.tolerance)
-        agreement = Agreement(witness)
+        agreement = Agreement(_witness(recording, path, base, starts, plan, checked.tolerance))
     drawing = HistoryDraws(plan, _drawn(starts, checked, asked.seed), agreement, asked.seed)
     tell = on_progress or _say_nothing
     drawing.run(end.tick, lambda done, total: tell("imagining histories", done, total))
@@ -119,7 +116,6 @@ def _witness(
     base: ForkPoint,
     starts: HistoryStarts,
     plan: CoursePlan,
-    owner: str | None,
     tolerance: Tolerance,
 ) -> Witness:
     ignored: set[int] = set()
@@ -139,7 +135,7 @@ def _witness(
         if place not in view.containers or not view.containers[place].complete
     }
     return Witness(
-        owner,
+        path[-1] if path else None,
         plan.percepts,
         plan.agents,
         frozenset(ignored),

@@ -259,16 +259,14 @@ class Nest(NestBase):
                 perceives or remembers. With `percepts` they always run one by one.
 
         Returns:
-            One attempt for each program, in order, with its branch, result and score.
+            An attempt for each program, in order. If anything fails, no branch is left.
 
         Raises:
             PathError: There is no such path or agent.
             BranchError: One of the branches exists already. Nothing was run.
-            WorldError: The simulator does not know the agent's pose, or the world cannot run
-                programs.
+            WorldError: The agent's pose is not known there, or the world runs no programs.
             InputError: `processes` is below 1, `senses` is none of the two, the path is `/` and
-                the real world runs in real time, or the score is no number. If anything fails, no
-                branch is left.
+                the real world runs in real time, or the score is no number.
         """
         self[path].child(agent)
         parsed = parse_path(path, self.agents)

@@ -124,17 +124,14 @@ def lay_out(story: Story) -> FloorPlan:
     for position in signs.values():
         grid[position] = registry.state_id(_SIGN)
     items = item_names(tuple(story.things), registry)
-    contents: dict[Position, Items] = {position: {} for position in places.values()}
-    held: dict[str, dict[str, int]] = {}
+    owned: dict[Place | HandOver, dict[str, int]] = {}
     for thing, place in story.things.items():
-        if isinstance(place, HandOver):
-            held.setdefault(place.agent, {})[items[thing]] = 1
-        else:
-            contents[places[place]] = {**contents[places[place]], items[thing]: 1}
+        owned.setdefault(place, {})[items[thing]] = 1
+    contents: dict[Position, Items] = {at: owned.get(place, {}) for place, at in places.items()}
     apart = apart or cells
     begins = apart | {agent: stands[room, agent] for agent, room in story.present.items()}
     agents = {
-        name: AgentState(feet(block), inventory=held.get(name, {}))
+        name: AgentState(feet(block), inventory=owned.get(HandOver(name), {}))
         for name, block in begins.items()
     }
     snapshot = Snapshot(0, box, Terrain.of(grid), contents, agents)
