@@ -1,4 +1,4 @@
-"""What learners are given: spaces that they take, with nested beliefs; states, pictures, ends."""
+"""Spaces that learners take, with nested beliefs in them; states, pictures, ends of episodes."""
 
 import warnings
 from contextlib import closing

@@ -1,12 +1,12 @@
-"""What an environment shows to people: pictures of one size, and lines for a terminal."""
+"""Pictures of one size and lines for a terminal, for people who watch an environment."""
 
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
 from beliefnest.nest.face.nest import Nest
+from beliefnest.nest.past.shown_words import state_words
 from beliefnest.pictures.palette import PAPER
-from beliefnest.pictures.words import state_words
 
 FRAME = (688, 512)
 """Width and height of pictures in pixels."""
