@@ -134,10 +134,7 @@ CURVES: Sequence[Curve] = (
             _walks("depth 1", [(n, _crowd(n, 1)) for n in (4, 8, 16, 32, 64, 128)]),
             _walks("depth 2", [(n, _crowd(n, 2)) for n in (4, 8, 16, 32, 48)]),
         ],
-        [
-            Aim("ms", "depth 2: 25 ms", 25.0, at=32),
-            Aim("ms", "depth 1: 10 ms", 10.0, at=64),
-        ],
+        [Aim("ms", "depth 2: 25 ms", 25.0, at=32), Aim("ms", "depth 1: 10 ms", 10.0, at=64)],
     ),
     Curve(
         "depth",

@@ -165,11 +165,7 @@ class Episode:
 
     @classmethod
     def replay(
-        cls,
-        recorded: str | Path,
-        store: str | Path | None = None,
-        *,
-        branch: str | None = None,
+        cls, recorded: str | Path, store: str | Path | None = None, *, branch: str | None = None
     ) -> Self:
         """Play the recorded decisions of an episode again, without asking any policy.
 

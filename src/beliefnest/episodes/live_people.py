@@ -86,11 +86,7 @@ class RealRound:
     """
 
     def __init__(
-        self,
-        nest: Nest,
-        policies: Mapping[str, Policy],
-        ticks: int,
-        decided: Callable[[], bool],
+        self, nest: Nest, policies: Mapping[str, Policy], ticks: int, decided: Callable[[], bool]
     ) -> None:
         self._nest, self._ticks, self._decided = nest, ticks, decided
         self._people = people_in(policies)

@@ -23,9 +23,7 @@ _MM = 25.4
 
 
 def plot_accuracy(
-    groups: Sequence[Mapping[str, Any]],
-    by: Sequence[str],
-    size: tuple[float, float] | None = None,
+    groups: Sequence[Mapping[str, Any]], by: Sequence[str], size: tuple[float, float] | None = None
 ) -> "Figure":
     """Draw bars from 0 to 1 with 95 % intervals, and dashed lines at the chance level of choices.
 

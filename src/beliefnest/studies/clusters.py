@@ -21,9 +21,7 @@ _MOST_WEIGHTS = 4_000_000
 """Greatest number of weights that are computed at once."""
 
 
-def mean_interval(
-    clusters: Sequence[Sequence[float]],
-) -> tuple[float, float] | tuple[None, None]:
+def mean_interval(clusters: Sequence[Sequence[float]]) -> tuple[float, float] | tuple[None, None]:
     """Compute the 95 % interval of the mean of all values, reproducibly.
 
     The method is the cluster bootstrap of Field and Welsh (2007): clusters are drawn with
@@ -68,9 +66,7 @@ def rate_interval(clusters: Sequence[Sequence[float]]) -> tuple[float, float, st
 
 
 def crossed_interval(
-    values: Sequence[float],
-    variations: Sequence[object],
-    people: Sequence[Collection[object]],
+    values: Sequence[float], variations: Sequence[object], people: Sequence[Collection[object]]
 ) -> tuple[tuple[float, float] | None, int]:
     """Compute the 95 % interval of a mean if people answered several variations.
 

@@ -102,8 +102,7 @@ class EpisodeDesign:
             _check_policies(policies)
         if not self.orders and (self.models or any(each in _ORDERED for each in self.policies)):
             raise StudyKeyError(
-                "orders",
-                "orders is empty; models, search and infer play at the orders named there",
+                "orders", "orders is empty; models, search and infer play at the orders named there"
             )
         named = [player.text for player in self.players]
         if twice := next((name for name in named if named.count(name) > 1), None):
@@ -143,10 +142,7 @@ class EpisodeDesign:
     @property
     def setting(self) -> dict[str, Any]:
         """Return the settings that affect the results of all cells."""
-        return {
-            "world": self.world,
-            **({"help": True} if self.help else {}),
-        }
+        return {"world": self.world, **({"help": True} if self.help else {})}
 
     @property
     def asked(self) -> tuple[str, ...]:

@@ -4,15 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from beliefnest.studies.episode_design import policy_named
-from beliefnest.studies.table import (
-    Column,
-    ColumnType,
-    Table,
-    lost,
-    of_key,
-    of_result,
-    plain_value,
-)
+from beliefnest.studies.table import Column, ColumnType, Table, lost, of_key, of_result, plain_value
 
 
 def _results(cell: Mapping[str, Any], found: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:

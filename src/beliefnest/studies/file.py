@@ -52,11 +52,7 @@ def read_design(
     try:
         constraints = several("constraints", keys.constraints)
         beside = _beside(keys, document.folder)
-        return design_of(
-            replace(beside, **(instead or {})),
-            tuple(templates),
-            constraints,
-        )
+        return design_of(replace(beside, **(instead or {})), tuple(templates), constraints)
     except StudyKeyError as fault:
         raise document.fault(fault.path, str(fault)) from None
 

@@ -233,9 +233,7 @@ def run_facts(result: RunResult) -> RunFacts:
     if settings["repeat"] > 1:
         factors.append(counted(settings["repeat"], "repeat"))
     told = f"the scenario {_code(report['scenario'])}"
-    excluded = {
-        "unjudged": sum(row["ok"] is None for row in rows),
-    }
+    excluded = {"unjudged": sum(row["ok"] is None for row in rows)}
     return RunFacts(
         kind="run",
         versions=report["versions"],
@@ -391,12 +389,7 @@ _EXCLUDED = {
     "unjudged": "{0} without an expectation to judge",
     "copy": "{0} that differs from another row only by a seed on which nothing depends",
 }
-_NOUNS = {
-    "combination": "combination",
-    "unplayed": "cell",
-    "unjudged": "row",
-    "copy": "row",
-}
+_NOUNS = {"combination": "combination", "unplayed": "cell", "unjudged": "row", "copy": "row"}
 
 
 def methods_text(facts: RunFacts, form: MethodsForm) -> str:

@@ -16,11 +16,7 @@ NamedSource = tuple[str, VariationSource]
 
 
 def assumed_sources(
-    rows: Sequence[Row],
-    by: Sequence[str],
-    assumed: Mapping[str, float],
-    *,
-    between: str | None,
+    rows: Sequence[Row], by: Sequence[str], assumed: Mapping[str, float], *, between: str | None
 ) -> Iterator[NamedSource]:
     """Yield a source for each number of rows that variations of a planned study have in a group.
 

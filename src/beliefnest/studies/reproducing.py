@@ -54,12 +54,7 @@ class Reproduction:
 
 
 def reproduce_study(
-    folder: Path,
-    again: Path,
-    jobs: int,
-    on_progress: OnStudyProgress,
-    *,
-    trust: bool = False,
+    folder: Path, again: Path, jobs: int, on_progress: OnStudyProgress, *, trust: bool = False
 ) -> Reproduction:
     """Play all cells of a study again that have a result, and compare rows and contents.
 

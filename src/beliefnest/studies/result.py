@@ -101,10 +101,7 @@ class StudyResult(StudyRecord):
         return plain_frame({name: Typed([row[name] for row in found]) for name in columns})
 
     def fit(
-        self,
-        effects: Sequence[Effect] | str,
-        kind: FitKind = "gee",
-        family: Family = "binomial",
+        self, effects: Sequence[Effect] | str, kind: FitKind = "gee", family: Family = "binomial"
     ) -> Regression:
         """Fit a regression of right answers, with variations as groups.
 
@@ -214,9 +211,7 @@ class StudyResult(StudyRecord):
         return plain_frame({"cell": Typed(cells), "wall_seconds": Typed(times)})
 
     def plot(
-        self,
-        by: Sequence[str] | str | None = None,
-        size: tuple[float, float] | None = None,
+        self, by: Sequence[str] | str | None = None, size: tuple[float, float] | None = None
     ) -> "Figure":
         """Draw accuracies with their intervals, as `summary` computes them.
 

@@ -103,10 +103,7 @@ class ScenarioStage:
             variation.scene if variation.changes_scene else None,
         )
         probe, seed = requests_of(scenario)[number - 1], sample["seed"]
-        with (
-            self._turn,
-            Nest.open(scenario, sample["world"], None, seed, self._worlds) as nest,
-        ):
+        with self._turn, Nest.open(scenario, sample["world"], None, seed, self._worlds) as nest:
             nest.play()
             outcome = run_probe(nest, number, probe, listener, seed, _ONCE)
             return JudgedOutcome(outcome, tuple(_grounds(nest, probe)))

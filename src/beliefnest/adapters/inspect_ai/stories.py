@@ -114,10 +114,7 @@ def story_answer() -> Scorer:
         lines = await run_sync(_explanation, dict(state.metadata))
         told = [f"{outcome}: {reading.reason}"] if reading.reason else [outcome]
         return score_of(
-            ok=ok,
-            answer=reading.option,
-            lines=[*told, "", *lines],
-            metadata={"outcome": outcome},
+            ok=ok, answer=reading.option, lines=[*told, "", *lines], metadata={"outcome": outcome}
         )
 
     return score

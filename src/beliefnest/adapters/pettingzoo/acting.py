@@ -104,12 +104,7 @@ class SkillActing:
     """
 
     def __init__(
-        self,
-        nest: Nest,
-        ticks: int | None,
-        timeout_ticks: int,
-        senses: Senses,
-        speech_ticks: int,
+        self, nest: Nest, ticks: int | None, timeout_ticks: int, senses: Senses, speech_ticks: int
     ) -> None:
         world = nest.scripted_world
         self._nest = nest

@@ -62,9 +62,7 @@ _KINDS = frozenset(form.partition(":")[0] for form in POLICIES) - {"MODULE", "FI
 
 
 def resolve_policy(
-    name: str,
-    environment: Mapping[str, str] | None = None,
-    connection: "Connection | None" = None,
+    name: str, environment: Mapping[str, str] | None = None, connection: "Connection | None" = None
 ) -> Policy:
     """Return the policy of a name.
 

@@ -205,13 +205,7 @@ def _by_deeds(
     ]
     weights = [[prior[name]] for name in expressed]
     model = MindModel(
-        other,
-        wanted,
-        rows,
-        prior=weights,
-        rationality=_RATIONALITY,
-        diagonal=True,
-        stays=False,
+        other, wanted, rows, prior=weights, rationality=_RATIONALITY, diagonal=True, stays=False
     )
     try:
         found = view.infer(model, *below).posterior()

@@ -47,10 +47,7 @@ def instance(chance: random.Random, plots: int, agents: int) -> dict[str, Any]:
                 models.append(model)
         stores[(x, 1, depth - 1)] = dict.fromkeys(_COLOURS, plots)
     builders = _BUILDERS[: agents - 1]
-    feet = {
-        "anne": [11.5, 1, 1.5],
-        **abreast(builders, [width - 10.5, 1, 1.5], (0, 1)),
-    }
+    feet = {"anne": [11.5, 1, 1.5], **abreast(builders, [width - 10.5, 1, 1.5], (0, 1))}
     return {
         "description": (
             "On each plot is to stand what stands in its model. Anne and Bob cannot leave their "

@@ -50,10 +50,7 @@ def instance(chance: random.Random, orders: int, hatches: int, agents: int) -> d
     first: dict[tuple[int, int, int], dict[str, int]] = {place: {} for place in places}
     first |= {table: {}, store: dict.fromkeys(dishes, 1)}
     waiters = _WAITERS[: agents - 1]
-    feet = {
-        "cook": [near + 0.5, 1, 2.5],
-        **abreast(waiters, [post + 0.5, 1, depth - 2.5], (1, 0)),
-    }
+    feet = {"cook": [near + 0.5, 1, 2.5], **abreast(waiters, [post + 0.5, 1, depth - 2.5], (1, 0))}
     return {
         "description": (
             f"Ordered: {', '.join(dishes)}. The cook fetches it from the store and puts it into a "

@@ -58,10 +58,7 @@ def instance(chance: random.Random, goals: int, reach: int) -> dict[str, Any]:
             "name": "watch-and-help",
             **hall(width, depth, [*blocks, *levers]),
             "agents": {
-                "anne": {
-                    "position": [width - 1.5, 1, chance.choice(rows) + 0.5],
-                    "facing": "west",
-                },
+                "anne": {"position": [width - 1.5, 1, chance.choice(rows) + 0.5], "facing": "west"},
                 "bob": {"position": [1.5, 1, chance.choice(rows) + 0.5], "facing": "east"},
             },
             "perception": {"max_visible_distance": 64},
