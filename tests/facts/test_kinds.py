@@ -29,6 +29,23 @@ def test_a_fact_with_keys_that_do_not_fit_is_refused() -> None:
         conditions_of(FactEntry(block=(4, 1, 4), state="lever", within=2.0), ("ann",))
 
 
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (
+            {"container": CHEST, "items": {"apple": 1}, "lacks": "stick"},
+            "give container and items or container and lacks; a condition leaves out what the file "
+            "gives by `items: null` or `lacks: null`",
+        ),
+        ({"block": DOOR}, "makes no sense; give block and state or block and like$"),
+        ({"agent": "ann", "at": [1, 1, 1], "withn": 2}, "'withn'; did you mean 'within'"),
+    ],
+)
+def test_a_fact_that_makes_no_sense_is_told_what_to_give(given: dict[str, Any], told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        fact_entry(given, SCENE)
+
+
 @pytest.fixture(scope="module")
 def ann() -> State:
     """Return what Ann believes in a room with a chest, a sign and Bob."""

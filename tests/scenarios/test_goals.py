@@ -1,6 +1,7 @@
 """Goals in scenario files: on reality and beliefs, with the tick at which they came true."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -138,7 +139,11 @@ def test_planners_empty_a_container(tmp_path: Path) -> None:
     [
         ("path: /eve,", "path: /bob,", "fetch.yaml:18: episode.goal.reach.1..path: .*bob"),
         ("talk: [ann]", "talk: [bob]", "fetch.yaml:14: episode: 'bob' is none of the agents"),
-        ("rounds: 8", "rounds: none", "fetch.yaml:24: episode.rounds: expected 'int'"),
+        (
+            "rounds: 8",
+            "rounds: none",
+            "fetch.yaml:24: episode.rounds: expected an integer, got",
+        ),
         ("rounds: 8", "round: 8", "fetch.yaml:24: .*did you mean 'rounds'"),
         ("agent: eve, items: {apple: 1}", "block: [1, 1, 1], state: chst", "fetch.yaml:20: .*chst"),
         (
@@ -153,6 +158,24 @@ def test_planners_empty_a_container(tmp_path: Path) -> None:
         ),
         ("agent: eve, items", "container: [2, 1, 2], items", "fetch.yaml:20: .*no container"),
         ("agent: eve, items: {apple: 1}", "agent: eve, at: [2, 9, 2]", "fetch.yaml:20: .*outside"),
+        ("agent: eve, items: {apple: 1}", "agent: eve, position: [2, 1, 2]", ":20: .*write 'at'"),
+        ("{path: /eve,", "{believed: /eve,", ":18: .*unknown key; write 'path'"),
+        (
+            "eve, items: {apple: 1}",
+            "eve, items: apple",
+            r":20: .*a mapping such as {diamond: 1}, got",
+        ),
+        (
+            "agent: eve, items",
+            "container: eve, items",
+            r":20: .*a list such as \[1, 2, 3\], got 'eve'",
+        ),
+        (
+            "agent: eve, items",
+            "container: [2, 1], items",
+            r":20: .*such as \[1, 2, 3\], got \[2, 1\]",
+        ),
+        ("never: [{agent: eve, items: {apple: 1}}]", "never: eve", ":20: .*a list such as"),
     ],
 )
 def test_what_is_wrong_with_goals_is_told_by_line(
@@ -163,6 +186,22 @@ def test_what_is_wrong_with_goals_is_told_by_line(
     file.write_text(FETCH.replace(old, new))
     with pytest.raises(bn.ScenarioError, match=told):
         bn.Scenario.load(str(file))
+
+
+@pytest.mark.parametrize(
+    ("rules", "told"),
+    [
+        ({"goal": {"reach": [{"agent": "eve", "at": [2, 1, 2], "withn": 3}]}}, "'within'"),
+        ({"goals": {"eve": {"reech": []}}}, r"episode.goals.eve.reech: .*did you mean 'reach'"),
+        ({"goal": {"reach": {"agent": "eve"}}}, "a list such as"),
+        ({"gaol": {}}, "did you mean 'goal'"),
+    ],
+)
+def test_what_is_wrong_with_rules_in_python_is_told_by_key(
+    fetch: str, rules: dict[str, Any], told: str
+) -> None:
+    with pytest.raises(bn.ScenarioError, match=told):
+        bn.Task.of(bn.Scenario.load(fetch, condition=1), **rules)
 
 
 def test_the_command_plays_scenarios(

@@ -1,6 +1,7 @@
 """Scenario files: their content reaches the setting, and errors name the line."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -250,6 +251,39 @@ def test_a_fault_is_named_with_file_line_and_key(
     assert key in message
     assert hint in message
     assert "\n" not in message
+
+
+ASKED = "{question: Q, options: [a box, a pot], right: %s}"
+
+
+@pytest.mark.parametrize(
+    ("expect", "line", "told"),
+    [
+        ("{answers: " + ASKED % "a bax" + "}", 1, "'a bax' is none of the options"),
+        (
+            "\n      answers:\n        question: Q\n        options: [no, yes]\n        right: on",
+            5,
+            "'on' is none of the options",
+        ),
+        ("{answers: " + ASKED % "3" + "}", 1, "a text, or a list such as [text], or a mapping"),
+        ("{answers: " + ASKED % "{path: /bob, container: box}" + "}", 1, "such as [1, 2, 3], got"),
+        ("{answers: " + ASKED % "{path: /bob, item: apple, items: {}}" + "}", 1, "leaves open how"),
+        ("{opens: box}", 1, "got 'box'; 'box' is at [4, 1, 4]"),
+        ("{opens: {path: /bob, agent: ann}}", 1, "write one, or {path: /bob, item: ...}"),
+    ],
+)
+def test_a_fault_of_a_probe_is_told_in_the_words_of_files(
+    tmp_path: Path, expect: str, line: int, told: str
+) -> None:
+    before = BASE.partition("probes:")[0] + "probes:\n"
+    probe = f"  - {{path: /bob, acts_in: /, agent: ann, task: Go,\n    expect: {expect}}}\n"
+    if "\n" in expect:
+        probe = f"  - path: /bob\n    expect: {expect}\n"
+    file = write(tmp_path, before + probe)
+    with pytest.raises(ScenarioError, match=re.escape(told)) as caught:
+        Scenario.load(file)
+    place = f"{file}:{before.count(chr(10)) + 1 + line}: probes[0].expect"
+    assert str(caught.value).startswith(place), caught.value
 
 
 def test_a_fault_in_a_condition_is_named_where_the_condition_is_written(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from beliefnest.episodes.task_form import TaskForm
 from beliefnest.episodes.tasks import builtin_tasks, generated
 from beliefnest.errors import BeliefNestError, InputError, ScenarioError, UnknownNameError
 from beliefnest.scenarios.document import Document, YamlNode, plain
+from beliefnest.scenarios.document_form import check_rules_form
 from beliefnest.scenarios.goals import Goal
 from beliefnest.scenarios.instances import drawn_instance, has_instances
 from beliefnest.scenarios.loading import DocumentChange, condition_number
@@ -134,6 +135,7 @@ class Task:
         """
         if not scenario.written:
             raise InputError(f"{scenario.source} has only a setting; load the whole scenario")
+        check_rules_form({key: rule for key, rule in rules.items() if key not in _NO_RULES})
         left_out = ("probes", "expectations", "episode")
         content = {key: v for key, v in scenario.written.items() if key not in left_out}
         return cls.from_mapping(

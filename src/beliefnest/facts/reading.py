@@ -12,6 +12,7 @@ from beliefnest.world.forms import scene_kinds
 from beliefnest.world.paths import BeliefPath, parse_path
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box, Items, Position, block_at
+from beliefnest.world.words import listed, nearest_or_all
 
 _SCENE_KINDS = scene_kinds(FactEntry)
 
@@ -130,10 +131,8 @@ def plain_entry(given: object) -> FactEntry:
     except msgspec.ValidationError as fault:
         fields = FactEntry.__struct_fields__
         if isinstance(given, Mapping) and (others := [key for key in given if key not in fields]):
-            raise InputError(
-                f"the fact {given!r} has {', '.join(map(repr, others))}; its fields are "
-                f"{', '.join(fields)}, and it is about one tick"
-            ) from None
+            told = nearest_or_all(str(others[0]), fields, "its keys are")
+            raise InputError(f"the fact {given!r} has the key {others[0]!r}{told}") from None
         raise InputError(f"the fact {given!r} is malformed: {fault}") from None
 
 
@@ -208,8 +207,13 @@ def fact_in(entry: FactEntry) -> Fact:
     kinds = [kind for kind in KINDS if {*kind.keys} <= given.keys() <= {*kind.keys, *kind.more}]
     facts = [fact for kind in kinds if (fact := kind.read(entry)) is not None]
     if len(facts) != 1:
-        *forms, last = dict.fromkeys(" and ".join(kind.keys) for kind in KINDS)
-        raise InputError(f"the fact {given} makes no sense; give {', '.join(forms)}, or {last}")
+        whole = [kind for kind in KINDS if {*kind.keys} <= given.keys()]
+        near = whole or [kind for kind in KINDS if {*kind.keys} & given.keys()] or KINDS
+        forms = listed(list(dict.fromkeys(" and ".join(kind.keys) for kind in near)), "or")
+        extra = {key for kind in whole for key in given.keys() - {*kind.keys, *kind.more}}
+        nulls = listed([f"`{key}: null`" for key in sorted(extra) if usual[key] is None], "or")
+        hint = nulls and f"; a condition leaves out what the file gives by {nulls}"
+        raise InputError(f"the fact {given} makes no sense; give {forms}{hint}")
     return facts[0]
 
 

@@ -110,7 +110,8 @@ def _key_text(path: KeyPath, origin: str = "") -> str:
 
 def _child(node: YamlNode, key: str | int) -> YamlNode | None:
     if isinstance(node.value, dict):
-        child = node.value.get(key)
+        # A list of one entry may be written as the entry alone.
+        child = node.value.get(key, node if key == 0 else None)
         return child if isinstance(child, YamlNode) else None
     if isinstance(node.value, list) and isinstance(key, int) and key < len(node.value):
         return node.value[key]  # type: ignore[no-any-return]  # lists hold nodes

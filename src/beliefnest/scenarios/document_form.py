@@ -1,13 +1,16 @@
 """Check of a document's form: known keys, and values of the right kind."""
 
 import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from beliefnest.errors import InputError, ScenarioError
-from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain
+from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
 from beliefnest.scenarios.format import ScenarioFile, WrittenFile
-from beliefnest.scenarios.json_schema import allowed_keys, allowed_values
+from beliefnest.scenarios.json_schema import allowed_keys, allowed_values, wanted_form
 from beliefnest.world.texts import is_well_formed, quoted, shortened
 from beliefnest.world.words import nearest_or_all
 
@@ -21,6 +24,16 @@ _Form = type[ScenarioFile] | type[WrittenFile]
 
 _LONGEST_FAULT = 160
 """Greatest number of characters of a fault that the validation found; it may quote the value."""
+
+_FORMER = {"believed": "path", "position": "at", "place": "at"}
+"""Names of keys in earlier versions, or elsewhere in the file, and what they are in facts."""
+
+_ASKED = "; a question leaves open how it is: write {path: PATH} with one thing of "
+_HOW = ("items", "at", "state", "text", "lacks")
+"""Keys of facts that say how something is."""
+
+_PLACE = "[1, 2, 3]"
+"""Example of a position."""
 
 _MOST_BITS = 64
 """Bits of whole numbers that messages repeat; Python refuses to format very long ones."""
@@ -44,6 +57,17 @@ def check_written(document: Document) -> WrittenFile:
     """
     _check(document, WrittenFile if "map" in document.root.value else ScenarioFile)
     return msgspec.convert(plain(document.root), WrittenFile)
+
+
+def check_rules_form(rules: Mapping[str, object]) -> None:
+    """Check rules of play that are given in code, as those under `episode` in a file.
+
+    Raises:
+        ScenarioError: A key is unknown, or a value is of the wrong kind.
+    """
+    scene = {"name": "task", "box": [[0, 0, 0]] * 2, "agents": {"a": {"position": [0, 0, 0]}}}
+    content = {**scene, "episode": msgspec.to_builtins(rules)}
+    check_form(Document("task", wrapped(content), Path()))
 
 
 def _check(document: Document, form: _Form) -> None:
@@ -93,12 +117,23 @@ def _fault(document: Document, error: str, form: _Form) -> ScenarioError:
     if match["key"]:
         quotes = "; put it into quotes" if what.startswith("expected 'str'") else ""
         return document.fault(path, f"a key in it: {what}{quotes}")
-    return document.fault(path, what + _found(document.root, path, what) + _allowed(path, what))
+    value = plain(_node_at(document.root, list(path)))
+    if " got " in what and (wanted := wanted_form(path)):
+        at = _standing(document.root, value) if _PLACE in wanted else ""
+        what = f"expected {wanted}, got {quoted(value)}{at}"
+    return document.fault(path, what + _found(value, what) + _allowed(path, value, what))
 
 
-def _found(root: YamlNode, path: KeyPath, what: str) -> str:
-    """Return the value at a place for a message, if the error does not already say it."""
-    value = _node_at(root, list(path)).value
+def _standing(root: YamlNode, name: object) -> str:
+    """Return where the container or place with a name is, for a message; empty: there is none."""
+    form: Any = plain(root)
+    labelled = {each.get("label"): each.get("at") for each in form.get("containers", ())}
+    named = isinstance(name, str) and {**labelled, **form.get("places", {})}.get(name)
+    return f"; {quoted(name)} is at {named}" if named else ""
+
+
+def _found(value: object, what: str) -> str:
+    """Return a value for a message, if the error does not already say it."""
     is_short = isinstance(value, float | None) or (
         isinstance(value, int) and value.bit_length() <= _MOST_BITS
     )
@@ -106,12 +141,12 @@ def _found(root: YamlNode, path: KeyPath, what: str) -> str:
     return f", got {quoted(value)}" if is_short and not told else ""
 
 
-def _allowed(path: KeyPath, what: str) -> str:
+def _allowed(path: KeyPath, value: object, what: str) -> str:
     """Return what is allowed at a place, for a message."""
     if values := allowed_values(path):
         forms = [f"{{{key}: ...}}" for key in allowed_keys(path)]
         return f"; allowed are {', '.join([*values, *forms])}"
-    is_text = what.startswith("expected 'str', got") and not what.endswith(("'array'", "'object'"))
+    is_text = what.startswith("expected a text, got") and not isinstance(value, list | dict)
     return "; put it into quotes" if is_text else ""
 
 
@@ -120,6 +155,10 @@ def _hint(name: str, path: KeyPath) -> str:
     inner = [key for key in allowed if name in allowed_keys((*path, key))]
     if inner:
         return f"; it stands under {quoted(inner[0])}"
+    if "unknown" in allowed and name in _HOW:
+        return f"{_ASKED}{', '.join(key for key in allowed if key not in ('path', 'unknown'))}"
+    if _FORMER.get(name) in allowed:
+        return f"; write {quoted(_FORMER[name])}"
     return nearest_or_all(name, allowed, "keys are")
 
 

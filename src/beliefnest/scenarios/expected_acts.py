@@ -63,7 +63,8 @@ class Awaited(Deed):
         believed = Believed.read(getattr(entry, key), (*path, key), checks)
         kinds = ("item",) if key == "opens" else ("item", "agent")
         if believed.kind not in kinds:
-            raise checks.fault((*path, key), f"needs a place; give {' or '.join(kinds)}")
+            told = " or ".join(f"{{path: {believed.path}, {kind}: ...}}" for kind in kinds)
+            raise checks.fault((*path, key), f"needs a place; write one, or {told}")
         containers = {place: checks.halves(place) for place in checks.snapshot.containers}
         return cls(key, believed, entry.within, containers)
 

@@ -128,6 +128,57 @@ def allowed_values(path: Iterable[str | int]) -> list[str]:
     return sorted({str(value) for place in _places(path) for value in place.get("enum", [])})
 
 
+def wanted_form(path: Iterable[str | int]) -> str:
+    """Return in words what stands at a place of a scenario file, with examples of lists."""
+    forms = (_words(each) for each in _places(path) if each.get("type", "null") != "null")
+    return ", or ".join(dict.fromkeys(forms))
+
+
+_WORDS = {
+    "array": ("a list", "[...]"),
+    "boolean": ("true or false", "true"),
+    "integer": ("an integer", "1"),
+    "number": ("a number", "1.5"),
+    "object": ("a mapping", "{...}"),
+    "string": ("a text", "text"),
+}
+"""Types of JSON schema in words, and examples."""
+
+
+def _words(form: dict[str, Any]) -> str:
+    told, _ = _WORDS[form["type"]]
+    if form["type"] not in ("array", "object"):
+        return told
+    if keys := form.get("required") or list(form.get("properties", {})):
+        return f"{told} with keys such as {', '.join(keys[:5])}"
+    return f"{told} such as {_example(form)}"
+
+
+def _example(form: dict[str, Any], number: int = 1) -> str:
+    """Return an example of a value, as in a file.
+
+    Args:
+        form: Form of the value.
+        number: Number of the value in a list, from 1.
+    """
+    match form:
+        case {"prefixItems": list(parts)}:
+            told = f"[{', '.join(_example(part, n) for n, part in enumerate(parts, 1))}]"
+        case {"items": dict(part)}:
+            told = f"[{_example(part)}]"
+        case {"additionalProperties": {"type": "integer"}}:
+            told = "{diamond: 1}"
+        case {"additionalProperties": dict(part)}:
+            told = f"{{name: {_example(part)}}}"
+        case {"anyOf": [dict(part), *_]}:
+            told = _example(part, number)
+        case {"type": "integer" | "number"}:
+            told = str(number)
+        case _:
+            told = _WORDS[form.get("type", "object")][1]
+    return told
+
+
 def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:
     """Return the schema's definitions for a place of a scenario file, one for each form."""
     definitions = _form()["$defs"]
@@ -141,7 +192,7 @@ def _places(path: Iterable[str | int]) -> list[dict[str, Any]]:
 def _inside(definition: dict[str, Any], key: str | int) -> dict[str, Any]:
     if isinstance(key, str) and key in definition.get("properties", {}):
         return dict(definition["properties"][key])
-    inner = definition.get("items" if "items" in definition else "additionalProperties")
+    inner = definition.get("additionalProperties" if isinstance(key, str) else "items")
     return inner if isinstance(inner, dict) else {}
 
 

@@ -53,7 +53,7 @@ QUESTIONS = {
             0, actors=IDLE, evidence=[{"agent": "a", "at": (0, 1, 0), "ever": True}]
         ),
         InputError,
-        "has 'ever'; its fields are path, container",
+        "has the key 'ever'; its keys are path, container",
     ),
     "nothing to share": (
         lambda sim: sim.imagine(0, actors=IDLE, n=1).share([]),
