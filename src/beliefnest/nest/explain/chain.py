@@ -19,7 +19,6 @@ from beliefnest.nest.explain.element_history import (
     ExplainedSpan,
     LogStep,
     cells_of,
-    is_current,
     last_change,
     observed_at,
     steps_since,
@@ -307,10 +306,10 @@ def _is_held(trace: _Finding, forest: Forest, value: Value, element: Element) ->
     While a value is current it is one perception, which lasts up to its `observed_at`. So a value
     with an earlier `observed_at` is the same belief as long as it is current.
     """
-    ground = observed_at(forest, trace.path, element)
+    ground, current = observed_at(forest, trace.path, element)
     if value != trace.held.value or trace.observed_at is None or ground is None:
         return value == trace.held.value and ground == trace.observed_at, False
-    if is_current(forest, trace.path, element):
+    if current:
         return ground <= trace.observed_at, ground <= trace.observed_at
     return ground == trace.observed_at, False
 

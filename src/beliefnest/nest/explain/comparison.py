@@ -15,7 +15,7 @@ from beliefnest.nest.explain.parts import Contents
 from beliefnest.nest.past.recording import Recording
 from beliefnest.nest.past.shown_words import html_lines, html_table, where_words
 from beliefnest.world.paths import BeliefPath, path_text
-from beliefnest.world.terrain import BlockStates, Counts
+from beliefnest.world.terrain import Counts
 from beliefnest.world.values import Point, Position
 from beliefnest.world.words import contents_words, point_words
 
@@ -132,7 +132,8 @@ def compare(
     Blocks come first, then containers, agents and inventories, each in order.
     """
     one, other = recording.state(a, tick), recording.state(b, tick)
-    blocks = _blocks_in(None if unknown else _both_known, one, other, recording.context)
+    known_blocks: Counts | None = None if unknown else lambda a, b: (a >= 0) & (b >= 0)
+    blocks = _blocks_in(known_blocks, one, other, recording.context)
     things = _different_things(one, other)
     known = (each for each in things if each.a is not None and each.b is not None)
     found = itertools.chain(blocks, things if unknown else known)
@@ -159,7 +160,7 @@ def false_beliefs(
     """
     belief = recording.state(path, tick)
     real = recording.state(against, tick if against_tick is None else against_tick)
-    blocks = _blocks_in(_second_known, real, belief, recording.context)
+    blocks = _blocks_in(lambda _, held: held >= 0, real, belief, recording.context)
     found = itertools.chain(blocks, false_things(real, belief))
     return Differences(found, path_text(against), path_text(path))
 
@@ -211,14 +212,6 @@ def are_false(real: Contents | None, belief: Contents) -> bool:
     true, claimed = {} if real is None else real.items, belief.items
     too_much = any(count > true.get(name, 0) for name, count in claimed.items())
     return too_much or (belief.complete and dict(claimed) != dict(true))
-
-
-def _both_known(a: BlockStates, b: BlockStates) -> npt.NDArray[np.bool_]:
-    return (a >= 0) & (b >= 0)
-
-
-def _second_known(a: BlockStates, b: BlockStates) -> npt.NDArray[np.bool_]:
-    return b >= 0
 
 
 def _blocks_in(

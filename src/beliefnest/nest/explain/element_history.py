@@ -101,28 +101,22 @@ def value_in(forest: Forest, path: BeliefPath, element: Element) -> Value:
     return Contents(dict(content.items), content.complete)
 
 
-def observed_at(forest: Forest, path: BeliefPath, element: Element) -> int | None:
-    """Return the last tick at which a node's value of an element was current; None: no value."""
+def observed_at(forest: Forest, path: BeliefPath, element: Element) -> tuple[int | None, bool]:
+    """Return the last tick at which a node's value of an element was current (None: no value).
+
+    The second part is True if a perception in the last entry backs the value.
+    """
     if isinstance(element.where, str):
-        return forest.seen_at(path, element.where)
+        return forest.seen_at(path, element.where), forest.is_current(path, element.where)
     node, cell = forest.node(path), cell_of(forest.context.box, element.where)
     if element.kind == "block":
         basis = forest.bases(path, [cell])[cell]
-        return None if basis is None else basis.observed_at
+        current = bool(forest.current_blocks(path, (cell,)))
+        return None if basis is None else basis.observed_at, current
     if cell not in forest.holdings.of(node).containers:
-        return None
-    return forest.holdings.content(node, cell).at(forest.tick).basis.observed_at
-
-
-def is_current(forest: Forest, path: BeliefPath, element: Element) -> bool:
-    """Return True if a node's value of an element is backed by a perception in the last entry."""
-    if isinstance(element.where, str):
-        return forest.is_current(path, element.where)
-    node, cell = forest.node(path), cell_of(forest.context.box, element.where)
-    if element.kind == "block":
-        return bool(forest.current_blocks(path, (cell,)))
-    known = cell in forest.holdings.of(node).containers
-    return known and forest.holdings.content(node, cell).at(forest.tick).current
+        return None, False
+    content = forest.holdings.content(node, cell).at(forest.tick)
+    return content.basis.observed_at, content.current
 
 
 def touches(element: Element, event: PerceivedEvent) -> bool:

@@ -11,6 +11,7 @@ from beliefnest.belief.holdings import Holdings
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
 from beliefnest.errors import InputError
+from beliefnest.facts.kinds import agrees
 from beliefnest.nest.explain.wording import as_known_to
 from beliefnest.nest.past.recording import Recording
 from beliefnest.timeline.journal import EntryFilter, ForkPoint, TimelineKey
@@ -18,7 +19,6 @@ from beliefnest.world.claims import Claim, ClaimKind, claims_from_plain, claims_
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
-from beliefnest.world.registry import block_name, parse_state
 from beliefnest.world.values import Event, Position
 
 
@@ -100,18 +100,14 @@ class MadeClaim:
         names = parse_path(path, self._recording.agents)
         grace = self._recording.setting.perception.grace
         verdict, speaker = self._weighed(path)
-        unaware = self._unaware(names) if verdict is Verdict.NOT_HEARD else names
+        unaware = names
+        if verdict is Verdict.NOT_HEARD:
+            # The outermost simulator on the path that did not perceive it; the last one did not.
+            ways = (names[:depth] for depth in range(len(self._key.path) + 1, len(names)))
+            unaware = next((way for way in ways if not self._was_perceived(way)), names)
         if unaware == names:
             return _words(verdict, names, speaker, grace, self.sign)
         return f"{as_known_to(unaware[:-1])}{unaware[-1]} does not know of it"
-
-    def _unaware(self, path: BeliefPath) -> BeliefPath:
-        """Return the outermost simulator on a path that did not perceive the claim.
-
-        The last simulator of the path is known not to have perceived it.
-        """
-        ways = (path[:depth] for depth in range(len(self._key.path) + 1, len(path)))
-        return next((way for way in ways if not self._was_perceived(way)), path)
 
     def condition(self, path: str) -> str | None:
         """Return the rule of semantics, section 8, that decided; raises as `taken_up` does.
@@ -209,7 +205,9 @@ def _told(
     recording: Recording, key: TimelineKey, count: int, until: ForkPoint
 ) -> Iterator[MadeClaim]:
     world = recording.setting.snapshot
-    for place in sorted(world.sign_claims) if not key.path and _is_first(recording, key) else ():
+    # Signs of the beginning belong to the timeline that begins where the real world does.
+    is_first = not key.path and recording.journal.info(key).base is None
+    for place in sorted(world.sign_claims) if is_first else ():
         detail = {"position": place, "text": world.signs[place]}
         event = Event(EventKind.BLOCK_UPDATE, None, detail)
         for index, claim in enumerate(claims_from_plain(world.sign_claims[place])):
@@ -223,11 +221,6 @@ def _told(
                     yield MadeClaim(recording, key, place_of, until, entry.tick, event, claim)
 
 
-def _is_first(recording: Recording, key: TimelineKey) -> bool:
-    """Return True if a timeline begins where the real world begins."""
-    return recording.journal.info(key).base is None
-
-
 def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool:
     """Return True if a state contradicts a claim. An unknown value contradicts nothing."""
     match claim.kind:
@@ -235,7 +228,8 @@ def says_otherwise(held: NodeView, context: BeliefContext, claim: Claim) -> bool
             believed = held.agents[str(claim.agent)].position
             return believed is not None and _cell(believed) != claim.cell
         case ClaimKind.BLOCK:
-            return _is_other_block(_block(held, context, claim.cell), str(claim.state))
+            there = _block(held, context, claim.cell)
+            return there is not None and not agrees(there, str(claim.state))
         case ClaimKind.ABSENT:
             content = held.containers.get(claim.cell)
             return content is not None and claim.item in content.items
@@ -250,14 +244,6 @@ def _block(held: NodeView, context: BeliefContext, place: Position) -> str | Non
 
 def _cell(point: tuple[float, float, float]) -> tuple[int, ...]:
     return tuple(int(np.floor(value)) for value in point)
-
-
-def _is_other_block(block: str | None, stated: str) -> bool:
-    if block is None:
-        return False
-    told, held = parse_state(stated)[1], parse_state(block)[1]
-    same = block_name(block) == block_name(stated)
-    return not same or any(held.get(name) != value for name, value in told.items())
 
 
 def _is_elsewhere(held: NodeView, context: BeliefContext, claim: Claim) -> bool:

@@ -1,7 +1,9 @@
 """User-written stories: JSON lines of events and questions (format: docs/batteries.md)."""
 
+import re
 from collections.abc import Collection
 from pathlib import Path
+from typing import get_args
 
 import msgspec
 
@@ -9,12 +11,16 @@ from beliefnest.errors import InputError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.perception.options import ContainerMode, Testimony
 from beliefnest.suites.stories.data import BatteryItem, ReadStories, StoryItems, Unread
-from beliefnest.suites.stories.faults import form_fault
 from beliefnest.suites.stories.grammar import Agent, Line, StoryEvent, Write, parse_line
 from beliefnest.suites.stories.played_story import Knowing, check_question
 from beliefnest.suites.stories.questions import Question, parse_question
 from beliefnest.suites.stories.story import Story, story_of
 from beliefnest.world.texts import quoted
+from beliefnest.world.words import nearest_or_all
+
+_FAULT = re.compile(r"(?P<what>.*?)(?: - at `\$\.?(?P<path>.*)`)?", re.DOTALL)
+_EVENT = re.compile(r"events\[(\d+)\]\.?")
+_UNKNOWN = re.compile(r"Object contains unknown field `(?P<name>.*)`", re.DOTALL)
 
 
 class _Asked(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -69,7 +75,7 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> ReadStories:
         try:
             told = decode_json(line, _OwnStory)
         except msgspec.DecodeError as error:
-            unread.append(Unread(where, (form_fault(error, _OwnStory, StoryEvent),)))
+            unread.append(Unread(where, (_form_fault(error),)))
             continue
         story, faults = _story(number, told)
         if story is not None:
@@ -78,6 +84,26 @@ def read_own(path: Path, rows: Collection[int] | None = None) -> ReadStories:
         else:
             unread.append(Unread(where, faults, max(1, len(told.questions))))
     return ReadStories(tuple(stories), tuple(unread))
+
+
+def _form_fault(fault: msgspec.DecodeError) -> str:
+    """Return a message that says where a story has a wrong form, and what is allowed there."""
+    match = _FAULT.fullmatch(str(fault))
+    if match is None:
+        return str(fault)
+    what, path = match["what"], match["path"] or ""
+    words = what[:1].lower() + what[1:].replace("`", "'")
+    fields = {field.name: field.type for field in msgspec.structs.fields(_OwnStory)}
+    if unknown := _UNKNOWN.fullmatch(what):
+        name = unknown["name"]
+        words = f"unknown key {quoted(name)}{'' if path else nearest_or_all(name, [*fields])}"
+    if what.startswith("Invalid value") and path.endswith(".event"):
+        kinds = [str(kind.__struct_config__.tag) for kind in get_args(StoryEvent)]
+        words += nearest_or_all(what.split("'")[1], kinds)
+    if what.startswith("Invalid enum value"):
+        words += f"; allowed are {', '.join(map(str, get_args(fields.get(path))))}"
+    where = _EVENT.sub(lambda found: f"event {int(found[1]) + 1}: ", path).removesuffix(": ")
+    return f"{where}: {words}" if where else words
 
 
 def _story(number: int, told: _OwnStory) -> tuple[StoryItems | None, tuple[str, ...]]:

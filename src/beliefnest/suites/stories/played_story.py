@@ -1,7 +1,7 @@
 """Playing of stories in a world, with a nest that tracks the beliefs."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Self
 
 from beliefnest.belief.grounds import Basis
@@ -12,14 +12,16 @@ from beliefnest.nest.face.simulator import Simulator
 from beliefnest.nest.past.setting import Setting
 from beliefnest.perception.options import ContainerMode, Perception, Testimony
 from beliefnest.suites.stories.acting import programs_of, tell
-from beliefnest.suites.stories.claim_reading import StoryReader, in_words_alone
 from beliefnest.suites.stories.floor_plan import WALL, FloorPlan, lay_out
 from beliefnest.suites.stories.questions import Question
-from beliefnest.suites.stories.story import Come, Go, Place, Story
+from beliefnest.suites.stories.story import Come, Go, Place, Story, Tell
+from beliefnest.world.claims import Claim
+from beliefnest.world.nameable import Nameable
 from beliefnest.world.texts import quoted
 
 if TYPE_CHECKING:  # Importing models takes long, and few stories need one.
     from beliefnest.llm.claim_reader import ClaimsFromModel
+    from beliefnest.llm.messages import Model
 
 _TIMEOUT_TICKS = 2400
 _TICKS_PER_BLOCK = 8
@@ -83,6 +85,35 @@ class Knowing:
 _KNOWING = Knowing()
 
 
+@dataclass(frozen=True, slots=True)
+class StoryReader:
+    """Extractor of claims that gives the model the story's names of things and containers.
+
+    Attributes:
+        reader: Extractor that asks the model.
+        plan: Floor plan with the items and places of the story.
+    """
+
+    reader: "ClaimsFromModel"
+    plan: FloorPlan
+
+    @property
+    def name(self) -> str:
+        """Return the name of the model."""
+        return self.reader.name
+
+    def through(self, wrap: "Callable[[Model], Model]") -> "StoryReader":
+        """Return the same extractor with its model wrapped by a function."""
+        return replace(self, reader=self.reader.through(wrap))
+
+    def __call__(self, text: str, speaker: str, nameable: Nameable) -> Iterable[Claim]:
+        """Return the claims in a text; raise errors as the inner extractor does."""
+        called = {item: thing for thing, item in self.plan.items.items()}
+        at = self.plan.place_at
+        containers = {p: f"{at(p).container} of the {at(p).room}" for p in nameable.containers}
+        return self.reader(text, speaker, replace(nameable, called=called, containers=containers))
+
+
 class PlayedStory:
     """Played story and its nest; use it in a `with` block, or close it.
 
@@ -136,7 +167,7 @@ class PlayedStory:
         try:
             for path in sorted({question.path for question in asked}, key=_deepest_first):
                 _ = nest[path].state
-            told = story if reader is None else in_words_alone(story)
+            told = story if reader is None else _in_words_alone(story)
             ends = _play(told, plan, nest, world, grace)
         except BaseException:
             nest.close()
@@ -313,3 +344,9 @@ def _perform(nest: Nest, programs: Mapping[str, str], where: str) -> None:
     for agent, result in nest["/"].run_all(programs, _TIMEOUT_TICKS).items():
         if not result.ok:
             raise ProgramError(f"{where}: the program of {agent} failed: {result.error}")
+
+
+def _in_words_alone(story: Story) -> Story:
+    """Return the story without the claims beside utterances, so that only the words remain."""
+    acts = (replace(act, is_claimed=False) if isinstance(act, Tell) else act for act in story.acts)
+    return replace(story, acts=tuple(acts))

@@ -99,7 +99,12 @@ class RunData:
                 lines[str(self.keys().index(info.key))] = told
         if lines:
             new["timelines"] = lines
-        for name, rows in (("states", self._palette.entries), *self._records()):
+        records: dict[str, list[Any]] = {
+            "states": self._palette.entries,
+            "programs": [_program(each) for each in self.reader.programs()],
+            "prompts": [_prompt(each) for each in self.reader.prompts()],
+        }
+        for name, rows in records.items():
             fresh = fresh_rows(self._sent, name, rows)
             if fresh is not None:
                 new[name] = fresh
@@ -222,10 +227,6 @@ class RunData:
             said = str(claim) if where is None else claim.about(f"the {where}")
             line.events[number].setdefault("claims", []).append([said, kind])
         line.claims = len(recorder.claims)
-
-    def _records(self) -> Iterable[tuple[str, list[Any]]]:
-        yield "programs", [_program(each) for each in self.reader.programs()]
-        yield "prompts", [_prompt(each) for each in self.reader.prompts()]
 
 
 def _program(record: ProgramRecord) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from beliefnest.viewer.page.pose_history import PoseRow, Stand
-from beliefnest.viewer.page.tracks import PLACED, Track, TrackRow
+from beliefnest.viewer.page.tracks import PLACED, Track
 
 _THOUSAND = 1000
 
@@ -48,16 +48,10 @@ class TrackRows:
         if not self._begun:
             self._begun = True
             told["grid"] = track.grid
-        lists: dict[str, Sequence[Any]] = {
-            "blocks": track.blocks,
-            "items": track.items,
-            "wrong": track.wrong,
-            "heard": track.heard,
-            "claims": track.claims,
-        }
+        names = ("blocks", "items", "wrong", "heard", "claims")
+        lists: dict[str, Sequence[Any]] = {name: getattr(track, name) for name in names}
         for part in ("agents", "holds", "owns"):
-            rows_by_agent: list[list[TrackRow]] = getattr(track, part)
-            lists |= {f"{part} {n}": rows for n, rows in enumerate(rows_by_agent)}
+            lists |= {f"{part} {n}": rows for n, rows in enumerate(getattr(track, part))}
         lists |= {f"contents {cell}": rows for cell, rows in track.contents.items()}
         for name, rows in lists.items():
             found = self._sent.fresh(name, rows)

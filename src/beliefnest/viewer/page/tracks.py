@@ -6,7 +6,7 @@ is given as the tick at which the agent had it in the timeline's own world, whic
 long runs short.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,16 +17,16 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
+from beliefnest.nest.explain.made_claims import says_otherwise
 from beliefnest.nest.face.reader import Reader
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.viewer.page.blocks import BlockPalette
-from beliefnest.viewer.page.claims import claims_at, kind_of
 from beliefnest.viewer.page.grid_changes import GridChanges
 from beliefnest.viewer.page.pose_history import PoseBook, PoseRow
 from beliefnest.viewer.page.runs import grid_text, runs_text
 from beliefnest.viewer.page.wrong import WrongThings
 from beliefnest.world.array_types import Cells
-from beliefnest.world.claims import Claim
+from beliefnest.world.claims import Claim, claims_of
 from beliefnest.world.paths import BeliefPath, normalised
 
 UNKNOWN, CURRENT, STALE, PLACED = 0, 1, 2, 3
@@ -191,9 +191,9 @@ class TrackRecorder:
 
     def _note_claims(self) -> None:
         forest, rows = self._forest, {}
-        for number, index, speaker, claim in claims_at(forest, self._events):
+        for number, index, speaker, claim in _claims_at(forest, self._events):
             if self._fills:
-                kind = kind_of(forest, self.key.path, speaker, claim)
+                kind = _kind_of(forest, self.key.path, speaker, claim)
                 self.claims.append((number, claim, kind))
             rows[number, index] = forest.verdicts.get((number - self._events, index))
         for (number, index), verdicts in rows.items():
@@ -341,3 +341,35 @@ def _put(rows: list[TrackRow], row: TrackRow) -> None:
         rows[-1] = row
     else:
         rows.append(row)
+
+
+def _claims_at(forest: Forest, first: int) -> Iterator[tuple[int, int, str, Claim]]:
+    """Yield the claims of the forest's present entry.
+
+    Args:
+        forest: Forest at the entry.
+        first: Number of the entry's first event on the timeline.
+
+    Yields:
+        Number of the event, number of the claim in it, speaker, and claim.
+    """
+    if not forest.position or not forest.columns.has_claims(forest.position - 1):
+        return
+    for number in range(first, forest.count_of_events):
+        event = forest.columns.event(number)
+        for index, claim in enumerate(claims_of(event) if "text" in event.detail else ()):
+            yield number, index, str(event.actor), claim
+
+
+def _kind_of(forest: Forest, own: BeliefPath, speaker: str, claim: Claim) -> str:
+    """Return `a lie` or `false` for a claim that was just made; empty if it is neither.
+
+    Args:
+        forest: Forest at the entry of the claim.
+        own: Path of the simulator in whose world it was made.
+        speaker: Agent that made it; the forest contains its beliefs.
+        claim: The claim.
+    """
+    if says_otherwise(NodeView(forest, normalised((*own, speaker))), forest.context, claim):
+        return "a lie"
+    return "false" if says_otherwise(NodeView(forest, own), forest.context, claim) else ""
