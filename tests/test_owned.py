@@ -13,7 +13,7 @@ import pytest
 from tests.processes import started
 
 import beliefnest as bn
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.worlds.minecraft.embedded import EmbeddedWorld
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
@@ -203,7 +203,7 @@ def test_recorded_nests_journals_and_servers_are_refused(tmp_path: Path) -> None
             assert in_child(act).startswith("ForkedError: ")
         assert in_child(recorded.close) == "done"
         assert recorded["/sally"].state.agents["anne"].position is not None
-    with SqliteJournal.open(store) as journal:
+    with Journal.open(store) as journal:
         assert in_child(journal.timelines).startswith("ForkedError: ")
         assert in_child(journal.close) == "done"
         assert journal.timelines()

@@ -11,7 +11,7 @@ from beliefnest.cli.page import write_page
 from beliefnest.errors import InputError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.face.recorded import RecordedNest
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest_benchmarks.browser import CHROMIUM, DRIVER, opened_browser
 from beliefnest_benchmarks.figures import Metric
 from beliefnest_benchmarks.hills import Hills
@@ -113,7 +113,7 @@ def _page(place: Path, store: Path) -> list[Metric]:
 
 def _pictures(place: Path, store: Path) -> list[Metric]:
     figures = []
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         nest = RecordedNest(journal)
         nest.scenes(_PATHS)
         began = time.perf_counter()

@@ -17,7 +17,7 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import parse_path
 from beliefnest.world.values import AgentState
@@ -64,7 +64,7 @@ def measure() -> Sequence[Metric]:
         path = Path(folder) / "run.bn"
         recorded = _recorded(path, walk)
         size = path.stat().st_size / 1e6
-        with SqliteJournal.open(path) as journal:
+        with Journal.open(path) as journal:
             figures = [
                 Metric(
                     "ticks recorded, in batches", recorded.alone, "1/s", 20_000.0, at_least=True
@@ -136,7 +136,7 @@ def _recorded(path: Path, walk: Sequence[Frame]) -> _Recorded:
     with Nest(world, static_blocks=["air"], store=path) as nest:
         setting = nest.setting
     alone = followed = 0.0
-    with SqliteJournal.open(path) as journal:
+    with Journal.open(path) as journal:
         history = StateHistory(journal, setting)
         history.state(_MAIN, parse_path(_DEEP, tuple(agents)))
         for start in range(1, _TICKS + 1, _BATCH):
@@ -157,7 +157,7 @@ def _drop_checkpoints(path: Path) -> None:
         connection.execute("DELETE FROM keyframe")
 
 
-def _one_by_one(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
+def _one_by_one(journal: Journal, walk: Sequence[Frame]) -> float:
     """Return ticks recorded per second, one at a time."""
     journal.create(_SINGLES, None, 0)
     started = time.perf_counter()
@@ -166,7 +166,7 @@ def _one_by_one(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
     return _SINGLE / (time.perf_counter() - started)
 
 
-def _fork(journal: SqliteJournal) -> float:
+def _fork(journal: Journal) -> float:
     names = iter(range(_TRIES))
 
     def fork() -> None:
@@ -176,7 +176,7 @@ def _fork(journal: SqliteJournal) -> float:
     return median_seconds(fork, _TRIES)
 
 
-def _read(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
+def _read(journal: Journal, walk: Sequence[Frame]) -> float:
     chance = random.Random(1)
 
     def read() -> None:
@@ -189,7 +189,7 @@ def _read(journal: SqliteJournal, walk: Sequence[Frame]) -> float:
 
 
 def _open(path: Path) -> float:
-    return median_seconds(lambda: SqliteJournal.read(path).close(), _TRIES)
+    return median_seconds(lambda: Journal.read(path).close(), _TRIES)
 
 
 def _switch(store: Path) -> float:

@@ -15,7 +15,7 @@ from tests.servers import GameServer
 from beliefnest.cli.app import app, run_command_line
 from beliefnest.cli.folder import store_in
 from beliefnest.errors import InputError
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
 
@@ -89,7 +89,7 @@ def test_run_writes_a_folder_and_prints_the_report(
     assert "Get a diamond" in (folder / "probe-1" / "prompt.txt").read_text()
     with Image.open(folder / "picture.png") as picture:
         assert picture.width > 1000
-    with SqliteJournal.read(folder / "run.bn") as journal:
+    with Journal.read(folder / "run.bn") as journal:
         branches = {(info.key.path, info.key.branch) for info in journal.timelines()}
     assert (("observer",), "probe 1") in branches
 
@@ -287,7 +287,7 @@ def test_an_interrupt_ends_everything_and_leaves_a_readable_folder(whole_group: 
     assert errors.splitlines()[-1] == "beliefnest: interrupted"
     assert "Traceback" not in errors
     assert json.loads(Path("r/run.json").read_text())["status"] == "interrupted"
-    with SqliteJournal.read(Path("r/run/run.bn")) as journal:
+    with Journal.read(Path("r/run/run.bn")) as journal:
         assert journal.timelines()
     with pytest.raises(ProcessLookupError):
         os.killpg(process.pid, 0)

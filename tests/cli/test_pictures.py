@@ -17,7 +17,7 @@ from beliefnest.pictures.scene import Scene
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.sources import builtin_names
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 BUILT_IN = builtin_names()
 SIZES = (None, "one column", "two columns")
@@ -34,7 +34,7 @@ def drawn(
             store = tmp_path_factory.mktemp("run") / f"{number}.bn"
             with Nest.open(scenario, store=store, worlds=worlds) as nest:
                 outcome = run_scenario(nest, scenario, OfflineModel(), 0, 0.0, lambda *_: None)
-                with SqliteJournal.read(store) as journal:
+                with Journal.read(store) as journal:
                     conditions.append(read_condition(nest, journal, outcome))
                 predicted = any(card.prediction for card in conditions[-1].cards)
                 assert predicted == bool(scenario.probes)

@@ -8,7 +8,7 @@ import pytest
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 TRACE = """\
 {"tick": 0, "box": [[0,0,0],[9,3,9]], "fills": [[[0,0,0],[9,0,9],"stone"]], \
@@ -62,7 +62,7 @@ def test_replaying_lets_programs_read_what_they_read_then(tmp_path, capsys):
         nest["/observer"].switch("try")
         nest["/observer"].run("sally", look, senses="percepts")
     assert run_command_line(["replay", str(store), "--json"]) == 0
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         assert [p.senses for p in journal.records.programs()][-2:] == ["percepts", "percepts"]
 
 
@@ -70,7 +70,7 @@ def test_replaying_names_the_first_tick_and_field_that_differ(run, tmp_path, cap
     other = tmp_path / "run.bn"
     other.write_bytes(run.read_bytes())
     key = TimelineKey(("observer",), "plan 1")
-    with SqliteJournal.open(other) as journal, journal.together():
+    with Journal.open(other) as journal, journal.together():
         info = journal.info(key)
         entries = list(journal.entries(key, 0, info.entries))
         programs = [p for p in journal.records.programs() if p.branch == "plan 1"]
@@ -93,7 +93,7 @@ def test_replaying_runs_the_recorded_programs(run, tmp_path, capsys):
     other = tmp_path / "run.bn"
     other.write_bytes(run.read_bytes())
     key = TimelineKey(("observer",), "plan 1")
-    with SqliteJournal.open(other) as journal, journal.together():
+    with Journal.open(other) as journal, journal.together():
         info = journal.info(key)
         entries = list(journal.entries(key, 0, info.entries))
         (program,) = [p for p in journal.records.programs() if p.branch == "plan 1"]
@@ -133,7 +133,7 @@ def test_a_run_of_the_scripted_world_is_replayed_with_what_a_user_told_it(tmp_pa
     assert run_command_line(["replay", str(store), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert [row["programs"] for row in told["timelines"]] == [6, 1]
-    with SqliteJournal.open(store) as journal, journal.together():
+    with Journal.open(store) as journal, journal.together():
         key = TimelineKey(("observer",), "try")
         info = journal.info(key)
         entries = list(journal.entries(key, 0, info.entries))

@@ -14,7 +14,7 @@ from tests.processes import started
 
 from beliefnest.cli.app import run_command_line
 from beliefnest.timeline import codec
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 __all__ = ["fake"]
 
@@ -238,7 +238,7 @@ def comparable(out: str) -> dict[str, bytes]:
             each.pop("run_dir")
         found[str(file.relative_to(out))] = json.dumps(result).encode()
     for file in sorted(Path(out).rglob("run.bn")):
-        with SqliteJournal.read(file) as journal:
+        with Journal.read(file) as journal:
             for info in journal.timelines():
                 entries = journal.entries(info.key, 0, info.entries)
                 name = f"{file.relative_to(out)} {info.key}"

@@ -12,7 +12,7 @@ import pytest
 
 from beliefnest.llm.offline import OfflineModel
 from beliefnest.llm.recorded_models import ScriptedModel
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 ROOT = Path(__file__).parents[2]
 FILE = ROOT / "examples" / "observe_predict_plan_act.py"
@@ -49,7 +49,7 @@ def test_anne_foresees_the_failure_and_helps(example: ModuleType, tmp_path: Path
     assert "giveItemToOther" in only.planned
     assert only.would_help
     assert only.helped
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         branches = {(info.key.path, info.key.branch) for info in journal.timelines()}
     assert branches == {((), "main"), (("anne",), "prediction 1"), (("anne",), "plan 1")}
 

@@ -32,7 +32,7 @@ from beliefnest.studies.plainframe import read_csv_rows
 from beliefnest.suites.stories.data import read_items
 from beliefnest.timeline import codec
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.timeline.trace import load_trace
 from beliefnest.world.frames import Frame
 from beliefnest.world.registry import Registry
@@ -107,7 +107,7 @@ def entries(path: Path) -> None:
 
 
 def run_file(path: Path) -> None:
-    with SqliteJournal.read(path) as journal:
+    with Journal.read(path) as journal:
         for info in journal.timelines():
             list(journal.entries(info.key, 0, info.entries))
         journal.records.run()
@@ -117,7 +117,7 @@ def journal() -> bytes:
     """Return a run file with the frames on a timeline."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.bn"
-        with SqliteJournal.create_file(path) as made:
+        with Journal.create_file(path) as made:
             made.create(TimelineKey((), "main"), None, 0)
             made.append(TimelineKey((), "main"), FRAMES, len(FRAMES))
         return path.read_bytes()

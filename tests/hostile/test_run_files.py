@@ -20,7 +20,7 @@ import beliefnest as bn
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 ROOM = {
     "name": "room",
@@ -278,7 +278,7 @@ def test_a_row_that_cannot_be_is_refused(run, table, values):
 
 def test_a_count_of_events_that_is_none_is_refused(run):
     change_rows(run, "piece", "1", lambda row: {**row, "events": 2**40})
-    with SqliteJournal.read(run) as journal:
+    with Journal.read(run) as journal:
         key = TimelineKey((), "main")
         with pytest.raises(BeliefNestError, match="it counts"):
             journal.events_until(key, journal.info(key).entries)

@@ -16,7 +16,7 @@ from beliefnest.llm.offline import OfflineModel
 from beliefnest.scenarios.outcome import Outcome
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.timeline import codec
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.worlds.by_name import Worlds
 
 pytestmark = pytest.mark.usefixtures("kept_worlds")
@@ -123,7 +123,7 @@ def test_answers_follow_when_sally_stands_a_block_to_either_side_of_the_edge_of_
 def fingerprint(store: Path) -> str:
     """Return a hash of everything recorded: every frame of every timeline, byte for byte."""
     digest = hashlib.sha256()
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         for info in journal.timelines():
             digest.update(repr((info.key, info.base, info.start, info.head)).encode())
             for entry in journal.entries(info.key, 0, info.entries):

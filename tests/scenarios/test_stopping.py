@@ -11,7 +11,7 @@ from tests.profiles import at_night
 import beliefnest as bn
 from beliefnest.scenarios.sources import builtin_names
 from beliefnest.timeline.journal import Entry, TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.worlds.by_name import Worlds
 
 SEED = 6
@@ -64,7 +64,7 @@ def played(
             nest = bn.Nest.resume(store, worlds=worlds)
         act(nest)
     nest.close()
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         return {
             info.key: (info.head, list(journal.entries(info.key, 0, info.entries)))
             for info in journal.timelines()

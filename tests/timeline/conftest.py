@@ -6,8 +6,7 @@ import random
 import pytest
 
 from beliefnest.timeline.journal import Edit, TimelineKey
-from beliefnest.timeline.memory_journal import MemoryJournal
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState, DroppedItem, Event, EventKind
 
@@ -55,7 +54,7 @@ def make_history():
 def run_file(tmp_path):
     """Write a run file with 300 ticks on one branch, and close it."""
     path = tmp_path / "run.bn"
-    with SqliteJournal.create_file(path) as journal:
+    with Journal.create_file(path) as journal:
         journal.create(MAIN, None, 0)
         journal.append(MAIN, history(300), 300)
     return path
@@ -63,10 +62,6 @@ def run_file(tmp_path):
 
 @pytest.fixture(params=["memory", "sqlite"])
 def journal(request, tmp_path):
-    made = (
-        MemoryJournal()
-        if request.param == "memory"
-        else SqliteJournal.create_file(tmp_path / "run.bn")
-    )
+    made = Journal() if request.param == "memory" else Journal.create_file(tmp_path / "run.bn")
     yield made
     made.close()

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from beliefnest.timeline.journal import Edit, ForkPoint, TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
@@ -57,7 +57,7 @@ def entry(tick, chance):
 
 def main(path, seed):
     """Write, tell each call that returned by one byte, and wait to be killed."""
-    for _ in calls(SqliteJournal.create_file(Path(path)), int(seed)):
+    for _ in calls(Journal.create_file(Path(path)), int(seed)):
         os.write(1, b".")
     sys.stdin.read()
 

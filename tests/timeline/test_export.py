@@ -20,8 +20,8 @@ from beliefnest.timeline.export_tables import (
     run_row,
 )
 from beliefnest.timeline.journal import Edit, ForkPoint, TimelineKey
-from beliefnest.timeline.memory_journal import MemoryJournal
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord, RunRecord
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
@@ -80,7 +80,7 @@ def test_very_many_first_blocks_are_told_as_cuboids(registry, tmp_path):
     place = (12, 30, 5)
     snapshot = Snapshot(0, box, draft.terrain(), {}, {}, signs={place: "hi"})
     out = tmp_path / "out"
-    journal = MemoryJournal()
+    journal = Journal()
     journal.create(MAIN, None, 0)
     counts = export(journal, "jsonl", out, registry=registry, first=snapshot)
     assert (counts["cuboids"], counts["blocks"], counts["signs"]) == (2, 1, 1)
@@ -93,7 +93,7 @@ def test_very_many_first_blocks_are_told_as_cuboids(registry, tmp_path):
 
 @pytest.fixture
 def journal(registry):
-    journal = MemoryJournal()
+    journal = Journal()
     journal.create(MAIN, None, 0)
     pose = AgentState((0.1, 1.0, -2.5), 0.5, -0.25, False, {"head": "iron_helmet"}, {"egg": 2})
     talk = Event(EventKind.CHAT, "sally", {"text": "hé"})

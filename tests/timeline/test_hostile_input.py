@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.timeline.store_schema import STATEMENTS
 
-OPENERS = (SqliteJournal.read, SqliteJournal.open)
+OPENERS = (Journal.read, Journal.open)
 TABLES = sorted(text.split()[2] for text in STATEMENTS if text.startswith("CREATE TABLE"))
 ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
 
@@ -62,7 +62,7 @@ def test_a_planted_trigger_does_not_run(run_file):
 
 
 def test_what_a_file_defines_is_not_trusted(run_file):
-    with SqliteJournal.read(run_file) as journal:
+    with Journal.read(run_file) as journal:
         assert journal._database.row("PRAGMA trusted_schema") == (0,)
 
 
@@ -71,13 +71,13 @@ def test_a_fifo_is_not_waited_for(run_file, ending):
     fifo = run_file.with_name(run_file.name + ending)
     fifo.unlink(missing_ok=True)
     os.mkfifo(fifo)
-    for opened in (*OPENERS, SqliteJournal.create_file):
+    for opened in (*OPENERS, Journal.create_file):
         with pytest.raises(StoreError, match="not a regular file"):
             opened(run_file)
 
 
 def test_a_device_is_no_run():
-    for opened in (*OPENERS, SqliteJournal.create_file):
+    for opened in (*OPENERS, Journal.create_file):
         with pytest.raises(StoreError, match="not a regular file"):
             opened("/dev/zero")
 
@@ -99,7 +99,7 @@ HARMS = st.one_of(
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory):
     path = tmp_path_factory.mktemp("sound") / "run.bn"
-    with SqliteJournal.create_file(path) as journal:
+    with Journal.create_file(path) as journal:
         journal.create(TimelineKey((), "main"), None, 0)
     return path
 
@@ -117,7 +117,7 @@ def test_whatever_else_is_defined_is_refused(sound, tmp_path_factory, harm):
 
 
 def test_what_would_unpack_to_any_size_is_refused_unpacked(run_file):
-    with SqliteJournal.read(run_file) as journal:
+    with Journal.read(run_file) as journal:
         bomb = journal._chunks.compressed(bytes(2**26 + 1))
         assert len(bomb) < 2**16
         with pytest.raises(StoreError, match="would unpack to more than 67,108,864 bytes"):

@@ -13,8 +13,7 @@ import pytest
 from tests.profiles import at_night, few_by_day
 from tests.timeline.stored import verify
 
-from beliefnest.timeline.memory_journal import MemoryJournal
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 WRITER = Path(__file__).with_name("killed_writer.py")
 KILLS = at_night(200, 10)
@@ -31,7 +30,7 @@ def kept(journal):
 
 def expected(seed, calls):
     """All a journal holds after a number of the writer's calls, and after one more."""
-    model = MemoryJournal()
+    model = Journal()
     going = runpy.run_path(str(WRITER))["calls"](model, seed)
     assert sum(1 for _ in islice(going, calls)) == calls
     before = kept(model)
@@ -68,9 +67,9 @@ def test_a_killed_writer_leaves_what_it_was_told_was_kept(tmp_path, seed):
     path = tmp_path / "run.bn"
     calls = kill_after(path, seed, random.Random(seed).randrange(1, LONGEST))
     before, after = expected(seed, calls)
-    with SqliteJournal.read(path) as reader:
+    with Journal.read(path) as reader:
         assert kept(reader) in (before, after)
-    with SqliteJournal.open(path) as journal:
+    with Journal.open(path) as journal:
         assert kept(journal) in (before, after)
         verify(journal)
 
@@ -90,7 +89,7 @@ def test_a_reader_sees_whole_calls_while_another_process_writes(tmp_path):
     path = tmp_path / "run.bn"
     with writing(path, seed=0) as writer:
         writer.stdout.read(1)
-        with SqliteJournal.read(path) as reader:
+        with Journal.read(path) as reader:
             for _ in range(30):
                 writer.stdout.read(10)
                 with reader.unchanging():
@@ -102,5 +101,5 @@ def test_opening_to_read_never_meets_a_half_written_file(tmp_path):
     with writing(path, seed=1) as writer:
         for _ in range(60):
             writer.stdout.read(10)
-            with SqliteJournal.read(path) as reader:
+            with Journal.read(path) as reader:
                 assert reader.timelines()

@@ -10,7 +10,7 @@ from tests.profiles import at_night
 
 from beliefnest.errors import BranchError, TickError
 from beliefnest.timeline.journal import Edit, EntryFilter, ForkPoint, TimelineInfo, TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
 
@@ -54,7 +54,7 @@ class StoreMachine(RuleBasedStateMachine):
         super().__init__()
         self.folder = tempfile.TemporaryDirectory()
         self.path = Path(self.folder.name) / "run.bn"
-        self.journal = SqliteJournal.create_file(self.path)
+        self.journal = Journal.create_file(self.path)
         self.model = Model()
 
     def teardown(self):
@@ -141,7 +141,7 @@ class StoreMachine(RuleBasedStateMachine):
     @rule()
     def reopen(self):
         self.journal.close()
-        self.journal = SqliteJournal.open(self.path)
+        self.journal = Journal.open(self.path)
 
     @rule(key=keys, start=st.integers(0, 400), length=st.integers(0, 300))
     def read_range(self, key, start, length):
@@ -177,7 +177,7 @@ class StoreMachine(RuleBasedStateMachine):
 
     @invariant()
     def a_reader_sees_the_same(self):
-        with SqliteJournal.read(self.path) as reader:
+        with Journal.read(self.path) as reader:
             assert list(reader.timelines()) == self.model.infos()
 
 

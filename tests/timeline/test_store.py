@@ -16,7 +16,7 @@ from tests.timeline.stored import LONG, MAIN, PLAN, PROGRAM, PROMPT, RUN, kept, 
 from beliefnest.errors import BranchError, InputError, StoreError
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 
 
@@ -35,8 +35,8 @@ def run_python(code, *arguments):
 
 
 def test_a_second_writer_is_refused_by_file_and_process(run_file):
-    with SqliteJournal.open(run_file), pytest.raises(StoreError) as refusal:
-        SqliteJournal.open(run_file)
+    with Journal.open(run_file), pytest.raises(StoreError) as refusal:
+        Journal.open(run_file)
     assert str(run_file) in str(refusal.value)
     assert f"process {os.getpid()}" in str(refusal.value)
 
@@ -45,11 +45,11 @@ def test_a_second_writer_in_another_process_is_refused(run_file):
     code = (
         "import sys; from beliefnest.errors import StoreError\n"
         "from beliefnest.timeline.chunks import CHUNK_ENTRIES\n"
-        "from beliefnest.timeline.store import SqliteJournal\n"
-        "try: SqliteJournal.open(sys.argv[1])\n"
+        "from beliefnest.timeline.store import Journal\n"
+        "try: Journal.open(sys.argv[1])\n"
         "except StoreError as refusal: print(refusal)"
     )
-    with SqliteJournal.open(run_file):
+    with Journal.open(run_file):
         assert f"process {os.getpid()}" in run_python(code, run_file)
     assert run_python(code, run_file) == ""
 
@@ -57,13 +57,13 @@ def test_a_second_writer_in_another_process_is_refused(run_file):
 def test_a_link_to_a_file_that_is_written_is_refused(run_file):
     link = run_file.with_name("link.bn")
     link.symlink_to(run_file)
-    with SqliteJournal.open(run_file), pytest.raises(StoreError, match="one writer"):
-        SqliteJournal.open(link)
+    with Journal.open(run_file), pytest.raises(StoreError, match="one writer"):
+        Journal.open(link)
 
 
 def test_a_lock_file_left_behind_does_not_refuse(run_file):
     run_file.with_name("run.bn-lock").write_text("1")
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         journal.describe(MAIN, "mine")
 
 
@@ -73,9 +73,9 @@ def test_nothing_is_left_beside_a_closed_file(run_file):
 
 def test_readers_see_what_was_done_while_it_is_written(run_file):
     with (
-        SqliteJournal.open(run_file) as journal,
-        SqliteJournal.read(run_file) as one,
-        SqliteJournal.read(run_file) as other,
+        Journal.open(run_file) as journal,
+        Journal.read(run_file) as one,
+        Journal.read(run_file) as other,
     ):
         for tick in range(301, 700):
             journal.append(MAIN, [Frame(tick)], tick)
@@ -84,7 +84,7 @@ def test_readers_see_what_was_done_while_it_is_written(run_file):
 
 
 def test_a_reader_changes_nothing(run_file):
-    with SqliteJournal.read(run_file) as reader:
+    with Journal.read(run_file) as reader:
         for call in (
             lambda: reader.create(PLAN, None, 0),
             lambda: reader.append(MAIN, [], 400),
@@ -96,7 +96,7 @@ def test_a_reader_changes_nothing(run_file):
 
 
 def test_a_reader_of_a_timeline_deleted_meanwhile_is_told(run_file):
-    with SqliteJournal.open(run_file) as journal, SqliteJournal.read(run_file) as reader:
+    with Journal.open(run_file) as journal, Journal.read(run_file) as reader:
         reading = reader.entries(MAIN, 0, 300)
         next(reading)
         journal.delete(MAIN)
@@ -105,7 +105,7 @@ def test_a_reader_of_a_timeline_deleted_meanwhile_is_told(run_file):
 
 
 def test_a_closed_file_says_so(run_file):
-    journal = SqliteJournal.open(run_file)
+    journal = Journal.open(run_file)
     journal.close()
     journal.close()
     with pytest.raises(StoreError, match="was closed"):
@@ -116,7 +116,7 @@ def test_a_closed_file_says_so(run_file):
 
 
 def test_calls_made_together_are_kept_together(run_file):
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         before = kept(journal)
         with pytest.raises(BranchError), journal.together():
             journal.append(MAIN, [Frame(301)], 301)
@@ -135,13 +135,13 @@ def test_calls_made_together_are_kept_together(run_file):
 
 
 def test_an_inner_part_that_fails_leaves_the_rest(run_file):
-    with SqliteJournal.open(run_file) as journal, journal.together():
+    with Journal.open(run_file) as journal, journal.together():
         journal.append(MAIN, [Frame(301)], 301)
         with pytest.raises(BranchError), journal.together():
             journal.append(MAIN, [Frame(302)], 302)
             journal.info(PLAN)
         journal.append(MAIN, [], 305)
-    with SqliteJournal.read(run_file) as reader:
+    with Journal.read(run_file) as reader:
         assert reader.info(MAIN).head == 305
         assert next(reader.entries(MAIN, reader.info(MAIN).entries - 1, 10**6)) == Frame(301)
 
@@ -150,7 +150,7 @@ def test_an_inner_part_that_fails_leaves_the_rest(run_file):
 def test_entries_are_packed_however_they_come(tmp_path, step):
     path = tmp_path / "run.bn"
     frames = [Frame(tick) for tick in range(1, 10 * CHUNK_ENTRIES + 4)]
-    with SqliteJournal.create_file(path) as journal:
+    with Journal.create_file(path) as journal:
         journal.create(MAIN, None, 0)
         for at in range(0, len(frames), step):
             part = frames[at : at + step]
@@ -164,7 +164,7 @@ def test_entries_are_packed_however_they_come(tmp_path, step):
 
 
 def test_what_cannot_be_stored_is_refused_whole(run_file):
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         before = kept(journal)
         with pytest.raises(StoreError, match="object"):
             journal.append(MAIN, [Frame(301), Frame(302, blocks={(0, 0, 0): object()})], 302)
@@ -178,10 +178,10 @@ import resource, sys
 from beliefnest.errors import StoreError
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 key = TimelineKey((), "main")
-journal = SqliteJournal.open(sys.argv[1])
+journal = Journal.open(sys.argv[1])
 head = journal.info(key).head
 resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]), resource.RLIM_INFINITY))
 import random
@@ -207,7 +207,7 @@ def test_a_file_that_cannot_grow_keeps_what_was_acknowledged(run_file):
     assert int(head) > 300
     assert str(run_file) in fault
     assert "nothing of this call was kept" in fault
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         verify(journal)
         assert journal.info(MAIN).head == int(head) + 1
 
@@ -216,7 +216,7 @@ def test_a_full_database_is_told_and_nothing_is_kept(run_file):
     with closing(sqlite3.connect(run_file)) as other:
         pages = other.execute("PRAGMA page_count").fetchone()[0]
     other.close()
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         journal._database.execute(f"PRAGMA max_page_count = {pages + 5}")
         before = kept(journal)
         big = Frame(301, blocks={(x, 0, 0): x for x in range(10_000)})
@@ -231,13 +231,13 @@ UNPRIVILEGED = """
 import os, sys, urllib.parse  # loaded while it can be read
 from beliefnest.errors import StoreError
 from beliefnest.timeline.chunks import CHUNK_ENTRIES
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 if os.getuid() == 0:
     os.setuid(65534)
-with SqliteJournal.read(sys.argv[1]) as reader:
+with Journal.read(sys.argv[1]) as reader:
     print(len(reader.timelines()))
 try:
-    SqliteJournal.open(sys.argv[1])
+    Journal.open(sys.argv[1])
 except StoreError as fault:
     print(fault)
 """
@@ -257,7 +257,7 @@ def test_a_read_only_file_is_read_and_not_written(run_file, folder_mode):
 
 
 def test_the_nearest_checkpoint_lies_at_or_before(run_file):
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         assert journal.nearest_checkpoint(MAIN, "facts", 300) is None
         for place in (0, 100, 200):
             journal.put_checkpoint(MAIN, "facts", place, b"%d" % place)
@@ -273,7 +273,7 @@ def test_the_nearest_checkpoint_lies_at_or_before(run_file):
 
 
 def test_records_are_there_after_opening_again(run_file):
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         with pytest.raises(StoreError, match="has no record of what was run"):
             journal.records.run()
         records = journal.records
@@ -285,7 +285,7 @@ def test_records_are_there_after_opening_again(run_file):
         records.select(("sally",), "plan")
         records.select((), "main")
         records.put_state("random", b"\0\1")
-    with SqliteJournal.read(run_file) as reader:
+    with Journal.read(run_file) as reader:
         records = reader.records
         assert records.run() == RUN
         assert records.programs() == (PROGRAM, LONG)
@@ -296,7 +296,7 @@ def test_records_are_there_after_opening_again(run_file):
 
 
 def test_records_follow_their_branch(run_file):
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         records = journal.records
         journal.create(PLAN, None, 0)
         assert records.next_group() == 1
@@ -324,10 +324,10 @@ def files_beside(path):
 
 
 def test_a_reader_that_closes_takes_nothing_from_a_writer(run_file):
-    with SqliteJournal.open(run_file) as writer:
-        SqliteJournal.read(run_file).close()
+    with Journal.open(run_file) as writer:
+        Journal.read(run_file).close()
         writer.create(PLAN, None, 0)
-        SqliteJournal.read(run_file).close()
-        with SqliteJournal.read(run_file) as reader:
+        Journal.read(run_file).close()
+        with Journal.read(run_file) as reader:
             assert PLAN in [info.key for info in reader.timelines()]
     assert files_beside(run_file) == set()

@@ -14,7 +14,7 @@ from tests.timeline.stored import MAIN, PLAN, PROGRAM, PROMPT, RUN, kept, snapsh
 from beliefnest.errors import StoreError
 from beliefnest.timeline.codec import encode_snapshot
 from beliefnest.timeline.journal import ForkPoint
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.timeline.store_schema import APPLICATION_ID, SCHEMA_VERSION
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import AgentState
@@ -23,7 +23,7 @@ from beliefnest.world.values import AgentState
 
 
 def test_there_is_no_file(tmp_path):
-    for opened in (SqliteJournal.open, SqliteJournal.read):
+    for opened in (Journal.open, Journal.read):
         with pytest.raises(StoreError, match=r"no run file .*none\.bn"):
             opened(tmp_path / "none.bn")
     assert list(tmp_path.iterdir()) == []
@@ -32,13 +32,13 @@ def test_there_is_no_file(tmp_path):
 def test_a_file_is_not_begun_over_another(run_file):
     before = run_file.read_bytes()
     with pytest.raises(StoreError, match="exists"):
-        SqliteJournal.create_file(run_file)
+        Journal.create_file(run_file)
     assert run_file.read_bytes() == before
 
 
 def test_a_file_in_no_folder_is_refused(tmp_path):
     with pytest.raises(StoreError, match="folder"):
-        SqliteJournal.create_file(tmp_path / "no" / "run.bn")
+        Journal.create_file(tmp_path / "no" / "run.bn")
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_a_file_in_no_folder_is_refused(tmp_path):
 def test_foreign_files_are_named(tmp_path, content, told):
     path = tmp_path / "run.bn"
     path.write_bytes(content)
-    for opened in (SqliteJournal.open, SqliteJournal.read):
+    for opened in (Journal.open, Journal.read):
         with pytest.raises(StoreError, match=told) as fault:
             opened(path)
         assert str(path) in str(fault.value)
@@ -66,7 +66,7 @@ def test_foreign_files_are_named(tmp_path, content, told):
 
 def test_a_folder_is_no_run(tmp_path):
     with pytest.raises(StoreError, match="cannot be read"):
-        SqliteJournal.read(tmp_path)
+        Journal.read(tmp_path)
 
 
 def test_another_programs_database_is_named_and_left_alone(tmp_path):
@@ -75,7 +75,7 @@ def test_another_programs_database_is_named_and_left_alone(tmp_path):
         other.execute("CREATE TABLE bookmarks (id)")
     other.close()
     before = path.read_bytes()
-    for opened in (SqliteJournal.open, SqliteJournal.read):
+    for opened in (Journal.open, Journal.read):
         with pytest.raises(StoreError, match=r"another program.*bookmarks"):
             opened(path)
     assert path.read_bytes() == before
@@ -90,7 +90,7 @@ def test_another_format_is_refused_and_left_alone(run_file, version, advice):
         other.execute(f"PRAGMA user_version = {version}")
     other.close()
     before = run_file.read_bytes()
-    for opened in (SqliteJournal.open, SqliteJournal.read):
+    for opened in (Journal.open, Journal.read):
         with pytest.raises(StoreError, match=f"format {version}, .*{advice}"):
             opened(run_file)
     assert run_file.read_bytes() == before
@@ -107,7 +107,7 @@ def test_a_run_is_marked_as_one(run_file):
 def sound(tmp_path_factory):
     """Write a full run file; return it and all its contents."""
     path = tmp_path_factory.mktemp("sound") / "run.bn"
-    with SqliteJournal.create_file(path) as journal:
+    with Journal.create_file(path) as journal:
         journal.create(MAIN, None, 0)
         frames = [
             Frame(tick, {"sally": AgentState((math.sin(tick), math.cos(tick), 1 / tick))})
@@ -130,7 +130,7 @@ def sound(tmp_path_factory):
 
 def everything(path):
     """All a run file holds, read as a user would."""
-    with SqliteJournal.read(path) as reader:
+    with Journal.read(path) as reader:
         nearest = reader.nearest_checkpoint(MAIN, "facts", 99)
         if nearest is None:
             raise StoreError("there is no checkpoint")
@@ -170,17 +170,17 @@ def test_a_truncated_file_is_refused(sound, tmp_path, part):
     path.write_bytes(data[: int(len(data) * part)])
     with pytest.raises(StoreError, match=r"run\.bn"):
         everything(path)
-    with pytest.raises(StoreError, match=r"run\.bn"), SqliteJournal.open(path) as journal:
+    with pytest.raises(StoreError, match=r"run\.bn"), Journal.open(path) as journal:
         verify(journal)
 
 
 def test_a_missing_end_is_noticed_where_nothing_lay(run_file):
-    with SqliteJournal.open(run_file) as journal:
+    with Journal.open(run_file) as journal:
         journal.create(PLAN, None, 0)
         journal.append(PLAN, [Frame(1, blocks={(x, 0, 0): x for x in range(10_000)})], 1)
         journal.delete(PLAN)
     os.truncate(run_file, run_file.stat().st_size - 4096)
-    for opened in (SqliteJournal.open, SqliteJournal.read):
+    for opened in (Journal.open, Journal.read):
         with pytest.raises(StoreError, match="its end is missing"):
             opened(run_file)
 
@@ -208,9 +208,9 @@ def test_rows_that_were_tampered_with_are_found(sound, tmp_path, harm):
     with closing(sqlite3.connect(path)) as other, other:
         other.execute(harm)
     other.close()
-    with pytest.raises(StoreError, match="damaged"), SqliteJournal.open(path) as journal:
+    with pytest.raises(StoreError, match="damaged"), Journal.open(path) as journal:
         verify(journal)
-    with SqliteJournal.open(sound) as journal:
+    with Journal.open(sound) as journal:
         verify(journal)
 
 
@@ -222,11 +222,11 @@ def files_beside(path):
 
 
 def test_whoever_looked_leaves_a_whole_file(sound):
-    with SqliteJournal.read(sound) as one:
-        with SqliteJournal.read(sound) as other:
+    with Journal.read(sound) as one:
+        with Journal.read(sound) as other:
             assert kept(other) == kept(one)
         before = kept(one)
-        with SqliteJournal.open(sound):
+        with Journal.open(sound):
             pass
         assert kept(one) == before
     assert files_beside(sound) == set()

@@ -10,7 +10,7 @@ import pytest
 import beliefnest as bn
 from beliefnest.errors import InputError
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
-from beliefnest.timeline.memory_journal import MemoryJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.timeline.trace import load_trace, read_trace, record_trace
 from beliefnest.world.claims import claims_written
 from beliefnest.world.frames import Frame
@@ -228,7 +228,7 @@ def test_a_file_tells_all_its_bad_lines_by_number(registry, tmp_path):
 def test_a_trace_is_recorded_as_a_timeline(registry):
     key = TimelineKey((), "main")
     trace = read(registry, {"tick": 3, "agents": {"sally": {"yaw": 1}}}, {"tick": 8})
-    journal = MemoryJournal()
+    journal = Journal()
     record_trace(trace, journal, key)
     assert journal.info(key) == TimelineInfo(key, None, 0, 8, 2)
     assert tuple(journal.entries(key, 0, 9)) == trace.entries

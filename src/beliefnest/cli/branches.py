@@ -12,7 +12,7 @@ from rich.tree import Tree
 from beliefnest.cli.console import stdout
 from beliefnest.cli.folder import stores_in
 from beliefnest.timeline.journal import TimelineInfo, TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import path_text
 
 
@@ -24,7 +24,7 @@ def show_branches(run: Path, *, as_json: bool) -> None:
     """
     told = []
     for store in stores_in(run):
-        with SqliteJournal.read(store) as journal:
+        with Journal.read(store) as journal:
             infos, selected = journal.timelines(), set(journal.records.selected().items())
         if as_json:
             told.append({"run": str(store), "timelines": [_told(i, selected) for i in infos]})

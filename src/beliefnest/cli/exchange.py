@@ -16,7 +16,7 @@ from beliefnest.nest.past.trace_import import import_trace
 from beliefnest.timeline.export import ExportForm, export
 from beliefnest.timeline.export_tables import BeliefRow, TableRow, program_row, prompt_row, run_row
 from beliefnest.timeline.run_records import Records
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.timeline.trace import load_trace
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.registry import Registry
@@ -34,7 +34,7 @@ def export_run(options: ExportOptions) -> None:
         )
     store, paths = store_in(options.run), options.path or ()
     # The run may still be recorded: read all tables from one moment.
-    with SqliteJournal.read(store) as journal, journal.unchanging():
+    with Journal.read(store) as journal, journal.unchanging():
         nest = RecordedNest(journal)
         for path in paths:
             parse_path(path, nest.agents)

@@ -12,7 +12,7 @@ from beliefnest.episodes.telling import told_episode
 from beliefnest.errors import InputError, ScenarioError, TickError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.viewer.page.posteriors import told_inference
 from beliefnest.viewer.page.run import About
 from beliefnest.viewer.page.static import write_still_page
@@ -44,7 +44,7 @@ def write_page(options: ShowOptions, file: Path) -> None:
     with ExitStack() as stack:
         runs = []
         for store in stores_in(options.run):
-            journal = stack.enter_context(SqliteJournal.read(store))
+            journal = stack.enter_context(Journal.read(store))
             stack.enter_context(journal.unchanging())
             nest = RecordedNest(journal)
             runs.append((nest.reader, about_run(journal, nest, [options.path])))
@@ -66,7 +66,7 @@ def _check_tick(options: ShowOptions, nest: RecordedNest, store: Path) -> None:
         raise TickError(f"in {store.parent.name}: {error}") from None
 
 
-def about_run(journal: SqliteJournal, nest: RecordedNest, paths: Sequence[str] = ()) -> About:
+def about_run(journal: Journal, nest: RecordedNest, paths: Sequence[str] = ()) -> About:
     """Return the name of a run and the beliefs that its scenario asks about."""
     run = journal.records.run()
     scenario = Scenario(nest.setting)

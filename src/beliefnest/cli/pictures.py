@@ -20,7 +20,7 @@ from beliefnest.scenarios.inferring import means_text
 from beliefnest.scenarios.naming import container_name, named_place, titled
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.timeline.journal import Journal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.words import listed, with_the

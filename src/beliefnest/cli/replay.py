@@ -12,7 +12,7 @@ from beliefnest.cli.terminal_text import say
 from beliefnest.errors import InputError
 from beliefnest.nest.acting.replay import ReplayedTimeline, replay
 from beliefnest.nest.past.recording import read_start
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import path_text
 from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
@@ -47,7 +47,7 @@ def replay_runs(run: Path, *, as_json: bool) -> int:
 
 
 def _replayed(store: Path, worlds: Worlds) -> Iterator[ReplayedTimeline]:
-    with SqliteJournal.read(store) as journal, journal.unchanging():
+    with Journal.read(store) as journal, journal.unchanging():
         run = journal.records.run()
         setting, name = read_start(journal)
         programs = journal.records.programs()

@@ -42,7 +42,7 @@ from beliefnest.scenarios.judging import without_result_words
 from beliefnest.scenarios.probing import Asking
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.seeds import checked_seed
 from beliefnest.worlds.by_name import Worlds
@@ -258,7 +258,7 @@ def _run(
             outcome = run_scenario(nest, scenario, model, cell.seed, started, on_progress, asking)
         for number, probe in enumerate(outcome.probes, start=1):
             place.write_probe(number, probe)
-        with SqliteJournal.read(place.store) as journal:
+        with Journal.read(place.store) as journal:
             picture = read_condition(nest, journal, outcome)
         told = accounts(nest, outcome)
         figure = overview([picture], picture.title)
@@ -293,7 +293,7 @@ def _versions(cells: Sequence[RunCell], folder: RunFolder) -> Mapping[str, str]:
     for cell in cells:
         store = folder.cell(cell.folder).store
         if store.is_file():
-            with suppress(NotBegunError), SqliteJournal.read(store) as journal:
+            with suppress(NotBegunError), Journal.read(store) as journal:
                 return journal.records.run().versions
     return own_versions()
 

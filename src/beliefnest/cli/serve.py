@@ -21,7 +21,7 @@ from beliefnest.errors import InputError
 from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.past.history import context_of
 from beliefnest.scenarios.scenario import Scenario
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.viewer.page.static import check_depth
 from beliefnest.viewer.serving.host import Host, OpenRun
 
@@ -160,7 +160,7 @@ def _stores(folder: Path) -> Sequence[Path]:
 
 
 def _open(store: Path) -> OpenRun:
-    journal = SqliteJournal.read(store)
+    journal = Journal.read(store)
     try:
         nest = RecordedNest(journal)
         return OpenRun(nest.reader, about_run(journal, nest), journal.close)

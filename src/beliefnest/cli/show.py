@@ -40,7 +40,7 @@ from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.export_tables import prompt_row
 from beliefnest.timeline.journal import FOLLOW
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.texts import on_one_line
 from beliefnest.world.words import items_words
@@ -236,13 +236,13 @@ def _template(wanted: Path | None, kept: Mapping[str, str]) -> Template:
 
 
 @contextmanager
-def _opened(store: Path) -> Iterator[tuple[Scenario, RecordedNest, SqliteJournal]]:
-    with SqliteJournal.read(store) as journal, journal.unchanging():
+def _opened(store: Path) -> Iterator[tuple[Scenario, RecordedNest, Journal]]:
+    with Journal.read(store) as journal, journal.unchanging():
         nest = RecordedNest(journal)
         yield _scenario(journal, nest), nest, journal
 
 
-def _scenario(journal: SqliteJournal, nest: RecordedNest) -> Scenario:
+def _scenario(journal: Journal, nest: RecordedNest) -> Scenario:
     """Return the scenario of a run; for a run made in code, a scenario with its setting only."""
     run = journal.records.run()
     if not run.text:

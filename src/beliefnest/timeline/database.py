@@ -136,7 +136,7 @@ class Database(Owned):
 
     @classmethod
     def create(cls, path: Path) -> "Database":
-        """Create a new run file; StoreError as of `SqliteJournal.create_file`."""
+        """Create a new run file; StoreError as of `Journal.create_file`."""
         _check_regular(path)
         database = cls._locked(path, "rwc")
         with database.closed_on_fault():
@@ -172,7 +172,7 @@ class Database(Owned):
 
     @classmethod
     def open(cls, path: Path) -> "Database":
-        """Open a run file for writing; StoreError as of `SqliteJournal.open`."""
+        """Open a run file for writing; StoreError as of `Journal.open`."""
         _recognise_start(path)
         if not os.access(path, os.W_OK):
             raise StoreError(f"{path} {_FAULTS[sqlite3.SQLITE_READONLY]}")
@@ -186,7 +186,7 @@ class Database(Owned):
 
     @classmethod
     def read(cls, path: Path) -> "Database":
-        """Open a run file for reading; StoreError as of `SqliteJournal.read`."""
+        """Open a run file for reading; StoreError as of `Journal.read`."""
         _recognise_start(path)
         database = cls(_connected(path, "ro"), path, None)
         try:

@@ -26,7 +26,8 @@ from beliefnest.timeline.export_tables import (
     snapshot_rows,
     timeline_row,
 )
-from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 

@@ -5,17 +5,15 @@ which is a point on another timeline, or at the world's first snapshot. No other
 facts are stored: every follow-mode belief is computed from timelines.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Protocol
 
 from beliefnest.errors import BranchError, InputError, TickError
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.texts import quoted
-from beliefnest.world.values import AgentState, Block, Items, Position
+from beliefnest.world.values import Block, Items, Position
 
 FOLLOW = "follow"
 """Reserved branch name: the timeline of a simulator in follow mode."""
@@ -166,132 +164,3 @@ def check_place(info: TimelineInfo, entries: int) -> None:
             f"branch {quoted(info.key.branch)} of {path_text(info.key.path)} has {info.entries} "
             f"entries; nothing can be stored after entry {entries}"
         )
-
-
-class Journal(Protocol):
-    """Store of timelines with one writer; writes are durable when a call returns."""
-
-    @property
-    def writable(self) -> bool:
-        """True if the journal accepts changes.
-
-        Readers leave no checkpoints in a journal that does not.
-        """
-
-    def timelines(self) -> Sequence[TimelineInfo]:
-        """Return the metadata of all timelines, in order of creation."""
-
-    def has(self, key: TimelineKey) -> bool:
-        """Return True if there is a timeline of that key."""
-
-    def info(self, key: TimelineKey) -> TimelineInfo:
-        """Return the metadata of a timeline; BranchError if there is none of that key."""
-
-    def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
-        """Begin an empty timeline; the cost does not depend on the length of its base.
-
-        Raises:
-            BranchError: The key is in use, or the base does not exist.
-        """
-
-    def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
-        """Add entries, all or none, and move the head to tick `head`.
-
-        Raises:
-            BranchError: There is no timeline of that key.
-            TickError: The ticks do not rise from the old head to the new one.
-        """
-
-    def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Yield the entries with indexes start to stop - 1, oldest first.
-
-        Fewer come if the timeline ends earlier. Entries that are appended during the iteration are
-        left out. `start` must not be negative. BranchError as above.
-        """
-
-    def entries_until(self, key: TimelineKey, tick: int) -> int:
-        """Return the number of entries at `tick` or earlier; BranchError as above."""
-
-    def filtered(
-        self, key: TimelineKey, start: int, stop: int, what: EntryFilter
-    ) -> Iterator[tuple[int, Entry]]:
-        """Yield the entries from start to stop - 1 that match a filter, with their indexes.
-
-        The time depends on the number of matches, hardly on the number of entries skipped.
-        BranchError as above.
-        """
-
-    def events_until(self, key: TimelineKey, entries: int) -> int:
-        """Return the number of events in the first `entries` entries; BranchError as above."""
-
-    def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """Return the last state of each agent that the first `entries` entries name.
-
-        The time does not depend on the number of entries. BranchError as above.
-        """
-
-    def rename(self, key: TimelineKey, name: str) -> None:
-        """Rename a timeline's branch; timelines based on it refer to the new name.
-
-        BranchError as above, or if the new name is in use.
-        """
-
-    def delete(self, key: TimelineKey) -> None:
-        """Remove a timeline; BranchError as above, or if another one is based on it."""
-
-    def describe(self, key: TimelineKey, description: str) -> None:
-        """Set a timeline's description; BranchError if there is none of that key."""
-
-    def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
-        """Store bytes from which a reader continues after the first `entries` entries.
-
-        A checkpoint spares the reader these entries. It replaces an older one of the same place and
-        name, and is deleted with its timeline. BranchError as above; InputError if the timeline has
-        fewer entries.
-        """
-
-    def nearest_checkpoint(
-        self, key: TimelineKey, name: str, entries: int
-    ) -> tuple[int, bytes] | None:
-        """Return the last checkpoint of that name at or before entry `entries`, and its place.
-
-        None if the timeline has none there; its base may have one. BranchError as above.
-        """
-
-    def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
-        """Store the internal state of a timeline's body, which no entry contains.
-
-        Args:
-            key: Key of the timeline.
-            entries: Number of entries before this moment.
-            tick: Tick of the body; several calls may end after the same entry.
-            state: Bytes that only the world can read.
-
-        Raises:
-            BranchError: There is no timeline of that key.
-            InputError: The timeline has fewer entries.
-        """
-
-    def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
-        """Return the internal state stored for exactly this moment; None if there is none.
-
-        BranchError as above.
-        """
-
-    def together(self) -> AbstractContextManager[None]:
-        """Make the calls inside the block atomic; blocks may be nested."""
-
-    def close(self) -> None:
-        """Release the resources of the journal."""
-
-
-def lineage(journal: Journal, key: TimelineKey) -> Iterator[tuple[TimelineKey, int]]:
-    """Yield a timeline and its ancestors, each with its last tick in the timeline's past.
-
-    BranchError as of `Journal.info`.
-    """
-    info = journal.info(key)
-    yield key, info.head
-    while info.base is not None:
-        yield info.base.timeline, info.base.tick
-        info = journal.info(info.base.timeline)

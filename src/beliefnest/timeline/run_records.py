@@ -3,14 +3,14 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, Protocol, TypeVar
+from typing import Literal, TypeVar
 
 import msgspec
 
 from beliefnest.errors import NotBegunError, StoreError
 from beliefnest.timeline import codec
 from beliefnest.timeline.database import Database, DatabaseRow, checked, checksum
-from beliefnest.timeline.journal import FOLLOW, Journal, TimelineKey
+from beliefnest.timeline.journal import FOLLOW, TimelineKey
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.texts import quoted
 
@@ -293,14 +293,6 @@ class Records:
         for number, *row in rows:
             what = f"{table} {quoted(number)}"
             yield number, checked(tuple(row), self._database.path, what, tuple[str, str, bytes])
-
-
-class RunJournal(Journal, Protocol):
-    """A journal that stores the records of a run together with its timelines."""
-
-    @property
-    def records(self) -> Records:
-        """Records of the run; they change with timelines that are renamed or deleted."""
 
 
 def _with_branch(record: Record, branch: str) -> Record:

@@ -1,18 +1,26 @@
-"""Journal in one SQLite file per run.
+"""The journal: timelines with their entries, in one SQLite file per run or in a temporary one.
 
-Entries are stored in chunks (`timeline/chunks.py`): every call is durable when it returns, and
-reading a past entry unpacks one chunk.
+Entries are stored in chunks (`timeline/chunks.py`): reading a past entry unpacks one chunk. In a
+file every call is durable when it returns. Without a file, the newest entries of each timeline stay
+in memory, and only older ones go to a temporary database. So memory does not grow with the length
+of a run. The metadata of all timelines are in memory in both cases.
 """
 
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import chain
+from operator import attrgetter
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Self
+from weakref import finalize
 
 from beliefnest.errors import BranchError
 from beliefnest.timeline import codec
 from beliefnest.timeline.bounds import RunBounds
-from beliefnest.timeline.chunks import Chunks
+from beliefnest.timeline.chunks import CHUNK_ENTRIES, Chunks
 from beliefnest.timeline.database import Database, checksum, damage
 from beliefnest.timeline.journal import (
     Entry,
@@ -26,14 +34,22 @@ from beliefnest.timeline.journal import (
     check_append,
     check_base,
     check_place,
+    count_of_events,
+    is_found,
 )
-from beliefnest.timeline.own_key import own_marks
+from beliefnest.timeline.own_key import Marks, own_marks
 from beliefnest.timeline.run_records import Records, path_from, path_to
+from beliefnest.timeline.store_schema import PAST, RECORDS
 from beliefnest.timeline.stored_states import StoredStates
+from beliefnest.world.frames import Frame
 from beliefnest.world.limits import LATEST_TICK
 from beliefnest.world.paths import path_text
 from beliefnest.world.texts import quoted, shortened
 from beliefnest.world.values import AgentState
+
+_RECENT = 512
+"""Least number of entries that a timeline without a file keeps in memory once it packs older ones.
+"""
 
 
 class _TimelineRow(NamedTuple):
@@ -77,28 +93,65 @@ class _TimelineRow(NamedTuple):
 _COLUMNS = ", ".join(_TimelineRow._fields)
 
 
-class SqliteJournal:
-    """A `Journal` in a run file; what a call wrote is durable when it returns.
+@dataclass(frozen=True, slots=True)
+class _Timeline:
+    """A timeline with the entries that are not in the database.
 
-    Create one with `create_file`, `open` or `read`; close it, or use it as a context manager. Every
-    call may raise StoreError: the disk is full, or the file is damaged, closed, or open for reading
-    only.
+    Attributes:
+        info: Key, base, head and other metadata.
+        number: Row id of the timeline in the database; it is never used again.
+        packed: Number of entries in compressed chunks; these are the first ones.
+        recent: The newest entries, which only memory has; none if there is a file.
+    """
+
+    info: TimelineInfo
+    number: int
+    packed: int = 0
+    recent: Sequence[Entry] = ()
+
+    @property
+    def stored(self) -> int:
+        """Number of entries in the database; these are the first ones."""
+        return self.info.entries - len(self.recent)
+
+    def part(self, start: int, stop: int) -> Sequence[Entry]:
+        """Return the entries with indexes start to stop - 1 that only memory has."""
+        return self.recent[max(0, start - self.stored) : max(0, stop - self.stored)]
+
+
+class Journal:
+    """Store of timelines with one writer.
+
+    Create one with `temporary`, `create_file`, `open` or `read`; close it, or use it as a context
+    manager. Every call may raise StoreError: the disk is full, or the file is damaged, closed, or
+    open for reading only. Every call with a key raises BranchError if there is no timeline of it.
 
     Attributes:
         path: Path of the file.
-        writable: True if the file was opened for writing.
-        records: Records of the run besides its timelines.
+        writable: True if the journal accepts changes. Readers leave no checkpoints in a journal
+            that does not.
+        records: Records of the run besides its timelines. They change with timelines that are
+            renamed or deleted.
     """
 
-    def __init__(self, database: Database) -> None:
+    def __init__(self, database: Database | None = None) -> None:
+        self._has_file = database is not None
+        if database is None:
+            database = Database.temporary(RECORDS)
+            # Users need not close this journal, and can read it after `close`.
+            finalize(self, database.close)
         self._database = database
         self._chunks = Chunks(database)
-        self._states = StoredStates(database, self._chunks, own_marks)
+        marks = own_marks if self._has_file else cache(Marks)
+        self._states = StoredStates(database, self._chunks, marks)
+        self._known: dict[TimelineKey, _Timeline] = {}
+        self._last_number = 0
+        self._version: object = None
         self.path, self.writable = database.path, database.writable
         self.records = Records(database)
 
     @classmethod
-    def create_file(cls, path: Path | str) -> "SqliteJournal":
+    def create_file(cls, path: Path | str) -> Self:
         """Create a run file.
 
         Raises:
@@ -107,7 +160,7 @@ class SqliteJournal:
         return cls(Database.create(Path(path)))
 
     @classmethod
-    def open(cls, path: Path | str) -> "SqliteJournal":
+    def open(cls, path: Path | str) -> Self:
         """Open a run file for writing, to continue the run.
 
         Raises:
@@ -117,7 +170,7 @@ class SqliteJournal:
         return cls._sound(Database.open(Path(path)))
 
     @classmethod
-    def read(cls, path: Path | str) -> "SqliteJournal":
+    def read(cls, path: Path | str) -> Self:
         """Open a run file for reading; another process may write it at the same time.
 
         Raises:
@@ -126,205 +179,352 @@ class SqliteJournal:
         return cls._sound(Database.read(Path(path)))
 
     @classmethod
-    def _sound(cls, database: Database) -> "SqliteJournal":
+    def _sound(cls, database: Database) -> Self:
         with database.closed_on_fault(), database.unchanging():
             journal = cls(database)
             journal._check_timelines()
             return journal
 
-    def __enter__(self) -> "SqliteJournal":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+    def close(self) -> None:
+        """Close the file and release its lock; closing twice is allowed.
+
+        A journal without a file can still be read.
+        """
+        if self._has_file:
+            self._database.close()
 
     def keep_within(self, bounds: RunBounds) -> None:
         """Check all entries that are read from now on: StoreError if one is out of bounds.
 
         StoreError also if a timeline is that of a simulator that cannot be.
         """
-        for row in self._timeline_rows("ORDER BY id"):
-            bounds.check_path(row.key.path)
+        for key in self._timelines:
+            bounds.check_path(key.path)
         self._chunks.bounds = bounds
 
-    def together(self) -> AbstractContextManager[None]:
-        """Make the calls inside the block atomic: if one raises, nothing of them is stored."""
-        return self._database.transaction()
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """Make the calls inside the block atomic: if one raises, nothing of them is stored.
+
+        Blocks may be nested.
+        """
+        before = dict(self._timelines), self._last_number
+        try:
+            with self._database.transaction():
+                yield
+        except BaseException:
+            self._known, self._last_number = before
+            raise
 
     def unchanging(self) -> AbstractContextManager[None]:
         """Read one state of the file throughout the block, whatever a writer does meanwhile."""
         return self._database.unchanging()
 
     def timelines(self) -> Sequence[TimelineInfo]:
-        """Return all timelines, in order of creation."""
-        rows = {row.id: row for row in self._timeline_rows("ORDER BY id")}
-        return tuple(
-            _info(row, None if row.base is None else rows[row.base]) for row in rows.values()
-        )
+        """Return the metadata of all timelines, in order of creation."""
+        return tuple(timeline.info for timeline in self._timelines.values())
 
     def has(self, key: TimelineKey) -> bool:
         """Return True if there is a timeline of that key."""
-        return self._found(key) is not None
+        return key in self._timelines
 
     def info(self, key: TimelineKey) -> TimelineInfo:
-        """Return one timeline; BranchError if there is none of that key."""
-        row = self._row(key)
-        base = None
-        if row.base is not None:
-            base = next(self._timeline_rows("WHERE id = ?", row.base), None)
-            if base is None:
-                raise damage(self.path, f"the base of {row.words} is missing")
-        return _info(row, base)
+        """Return the metadata of a timeline."""
+        return self._timeline(key).info
+
+    def lineage(self, key: TimelineKey) -> Iterator[tuple[TimelineKey, int]]:
+        """Yield a timeline and its ancestors, each with its last tick in the timeline's past."""
+        info = self.info(key)
+        yield key, info.head
+        while info.base is not None:
+            yield info.base.timeline, info.base.tick
+            info = self.info(info.base.timeline)
 
     def create(self, key: TimelineKey, base: ForkPoint | None, start: int) -> None:
-        """Begin an empty timeline; BranchError if it exists or its base does not."""
-        with self._database.transaction():
-            if self._found(key) is not None:
-                raise branch_taken(key)
-            number = None
-            if base is not None:
-                below = self._row(base.timeline)
-                check_base(key, base, below.entries)
-                number = below.id
-            self._write(
-                _TimelineRow(
-                    id=self._next_id(),
-                    path=path_to(key.path),
-                    branch=key.branch,
-                    base=number,
-                    base_entries=None if base is None else base.entries,
-                    base_tick=None if base is None else base.tick,
-                    start=start,
-                    head=start,
-                    entries=0,
-                    packed=0,
-                    description="",
-                )
-            )
+        """Begin an empty timeline; the cost does not depend on the length of its base.
+
+        Raises:
+            BranchError: The key is in use, or the base does not exist.
+        """
+        if key in self._timelines:
+            raise branch_taken(key)
+        if base is not None:
+            check_base(key, base, self.info(base.timeline).entries)
+        number = self._last_number + 1
+        self._put(_Timeline(TimelineInfo(key, base, start, start), number))
+        self._last_number = number
 
     def append(self, key: TimelineKey, entries: Sequence[Entry], head: int) -> None:
-        """Add entries, all or none, and move the head; TickError if ticks do not rise."""
-        encoded = [codec.encode_entry(entry) for entry in entries]
-        with self._database.transaction():
-            row = self._row(key)
-            check_append(_info(row, None), entries, head)
-            packed = row.packed
-            if encoded:
-                packed = self._chunks.add(row.id, row.entries, row.packed, encoded, entries)
-            self._write(row._replace(head=head, entries=row.entries + len(encoded), packed=packed))
+        """Add entries, all or none, and move the head to tick `head`.
+
+        Raises:
+            TickError: The ticks do not rise from the old head to the new one.
+        """
+        timeline = self._timeline(key)
+        check_append(timeline.info, entries, head)
+        recent = (*timeline.recent, *entries)
+        old = len(recent)
+        if not self._has_file:
+            old = max(old - _RECENT, 0) // CHUNK_ENTRIES * CHUNK_ENTRIES
+        count = timeline.info.entries + len(entries)
+        info = replace(timeline.info, head=head, entries=count)
+        self._put(replace(timeline, info=info, recent=recent[old:]), recent[:old])
+
+    def _put(self, timeline: _Timeline, old: Sequence[Entry] = ()) -> None:
+        """Keep a timeline that is new or has changed.
+
+        Args:
+            timeline: The timeline.
+            old: Entries before its recent ones that are not in the database yet.
+        """
+        if self._has_file or old:
+            encoded = [codec.encode_entry(entry) for entry in old]
+            with self._writing_past():
+                if old:
+                    first = timeline.stored - len(old)
+                    number, packed = timeline.number, timeline.packed
+                    packed = self._chunks.add(number, first, packed, encoded, old)
+                    timeline = replace(timeline, packed=packed)
+                self._write(timeline)
+        self._known[timeline.info.key] = timeline
 
     def entries(self, key: TimelineKey, start: int, stop: int) -> Iterator[Entry]:
-        """Yield the entries with indexes start to stop - 1, oldest first."""
-        row = self._row(key)
-        stop = min(stop, row.entries)
-        return self._chunks.entries(row.id, start, stop, lambda: self._gone(row.id, key))
+        """Yield the entries with indexes start to stop - 1, oldest first.
+
+        Fewer come if the timeline ends earlier. Entries that are appended during the iteration are
+        left out. `start` must not be negative.
+        """
+        timeline = self._timeline(key)
+        recent = iter(timeline.part(start, stop))
+        if start >= timeline.stored:
+            return recent
+        number, until = timeline.number, min(stop, timeline.stored)
+        old = self._chunks.entries(number, start, until, lambda: self._gone(number, key))
+        return chain(old, recent)
 
     def entries_until(self, key: TimelineKey, tick: int) -> int:
         """Return the number of entries at `tick` or earlier."""
-        row = self._row(key)
-        found = self._chunks.entries_until(row.id, tick)
-        return row.entries if found is None else found
+        timeline = self._timeline(key)
+        stored, recent = timeline.stored, timeline.recent
+        if stored and not (recent and recent[0].tick <= tick):
+            found = self._chunks.entries_until(timeline.number, tick)
+            return stored if found is None else found
+        return stored + bisect_right(recent, tick, key=attrgetter("tick"))
 
     def filtered(
         self, key: TimelineKey, start: int, stop: int, what: EntryFilter
     ) -> Iterator[tuple[int, Entry]]:
-        """Yield the entries from start to stop - 1 that match a filter, with their indexes."""
-        row = self._row(key)
-        return self._chunks.filtered(row.id, start, min(stop, row.entries), what)
+        """Yield the entries from start to stop - 1 that match a filter, with their indexes.
+
+        The time depends on the number of matches, hardly on the number of entries skipped.
+        """
+        timeline = self._timeline(key)
+        numbered = enumerate(timeline.part(start, stop), start=max(start, timeline.stored))
+        recent = ((number, entry) for number, entry in numbered if is_found(entry, what))
+        if start >= timeline.stored:
+            return recent
+        until = min(stop, timeline.stored)
+        return chain(self._chunks.filtered(timeline.number, start, until, what), recent)
 
     def events_until(self, key: TimelineKey, entries: int) -> int:
         """Return the number of events in the first `entries` entries."""
+        timeline = self._timeline(key)
+        count = sum(map(count_of_events, timeline.part(0, entries)))
+        if not timeline.stored:
+            return count
         with self._database.unchanging():
-            return self._chunks.events_until(self._row(key).id, entries)
+            old = min(entries, timeline.stored)
+            return count + self._chunks.events_until(timeline.number, old)
 
     def agents_after(self, key: TimelineKey, entries: int) -> Mapping[str, AgentState | None]:
-        """Return the last state of each agent that the first `entries` entries name."""
-        with self._database.unchanging():
-            return self._chunks.agents_after(self._row(key).id, entries)
+        """Return the last state of each agent that the first `entries` entries name.
+
+        The time does not depend on the number of entries.
+        """
+        timeline = self._timeline(key)
+        agents: dict[str, AgentState | None] = {}
+        if timeline.stored:
+            with self._database.unchanging():
+                old = min(entries, timeline.stored)
+                agents.update(self._chunks.agents_after(timeline.number, old))
+        for entry in timeline.part(0, entries):
+            if isinstance(entry, Frame):
+                agents.update(entry.agents)
+        return agents
 
     def rename(self, key: TimelineKey, name: str) -> None:
-        """Rename a timeline's branch in all tables that name it."""
+        """Rename a timeline's branch; timelines based on it refer to the new name.
+
+        Raises:
+            BranchError: The new name is in use.
+        """
+        new, timeline = TimelineKey(key.path, name), self._timeline(key)
+        if new in self._timelines:
+            raise branch_taken(new)
         with self._database.transaction():
-            row = self._row(key)
-            if self._found(TimelineKey(key.path, name)) is not None:
-                raise branch_taken(TimelineKey(key.path, name))
-            self._write(row._replace(branch=name))
+            self._write(_renamed(timeline, key, new))
             self.records.follow_rename(key.path, key.branch, name)
+        # The mapping is built again, so that timelines stay in order of creation.
+        all_of_them = (_renamed(each, key, new) for each in self._known.values())
+        self._known = {each.info.key: each for each in all_of_them}
 
     def delete(self, key: TimelineKey) -> None:
-        """Remove a timeline with its records; BranchError if another is based on it."""
+        """Remove a timeline with its records; BranchError if another one is based on it."""
+        number = self._timeline(key).number
+        infos = [each.info for each in self._known.values()]
+        based = [info.key for info in infos if info.base and info.base.timeline == key]
+        if based:
+            raise branch_carries(key, based)
         with self._database.transaction():
-            row = self._row(key)
-            based = [other.key for other in self._timeline_rows("WHERE base = ?", row.id)]
-            if based:
-                raise branch_carries(key, based)
-            self._states.forget(row.id)
-            self._database.execute("DELETE FROM timeline WHERE id = ?", (row.id,))
+            if self._has_past:
+                self._states.forget(number)
+            if self._has_file:
+                self._database.execute("DELETE FROM timeline WHERE id = ?", (number,))
             self.records.forget_branch(key.path, key.branch)
+        del self._known[key]
 
     def describe(self, key: TimelineKey, description: str) -> None:
         """Set a timeline's description."""
-        with self._database.transaction():
-            self._write(self._row(key)._replace(description=description))
+        timeline = self._timeline(key)
+        self._put(replace(timeline, info=replace(timeline.info, description=description)))
 
     def put_checkpoint(self, key: TimelineKey, name: str, entries: int, body: bytes) -> None:
-        """Store a checkpoint for the first `entries` entries; InputError if there are fewer."""
+        """Store bytes from which a reader continues after the first `entries` entries.
+
+        A checkpoint spares the reader these entries. It replaces an older one of the same place and
+        name, and is deleted with its timeline.
+
+        Raises:
+            InputError: The timeline has fewer entries.
+        """
+        timeline = self._timeline(key)
+        check_place(timeline.info, entries)
         packed = self._chunks.compressed(body)
-        with self._database.transaction():
-            row = self._row(key)
-            check_place(_info(row, None), entries)
-            self._states.put_checkpoint(row.id, name, entries, packed)
+        with self._writing_past():
+            self._states.put_checkpoint(timeline.number, name, entries, packed)
 
     def nearest_checkpoint(
         self, key: TimelineKey, name: str, entries: int
     ) -> tuple[int, bytes] | None:
-        """Return the last checkpoint of that name at or before entry `entries`, and its place."""
-        return self._states.nearest_checkpoint(self._row(key).id, name, entries)
+        """Return the last checkpoint of that name at or before entry `entries`, and its place.
+
+        None if the timeline has none there; its base may have one.
+        """
+        number = self._timeline(key).number
+        return self._states.nearest_checkpoint(number, name, entries) if self._has_past else None
 
     def put_body_state(self, key: TimelineKey, entries: int, tick: int, state: bytes) -> None:
-        """Store the internal state of a timeline's body; InputError if there are fewer entries."""
-        with self._database.transaction():
-            row = self._row(key)
-            check_place(_info(row, None), entries)
-            self._states.put_body_state(row.id, entries, tick, state)
+        """Store the internal state of a timeline's body, which no entry contains.
+
+        Args:
+            key: Key of the timeline.
+            entries: Number of entries before this moment.
+            tick: Tick of the body; several calls may end after the same entry.
+            state: Bytes that only the world can read.
+
+        Raises:
+            InputError: The timeline has fewer entries.
+        """
+        timeline = self._timeline(key)
+        check_place(timeline.info, entries)
+        with self._writing_past():
+            self._states.put_body_state(timeline.number, entries, tick, state)
 
     def body_state(self, key: TimelineKey, entries: int, tick: int) -> bytes | None:
         """Return the internal state stored for exactly this moment; None if there is none."""
-        return self._states.body_state(self._row(key).id, entries, tick)
+        number = self._timeline(key).number
+        return self._states.body_state(number, entries, tick) if self._has_past else None
 
-    def close(self) -> None:
-        """Close the file and release its lock; closing twice is allowed."""
-        self._database.close()
+    @property
+    def _has_past(self) -> bool:
+        """True if there are tables for entries, checkpoints and states of bodies."""
+        # Asked each time, because undoing a call may remove the tables of a temporary database.
+        made = "SELECT 1 FROM sqlite_master WHERE name = 'piece'"
+        return self._has_file or self._database.row(made) is not None
 
-    def _timeline_rows(self, where: str, *values: object) -> Iterator[_TimelineRow]:
-        rest, what = f"timeline {where}", "a timeline"
-        return self._database.sound_rows(_COLUMNS, rest, values, what, _TimelineRow)
+    @contextmanager
+    def _writing_past(self) -> Iterator[None]:
+        """Make the statements inside the block atomic; make the tables that short runs lack."""
+        with self._database.transaction():
+            if not self._has_past:
+                for statement in PAST:
+                    self._database.execute(statement)
+            yield
 
-    def _found(self, key: TimelineKey) -> _TimelineRow | None:
-        rows = self._timeline_rows("WHERE path = ? AND branch = ?", path_to(key.path), key.branch)
-        return next(rows, None)
+    @property
+    def _timelines(self) -> dict[TimelineKey, _Timeline]:
+        """All timelines in order of creation, as the file has them now."""
+        if self._has_file:
+            # The number changes if another process has written the file.
+            version = self._database.row("PRAGMA data_version")
+            if version != self._version:
+                self._known, self._version = self._read_timelines(), version
+        return self._known
 
-    def _row(self, key: TimelineKey) -> _TimelineRow:
-        row = self._found(key)
-        if row is None:
+    def _timeline(self, key: TimelineKey) -> _Timeline:
+        timeline = self._timelines.get(key)
+        if timeline is None:
             raise self._missing(key)
-        return row
+        return timeline
 
     def _gone(self, number: int, key: TimelineKey) -> BranchError | None:
         """Return the error for a timeline if it was deleted, None if it was not."""
-        return None if any(self._timeline_rows("WHERE id = ?", number)) else self._missing(key)
+        kept = (timeline.number for timeline in self._timelines.values())
+        return None if number in kept else self._missing(key)
 
     def _missing(self, key: TimelineKey) -> BranchError:
-        beside = self._timeline_rows("WHERE path = ?", path_to(key.path))
-        return branch_missing(key, (other.branch for other in beside))
+        return branch_missing(
+            key, (other.branch for other in self._known if other.path == key.path)
+        )
 
-    def _next_id(self) -> int:
+    def _rows(self) -> dict[int, _TimelineRow]:
+        rest, what = "timeline ORDER BY id", "a timeline"
+        rows = self._database.sound_rows(_COLUMNS, rest, (), what, _TimelineRow)
+        return {row.id: row for row in rows}
+
+    def _read_timelines(self) -> dict[TimelineKey, _Timeline]:
+        rows = self._rows()
         # SQLite's sequence also counts deleted rows. An id is never used twice, so that a reader
         # never takes one timeline for another.
-        row = self._database.row("SELECT seq FROM sqlite_sequence WHERE name = 'timeline'")
-        return 1 if row is None else row[0] + 1
+        last = self._database.row("SELECT seq FROM sqlite_sequence WHERE name = 'timeline'")
+        self._last_number = 0 if last is None else last[0]
+        known = (self._from_row(row, rows) for row in rows.values())
+        return {timeline.info.key: timeline for timeline in known}
 
-    def _write(self, row: _TimelineRow) -> None:
+    def _from_row(self, row: _TimelineRow, rows: Mapping[int, _TimelineRow]) -> _Timeline:
+        fork = None
+        if row.base is not None:
+            base = rows.get(row.base)
+            if base is None or row.base_entries is None or row.base_tick is None:
+                raise damage(self.path, f"the base of {row.words} is missing")
+            fork = ForkPoint(base.key, row.base_entries, row.base_tick)
+        info = TimelineInfo(row.key, fork, row.start, row.head, row.entries, row.description)
+        return _Timeline(info, row.id, row.packed)
+
+    def _write(self, timeline: _Timeline) -> None:
+        """Write the row of a timeline if there is a file; the caller opens the transaction."""
+        if not self._has_file:
+            return
+        info, base = timeline.info, timeline.info.base
+        row = _TimelineRow(
+            id=timeline.number,
+            path=path_to(info.key.path),
+            branch=info.key.branch,
+            base=None if base is None else self._known[base.timeline].number,
+            base_entries=None if base is None else base.entries,
+            base_tick=None if base is None else base.tick,
+            start=info.start,
+            head=info.head,
+            entries=info.entries,
+            packed=timeline.packed,
+            description=info.description,
+        )
         marks = ", ".join("?" * (len(row) + 1))
         self._database.execute(
             f"INSERT INTO timeline ({_COLUMNS}, seal) VALUES ({marks}) ON CONFLICT (id) DO UPDATE "
@@ -335,7 +535,7 @@ class SqliteJournal:
 
     def _check_timelines(self) -> None:
         """Check that every timeline has its base and its last entry."""
-        rows = {row.id: row for row in self._timeline_rows("ORDER BY id")}
+        rows = self._rows()
         for row in rows.values():
             last = self._database.row(
                 "SELECT first + count FROM piece WHERE timeline = ? ORDER BY first DESC LIMIT 1",
@@ -349,8 +549,9 @@ class SqliteJournal:
                 raise damage(self.path, f"{row.words} has ticks or entries that cannot be")
 
 
-def _info(row: _TimelineRow, base: _TimelineRow | None) -> TimelineInfo:
-    fork = None
-    if base is not None and row.base_entries is not None and row.base_tick is not None:
-        fork = ForkPoint(base.key, row.base_entries, row.base_tick)
-    return TimelineInfo(row.key, fork, row.start, row.head, row.entries, row.description)
+def _renamed(timeline: _Timeline, key: TimelineKey, new: TimelineKey) -> _Timeline:
+    """Return a timeline as it is when a key has become another."""
+    info = timeline.info
+    if info.base is not None and info.base.timeline == key:
+        info = replace(info, base=replace(info.base, timeline=new))
+    return replace(timeline, info=replace(info, key=new if info.key == key else info.key))

@@ -17,7 +17,8 @@ from beliefnest.errors import BeliefNestError, InputError
 from beliefnest.files import decode_json, open_regular
 from beliefnest.perception.options import Perception
 from beliefnest.timeline.events import event_from
-from beliefnest.timeline.journal import Entry, Journal, TimelineKey
+from beliefnest.timeline.journal import Entry, TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.claims import Claim, claims_from_plain, claims_of
 from beliefnest.world.event_kinds import AT_CONTAINERS, EventKind
 from beliefnest.world.frames import Frame, PlainClaims, Snapshot

@@ -15,7 +15,7 @@ from beliefnest.cli.app import run_command_line
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline import codec
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.nameable import Nameable
 from beliefnest.world.values import Position
 
@@ -53,7 +53,7 @@ def hide(there: bn.ScriptedWorld) -> None:
 
 
 def frames(store: Path) -> list[bytes]:
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         key = TimelineKey((), "main")
         entries = journal.entries(key, 0, journal.info(key).entries)
         return [codec.encode_entry(entry) for entry in entries]

@@ -18,7 +18,7 @@ from beliefnest.nest.acting.replay import replay
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import first_difference
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
@@ -154,7 +154,7 @@ def test_a_body_made_anew_goes_on_as_before(lent, tmp_path_factory, script):
     finally:
         disturbed.close()
         left_alone.close()
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         programs = journal.records.programs()
         lent_once = other.lend("embedded")
         for replayed in replay(start(), journal, programs, lent_once, 5):

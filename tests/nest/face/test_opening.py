@@ -6,7 +6,7 @@ from tests.nest.places import BOX, CHEST, CORNER, EAST, GAP, MEETING, WEST
 
 import beliefnest as bn
 from beliefnest.errors import BranchError, StoreError
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 AGENTS = {"observer": WEST, "sally": MEETING, "anne": GAP}
 PATHS = ["/", "/observer", "/observer/sally", "/sally", "/sally/anne", "/anne"]
@@ -85,7 +85,7 @@ def test_a_run_is_not_begun_over_another(tmp_path):
 
 
 def test_a_run_stopped_while_it_began_says_so(tmp_path):
-    SqliteJournal.create_file(tmp_path / "run.bn").close()
+    Journal.create_file(tmp_path / "run.bn").close()
     for opened in (bn.Nest.resume, bn.Nest.read):
         with pytest.raises(StoreError, match="while it began"):
             opened(tmp_path / "run.bn")
@@ -98,7 +98,7 @@ def test_seed_and_setting_are_kept(tmp_path):
     with bn.Nest.resume(tmp_path / "run.bn") as nest:
         assert nest.seed == 5
         assert nest.setting.script == scenario.setting.script
-    with SqliteJournal.read(tmp_path / "run.bn") as journal:
+    with Journal.read(tmp_path / "run.bn") as journal:
         run = journal.records.run()
     assert (run.condition, run.text) == ("2", scenario.text)
     assert "beliefnest" in run.versions

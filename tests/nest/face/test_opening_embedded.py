@@ -5,7 +5,7 @@ import pytest
 import beliefnest as bn
 from beliefnest.timeline.compare import first_difference
 from beliefnest.timeline.journal import TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 SEED = 3
 ROAM = """
@@ -52,7 +52,7 @@ def test_dropped_items_are_the_same_on_both_sides_of_a_switch():
 
 
 def frames(store):
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         return {
             info.key: (info.head, list(journal.entries(info.key, 0, info.entries)))
             for info in journal.timelines()

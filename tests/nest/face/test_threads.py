@@ -7,7 +7,7 @@ from threading import Barrier
 from beliefnest.nest.face.nest import Nest
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.journal import Entry
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 WALKS = {
     ("/", "sally"): "await goToPosition(bot, new Vec3(0, -51, -8))",
@@ -38,7 +38,7 @@ def _recorded(store: Path, threads: int) -> dict[tuple[tuple[str, ...], str], li
                 nest[path].switch("plan")
         with ThreadPoolExecutor(threads) as pool:
             assert all(pool.map(act, WALKS))
-    with SqliteJournal.read(store) as journal:
+    with Journal.read(store) as journal:
         return {
             (info.key.path, info.key.branch): list(journal.entries(info.key, 0, info.entries))
             for info in journal.timelines()

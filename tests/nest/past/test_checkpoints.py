@@ -14,7 +14,7 @@ from tests.semantics.stories import CONTAINERS, NAMES, Stage, Stories
 
 import beliefnest as bn
 from beliefnest.nest.past.checkpoints import Pace
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 
 PATHS = ["/", "/ann", "/bob", "/ann/bob", "/bob/cat/ann"]
 BOX = ((0, 0, 0), (7, 3, 7))
@@ -208,12 +208,12 @@ def shown_here(nest):
 def counted_entries():
     """Count entries that are read one after the other."""
     count = SimpleNamespace(read=0)
-    read = SqliteJournal.entries
+    read = Journal.entries
 
     def counting(*args):
         for entry in read(*args):
             count.read += 1
             yield entry
 
-    with patch.object(SqliteJournal, "entries", counting):
+    with patch.object(Journal, "entries", counting):
         yield count

@@ -10,7 +10,7 @@ from tests.viewer.page.test_rounds import texts
 
 import beliefnest as bn
 from beliefnest.cli.page import about_run
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.viewer.page.posteriors import told_inference
 from beliefnest_benchmarks.browser import Browser
 
@@ -80,7 +80,7 @@ def test_the_page_of_a_run_has_the_inferences_of_its_probes(tmp_path: Path) -> N
     scenario, file = bn.Scenario.load(str(tmp_path / "lane.yaml")), tmp_path / "run.bn"
     with bn.Nest.open(scenario, "scripted", file) as nest:
         expected = played_in(nest, scenario).probes[0].inferred
-    with bn.Nest.read(file) as run, SqliteJournal.read(file) as journal:
+    with bn.Nest.read(file) as run, Journal.read(file) as journal:
         (told,) = about_run(journal, run).inferences()
     assert expected is not None
     assert told["title"] == "wish, by /bob"
@@ -95,7 +95,7 @@ def test_a_run_that_lacks_the_ticks_of_a_probe_has_a_page_without_it(tmp_path: P
     scenario, file = bn.Scenario.load(str(tmp_path / "lane.yaml")), tmp_path / "run.bn"
     with bn.Nest.open(scenario, "scripted", file):
         pass
-    with bn.Nest.read(file) as run, SqliteJournal.read(file) as journal:
+    with bn.Nest.read(file) as run, Journal.read(file) as journal:
         assert about_run(journal, run).inferences() == []
 
 

@@ -15,7 +15,7 @@ from beliefnest.studies.episode_rows import EPISODES
 from beliefnest.studies.plainframe import Typed, plain_frame
 from beliefnest.studies.result import StudyResult
 from beliefnest.timeline.export_tables import entry_rows, prompt_row
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import path_text
 from beliefnest.world.registry import Registry
@@ -181,12 +181,12 @@ def _recorded(source: FrameSource, rows: Any) -> Iterator[FrameRow]:
             raise InputError(
                 f"the run file {each.file} of the cell {each.cell} is missing; restore it"
             )
-        with SqliteJournal.read(each.file) as journal, journal.unchanging():
+        with Journal.read(each.file) as journal, journal.unchanging():
             for row in rows(journal):
                 yield {"cell": each.cell, **row}
 
 
-def _requests(journal: SqliteJournal) -> Iterator[FrameRow]:
+def _requests(journal: Journal) -> Iterator[FrameRow]:
     for number, prompt in enumerate(journal.records.prompts(), start=1):
         _, row = prompt_row(prompt)
         detail = row.pop("detail")
@@ -200,7 +200,7 @@ def _requests(journal: SqliteJournal) -> Iterator[FrameRow]:
         }
 
 
-def _events(journal: SqliteJournal) -> Iterator[FrameRow]:
+def _events(journal: Journal) -> Iterator[FrameRow]:
     registry = Registry.load()
     for info in journal.timelines():
         for number, entry in enumerate(journal.entries(info.key, 0, info.entries)):
@@ -210,12 +210,12 @@ def _events(journal: SqliteJournal) -> Iterator[FrameRow]:
                         yield {key: _plain(value) for key, value in row.items()}
 
 
-def _rounds(journal: SqliteJournal) -> Iterator[FrameRow]:
+def _rounds(journal: Journal) -> Iterator[FrameRow]:
     told = told_episode(RecordedNest(journal))
     return iter(()) if told is None else round_rows(told)
 
 
-def _claims(journal: SqliteJournal, paths: Sequence[str] | None) -> Iterator[FrameRow]:
+def _claims(journal: Journal, paths: Sequence[str] | None) -> Iterator[FrameRow]:
     nest = RecordedNest(journal)
     asked = [path_text((name,)) for name in nest.agents] if paths is None else paths
     for number, told in enumerate(nest.claims(), start=1):
@@ -239,7 +239,7 @@ def _claim(plain: Mapping[str, Any]) -> FrameRow:
     return {key: plain.get(key) for key in ("kind", "place", "item", "agent", "state")}
 
 
-def _beliefs(journal: SqliteJournal, paths: Sequence[str]) -> Iterator[FrameRow]:
+def _beliefs(journal: Journal, paths: Sequence[str]) -> Iterator[FrameRow]:
     nest = RecordedNest(journal)
     for path in paths:
         for moment in nest.over_time(path):

@@ -6,7 +6,8 @@ from beliefnest.nest.acting.earshot import Earshot
 from beliefnest.nest.acting.embodying import Embodying
 from beliefnest.nest.acting.hearsay import Hearsay, has_unread
 from beliefnest.nest.past.history import StateHistory
-from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 

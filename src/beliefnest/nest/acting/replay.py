@@ -14,8 +14,9 @@ from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.placing import placing_frame
 from beliefnest.nest.past.setting import Setting
 from beliefnest.timeline.compare import EntryDifference, first_difference
-from beliefnest.timeline.journal import Edit, Entry, ForkPoint, Journal, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, ForkPoint, TimelineInfo, TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord, Senses
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import path_text
 from beliefnest.worlds.protocol import Body, ProgramPast, RunRules, SenseSource, World

@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterable
 from beliefnest.errors import BodyError, ProgramError
 from beliefnest.nest.acting.engine import Engine
 from beliefnest.nest.past.setting import Step
-from beliefnest.timeline.journal import Journal, TimelineKey, lineage
+from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord
+from beliefnest.timeline.store import Journal
 from beliefnest.worlds.protocol import ProgramResult
 
 OnProgress = Callable[[str, int, int], None]
@@ -46,7 +47,7 @@ def steps_played(journal: Journal, key: TimelineKey, programs: Iterable[ProgramR
         if program.kept and program.step is not None
     ]
     played = 0
-    for place, until in lineage(journal, key):
+    for place, until in journal.lineage(key):
         reached = [count for on, end, count in ends if on == place and end <= until]
         played = max([played, *reached])
     return played

@@ -10,7 +10,8 @@ from beliefnest.nest.past.body_state import internal_state_at
 from beliefnest.nest.past.embodiable import embodiable, with_chests
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.placing import fork_of_belief
-from beliefnest.timeline.journal import ForkPoint, Journal
+from beliefnest.timeline.journal import ForkPoint
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain

@@ -10,7 +10,8 @@ from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.nest.explain.parts import Contents, Element, Value
 from beliefnest.nest.past.history import StateHistory
-from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.double_chests import holds_items
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.registry import Registry

@@ -9,7 +9,7 @@ from beliefnest.nest.face.reader import Reader
 from beliefnest.nest.face.shown import ShownNest
 from beliefnest.nest.face.turns import in_turn
 from beliefnest.nest.past.setting import Setting
-from beliefnest.timeline.journal import TimelineKey, lineage
+from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.world.paths import parse_path
 
@@ -87,7 +87,7 @@ class NestBase(ShownNest, ABC):
         if path is None:
             return prompts
         names = parse_path(path, self.agents)
-        until = dict(lineage(self._recording.journal, self._recording.controller(names)))
+        until = dict(self._recording.journal.lineage(self._recording.controller(names)))
         return tuple(p for p in prompts if p.path == names and p.tick <= until.get(p.timeline, -1))
 
     @in_turn

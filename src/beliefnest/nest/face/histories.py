@@ -16,7 +16,8 @@ from beliefnest.nest.face.history_starts import HistoryStarts
 from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
 from beliefnest.nest.past.recording import Recording
 from beliefnest.owned import Barred
-from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
+from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, parse_path, path_text
 from beliefnest.world.values import Point

@@ -13,9 +13,8 @@ from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.prompts import Renderer
-from beliefnest.timeline.memory_journal import MemoryJournal
-from beliefnest.timeline.run_records import RunJournal, RunRecord
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.run_records import RunRecord
+from beliefnest.timeline.store import Journal
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.worlds.by_name import Worlds, new_world, open_world, realtime_of
 from beliefnest.worlds.process_limits import ProcessLimits
@@ -96,7 +95,7 @@ def begun(
     """
     setting = scenario.setting
     _invite(setting, world)
-    journal: RunJournal = MemoryJournal() if store is None else SqliteJournal.create_file(store)
+    journal = Journal() if store is None else Journal.create_file(store)
     try:
         with journal.together():
             # A run in memory is never resumed.
@@ -135,7 +134,7 @@ def resumed(
         StoreError: There is no such run, it cannot be read or written, or another process writes to
             it.
     """
-    journal = SqliteJournal.open(store)
+    journal = Journal.open(store)
     try:
         recording, name = read_recording(journal, renderer)
         if worlds is not None:

@@ -10,7 +10,7 @@ from beliefnest.nest.face.shown import Past, PastSimulator
 from beliefnest.nest.past.over_time import Moment, over_time
 from beliefnest.nest.past.recording import read_recording
 from beliefnest.timeline.journal import FOLLOW, TimelineKey
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import parse_path
 
 
@@ -26,7 +26,7 @@ class RecordedNest(NestBase):
         StoreError: The file cannot be read.
     """
 
-    def __init__(self, journal: SqliteJournal) -> None:
+    def __init__(self, journal: Journal) -> None:
         self._recording, _ = read_recording(journal)
 
     @classmethod
@@ -38,7 +38,7 @@ class RecordedNest(NestBase):
         Raises:
             StoreError: There is no such run, or it cannot be read.
         """
-        journal = SqliteJournal.read(store)
+        journal = Journal.read(store)
         try:
             return cls(journal)
         except BaseException:

@@ -5,7 +5,8 @@ stored when a call ends. At any other moment, and where a belief is forked, a bo
 internal state.
 """
 
-from beliefnest.timeline.journal import ForkPoint, Journal, TimelineKey
+from beliefnest.timeline.journal import ForkPoint, TimelineKey
+from beliefnest.timeline.store import Journal
 
 
 def present(journal: Journal, key: TimelineKey) -> ForkPoint:

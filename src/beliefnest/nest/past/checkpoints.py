@@ -21,7 +21,8 @@ from beliefnest.errors import StoreError
 from beliefnest.nest.past.forest_codec import restored, saved
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.setting_codec import encode_start
-from beliefnest.timeline.journal import Journal, TimelineKey
+from beliefnest.timeline.journal import TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.version import VERSION
 from beliefnest.world.paths import BeliefPath
 

@@ -8,7 +8,8 @@ the beginning, so that the result does not depend on when the claim was met.
 
 from beliefnest.belief.columns import cell_of
 from beliefnest.belief.context import BeliefContext
-from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
+from beliefnest.timeline.journal import EntryFilter, TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.claims import ClaimKind, claims_from_plain, claims_of
 from beliefnest.world.doors import is_door, is_switch
 from beliefnest.world.frames import Frame, Snapshot

@@ -5,7 +5,8 @@ from collections.abc import Callable, Sequence
 from beliefnest.belief.columns import Columns
 from beliefnest.belief.grounds import PerceivedEvent
 from beliefnest.errors import StoreError
-from beliefnest.timeline.journal import EntryFilter, Journal, TimelineKey
+from beliefnest.timeline.journal import EntryFilter, TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.texts import quoted

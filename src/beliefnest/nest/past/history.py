@@ -28,7 +28,8 @@ from beliefnest.nest.past.heads import Heads
 from beliefnest.nest.past.setting import Setting
 from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.perception.sight import Sight
-from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, Journal, TimelineKey
+from beliefnest.timeline.journal import Edit, Entry, EntryFilter, ForkPoint, TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath

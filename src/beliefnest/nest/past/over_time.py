@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import Journal, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import TimelineInfo, TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain

@@ -7,7 +7,8 @@ Chests that the body puts are not recorded, because they follow from the state.
 
 from beliefnest.nest.past.embodiable import CHEST, chest_places
 from beliefnest.nest.past.recording import Recording
-from beliefnest.timeline.journal import ForkPoint, Journal, TimelineInfo, TimelineKey
+from beliefnest.timeline.journal import ForkPoint, TimelineInfo, TimelineKey
+from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.values import Placements, Point, Position

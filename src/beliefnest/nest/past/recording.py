@@ -21,8 +21,8 @@ from beliefnest.prompts import Renderer
 from beliefnest.prompts.mind_view import ToldMind
 from beliefnest.timeline.bounds import RunBounds
 from beliefnest.timeline.journal import FOLLOW, ForkPoint, TimelineInfo, TimelineKey
-from beliefnest.timeline.run_records import Records, RunJournal
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.run_records import Records
+from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import BeliefPath, path_text
 from beliefnest.world.registry import Registry
 from beliefnest.world.values import Box
@@ -49,7 +49,7 @@ class Recording(Barred):
     def __init__(
         self,
         setting: Setting,
-        journal: RunJournal,
+        journal: Journal,
         seed: int = 0,
         renderer: Renderer | None = None,
         world: str = "scripted",
@@ -187,7 +187,7 @@ class Recording(Barred):
             self.journal.close()
 
 
-def read_start(journal: SqliteJournal) -> tuple[Setting, str]:
+def read_start(journal: Journal) -> tuple[Setting, str]:
     """Return the setting of a run file, and the name of its world; bound what is read after it.
 
     Raises:
@@ -199,9 +199,7 @@ def read_start(journal: SqliteJournal) -> tuple[Setting, str]:
     return setting, world
 
 
-def read_recording(
-    journal: SqliteJournal, renderer: Renderer | None = None
-) -> tuple[Recording, str]:
+def read_recording(journal: Journal, renderer: Renderer | None = None) -> tuple[Recording, str]:
     """Return the recording of a run file as it was left, and the name of its world.
 
     Args:

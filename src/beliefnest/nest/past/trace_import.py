@@ -9,7 +9,7 @@ from beliefnest.nest.past.setting_codec import encode_start
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.run_records import RunRecord
-from beliefnest.timeline.store import SqliteJournal
+from beliefnest.timeline.store import Journal
 from beliefnest.timeline.trace import Trace, record_trace
 
 
@@ -34,7 +34,7 @@ def import_trace(trace: Trace, name: str, store: str | Path) -> None:
         unique=trace.unique,
     )
     key = TimelineKey((), MAIN)
-    with _kept_whole(SqliteJournal.create_file(store)) as journal, journal.together():
+    with _kept_whole(Journal.create_file(store)) as journal, journal.together():
         journal.records.set_run(
             RunRecord(
                 scenario=name,
@@ -50,7 +50,7 @@ def import_trace(trace: Trace, name: str, store: str | Path) -> None:
 
 
 @contextmanager
-def _kept_whole(journal: SqliteJournal) -> Iterator[SqliteJournal]:
+def _kept_whole(journal: Journal) -> Iterator[Journal]:
     """Close a new run file at the end. Delete it if anything raises."""
     path = journal.path
     try:
