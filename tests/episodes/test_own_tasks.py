@@ -184,7 +184,9 @@ def test_classes_and_functions_play_by_their_names(
         ("own.py:Mute", "Mute has no method act"),
         ("own.py:Needy", "cannot be called without arguments"),
         ("broken.py:Greeter", "cannot be imported: SyntaxError"),
-        ("omniscient:Greeter", "there is no policy 'omniscient:Greeter'"),
+        ("omniscient:Greeter", "there is no policy 'omniscient:Greeter'; write omniscient:search"),
+        ("search", "there is no policy 'search'; write search:ORDER"),
+        ("program", "there is no policy 'program'; write program:FILE"),
     ],
 )
 def test_what_is_no_policy_is_refused(own: Path, name: str, told: str) -> None:
@@ -193,3 +195,26 @@ def test_what_is_no_policy_is_refused(own: Path, name: str, told: str) -> None:
     with pytest.raises(bn.BeliefNestError) as caught:
         resolve_policy(name)
     assert told in str(caught.value)
+
+
+def test_an_agent_that_is_no_player_gets_its_policy_from_the_file_or_the_caller(
+    own: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = HUNT.replace('policies: {ann: "random"}', "players: [bob]")
+    Path("half.yaml").write_text(text, encoding="utf-8")
+    command = ["play", "half.yaml", "--rounds", "1", "--agent"]
+    assert run_command_line([*command, "bob=random"]) == 2
+    assert "ann is no player and has no policy" in capsys.readouterr().err
+    assert run_command_line([*command, "ann=random"]) in (0, 1)
+    study = bn.Study(tasks=["half.yaml"], policies=["random", {"ann": "random", "bob": "random"}])
+    assert {each.why for each in study.plan().invalid} == {
+        "ann is no player and has no policy; give it one in the file, under `policies`, or with "
+        "--agent ann=POLICY"
+    }
+    assert {cell.plain()["key"]["player"] for cell in study.plan().cells} == {
+        "ann=random,bob=random"
+    }
+    both = text.replace("players: [bob]", "players: [bob]\n  policies: {bob: random}")
+    Path("both.yaml").write_text(both, encoding="utf-8")
+    with pytest.raises(bn.ScenarioError, match="bob is one of `players` and has a policy"):
+        bn.Task.load("both.yaml")

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -170,6 +171,8 @@ def test_rules_speak_where_players_may() -> None:
     [
         ("rule:nearset", "there is no rule 'nearset'; rules are nearest, farthest"),
         ("rule:nearest+x", "there is no rule 'x'"),
+        ("rule:x", "nearest+farthest takes from the one and puts into the other; first:tell"),
+        ("rule:plan:tell", "there is no rule 'plan'; rules are"),
         ("rule:linear=a/b", "there is no rule 'linear=a/b'"),
         ("rule:first:shout", "'shout' in the rule 'first:shout' is unknown; give tell or tell-all"),
     ],
@@ -177,7 +180,7 @@ def test_rules_speak_where_players_may() -> None:
 def test_what_is_no_rule_is_refused(
     name: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with pytest.raises(bn.UnknownNameError, match=message):
+    with pytest.raises(bn.UnknownNameError, match=re.escape(message)):
         resolve_policy(name)
     assert run_command_line(["play", "watchman", "--agent", f"spy={name}"]) == 2
     assert message in capsys.readouterr().err

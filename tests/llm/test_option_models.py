@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from beliefnest.llm.messages import Message, Sampling
+from beliefnest.llm.messages import ChoiceSampling, Message, Sampling
 from beliefnest.llm.resolve import resolve_model
 
 PROMPT = (
@@ -26,6 +26,18 @@ def test_chance_draws_each_option_equally_often_and_by_the_seed():
 
 def test_first_option_takes_the_first():
     assert {answer("first-option", seed=seed) for seed in range(20)} == {"Answer: A"}
+
+
+def test_options_of_the_request_count_where_the_prompt_lists_none():
+    sampling = [ChoiceSampling(seed=seed, options=("red box", "blue box")) for seed in range(40)]
+    messages = (Message("user", "Where is it, in the red box or in the blue box?"),)
+
+    def said(name):
+        model = resolve_model(name, {})
+        return {model.answer(messages, each).text.splitlines()[0] for each in sampling}
+
+    assert said("first-option") == {"Answer: red box"}
+    assert said("chance") == {"Answer: red box", "Answer: blue box"}
 
 
 @pytest.mark.parametrize("name", ["chance", "first-option"])

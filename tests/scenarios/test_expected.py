@@ -1,6 +1,7 @@
 """Expectations about a probe, each judged by its program, deeds, words or answers."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -9,6 +10,7 @@ import beliefnest as bn
 from beliefnest.llm.messages import Answer, Finish, Message, Model, Sampling
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.llm.offline import OfflineModel
+from beliefnest.llm.option_models import OPTION_MODELS
 from beliefnest.scenarios.outcome import ProbeOutcome
 from beliefnest.scenarios.probing import Asking
 from beliefnest.scenarios.records import probe_json
@@ -205,6 +207,17 @@ def test_each_end_of_an_answer_has_its_outcome(text: str, finish: Finish, outcom
         outcome,
         outcome not in ("ok", "wrong"),
     )
+
+
+@pytest.mark.parametrize("name", ["chance", "first-option"])
+def test_baselines_answer_whatever_template_asks(name: str) -> None:
+    probe = {"path": "/ann", "acts_in": "/ann", "agent": "ann", "expect": {"answers": CHOICE}}
+    scenario = bn.Scenario.from_mapping({**ROOM, "probes": [probe]})
+    own = replace(scenario.probes[0], template="{{ task }} One of {{ options | join(', ') }}?")
+    asked = replace(scenario, probes=(own,))
+    with bn.Nest.open(asked, world="scripted") as nest:
+        found = run_scenario(nest, asked, OPTION_MODELS[name], 0, 0.0, lambda *_: None)
+    assert found.probes[0].replies[0].answer in CHOICE["options"]
 
 
 def test_an_unreadable_answer_is_asked_for_again_with_the_form() -> None:

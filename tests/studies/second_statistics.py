@@ -39,7 +39,7 @@ def bootstrap_means(clusters, seed, draws=6_000):
     return np.array(means)
 
 
-def crossed_bootstrap_means(values, rows, columns, seed, draws=2_000):
+def crossed_bootstrap_means(values, rows, columns, seed, draws=4_000):
     """Draw rows and columns with replacement; a value counts as often as both were drawn."""
     chance = np.random.default_rng(seed)
     kinds = [list(dict.fromkeys(each)) for each in (rows, columns)]
@@ -242,7 +242,7 @@ def firth(y, x, weights):
     return beta, np.array(bounds), np.array(tests)
 
 
-def least_squares_bootstrap(y, x, groups, seed, draws=2_000):
+def least_squares_bootstrap(y, x, groups, seed, draws=8_000):
     """Draw groups with replacement, and fit by least squares; return the estimates."""
     chance = np.random.default_rng(seed)
     owners = [np.flatnonzero(groups == g) for g in range(groups.max() + 1)]

@@ -78,8 +78,9 @@ def clusters_of(rows, value):
 def agrees(found, draws):
     """Return True if limits of a bootstrap are those of other draws, up to chance.
 
-    With 2,000 draws on either side, 4 standard errors of the share beyond a limit are 2 %. In small
-    tables a limit is one of few values, so that limits can only be compared by these shares.
+    With 2,000 draws here and twice as many there, 5 standard errors of the share beyond a limit are
+    2 %. In small tables a limit is one of few values, so that limits can only be compared by these
+    shares.
 
     Args:
         found: Lower and upper limit; each may have several values.

@@ -27,7 +27,7 @@ def chosen(
         budget: Limits of the episode, which its models share.
 
     Raises:
-        InputError: A policy is for an unknown agent.
+        InputError: A policy is for an unknown agent, or an agent has none.
         UnknownNameError: A policy does not exist.
     """
     if not isinstance(policies, Mapping):
@@ -35,6 +35,7 @@ def chosen(
     for agent in policies:
         if agent not in task.agents:
             raise InputError(f"{quoted(agent)} is none of the agents: {', '.join(task.agents)}")
+    check_played(task, policies)
     connection = None
     names: dict[str, str] = {}
     chosen: dict[str, Policy] = {}
@@ -57,6 +58,17 @@ def chosen(
         else:
             chosen[agent] = given
     return names, chosen
+
+
+def check_played(task: Task, policies: Mapping[str, object]) -> None:
+    """Raise InputError if an agent is no player, and neither task nor caller give it a policy."""
+    form = task.form
+    for agent in sorted({*task.agents} - {*task.players, *form.policies, *policies}):
+        if form.scenario["agents"][agent].get("type") != "human":
+            raise InputError(
+                f"{agent} is no player and has no policy; give it one in the file, under "
+                f"`policies`, or with --agent {agent}=POLICY"
+            )
 
 
 def _connection(budget: Budget) -> "Connection":

@@ -8,6 +8,7 @@ from beliefnest.errors import ModelError
 from beliefnest.llm.failures import UnusableAnswerError
 from beliefnest.llm.messages import Answer, ChoiceSampling, Message, Model, Sampling, Usage
 from beliefnest.llm.model_settings import ModelSettings
+from beliefnest.llm.option_models import OPTION_MODELS
 from beliefnest.llm.reading_answers import read_answer, read_words
 from beliefnest.llm.statements import given_reason
 from beliefnest.nest.face.nest import Nest
@@ -56,7 +57,7 @@ def ask_question(
     messages = [Message("system", system), Message("user", prompt)]
     usage = Usage()
     structured = settings.answer == "structured" and bool(options)
-    if structured:
+    if structured or (options and probe.template is not None and model.name in OPTION_MODELS):
         sampling = ChoiceSampling(
             sampling.temperature, sampling.seed, sampling.max_output_tokens, options
         )

@@ -157,5 +157,6 @@ def check_rules(entry: EpisodeEntry, agents: Collection[str], box: Box) -> None:
         for condition in (*goal.reach, *goal.never):
             check_entry(condition, (), PlainScene(agents, box))
     for name in sorted(agents):
-        if entry.players and (name in entry.players) == (name in entry.policies):
-            raise InputError(f"{name} must be one of `players` or have a policy in `policies`")
+        if name in entry.players and name in entry.policies:
+            told = "is one of `players` and has a policy in `policies`; remove one of the two"
+            raise InputError(f"{name} {told}")

@@ -6,9 +6,10 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
+from beliefnest.episodes.choosing import check_played
 from beliefnest.episodes.policies import is_program, resolve_policy, text_of_policy
 from beliefnest.episodes.task import Task
-from beliefnest.errors import BeliefNestError, MissingExtraError, ModelError
+from beliefnest.errors import BeliefNestError, InputError, MissingExtraError, ModelError
 from beliefnest.scenarios.document import Document
 from beliefnest.scenarios.loading import condition_numbers
 from beliefnest.studies.cells import (
@@ -192,6 +193,11 @@ def _cells(
         if strange:
             why = f"{place.name} has no agent {quoted(strange[0])} for the policies {player.text}"
             yield place.invalid(why)
+            continue
+        try:
+            check_played(tasks[design.seeds[0]], policies)
+        except InputError as error:
+            yield place.invalid(str(error))
             continue
         if place.document is not None and place.variation.changes_scene and has_program:
             why = f"programs of files are not moved or renamed with the scene: {player.text}"

@@ -15,6 +15,7 @@ from beliefnest.files import read_regular_text
 from beliefnest.importing import imported_object, is_object_name, text_of_object
 from beliefnest.llm.model_settings import ModelSettings
 from beliefnest.world.texts import quoted
+from beliefnest.world.words import listed
 
 if TYPE_CHECKING:  # Models take long to import, and few policies ask one.
     from beliefnest.llm.resolve import Connection
@@ -97,6 +98,8 @@ def resolve_policy(
         return _WITHOUT_OPTIONS[name]()
     if is_own_policy(name):
         return _of_user(name)
+    if forms := [form for form in POLICIES if form.partition(":")[0] == kind]:
+        raise UnknownNameError(f"there is no policy {quoted(name)}; write {listed(forms, 'or')}")
     close = difflib.get_close_matches(kind, sorted(_KINDS), n=1)
     hint = f"did you mean {quoted(close[0])}? Policies are" if close else "give one of"
     raise UnknownNameError(f"there is no policy {quoted(name)}; {hint} {', '.join(POLICIES)}")

@@ -29,6 +29,11 @@ KEYS = ("nearest", "farthest", "first", "last", "last-seen", "copy", "any")
 """Keys of places. `nearest` and `farthest` may name an agent: `nearest-bob`."""
 _PLAN = "plan"
 """Put in place of a key: after speaking, the agent plans as `search:0` does."""
+_FORMS = (
+    f"rules are {', '.join(KEYS)}, nearest-AGENT, farthest-AGENT and linear=W/W/...; "
+    "nearest+farthest takes from the one and puts into the other; first:tell and first:tell-all "
+    "speak before they act, and first+plan:tell then acts as search:0"
+)
 _TELLS: Mapping[str, Tells] = {"": "", "tell": "tell", "tell-all": "tell-all"}
 
 
@@ -107,14 +112,11 @@ def rule_of(text: str) -> Rule:
     """
     keys, _, tells = text.partition(":")
     take, _, put = keys.partition("+")
-    for key in (take, put or "nearest"):
+    for key, others in ((take, KEYS), (put or "nearest", (*KEYS, _PLAN))):
         known, _, rest = key.partition("-")
-        is_known = key in (*KEYS, _PLAN) or (known in ("nearest", "farthest") and bool(rest))
+        is_known = key in others or (known in ("nearest", "farthest") and bool(rest))
         if not is_known and not _weights(key):
-            raise UnknownNameError(
-                f"there is no rule {quoted(key)}; rules are {', '.join(KEYS)}, nearest-AGENT, "
-                "farthest-AGENT, and linear=W/W/..."
-            )
+            raise UnknownNameError(f"there is no rule {quoted(key)}; {_FORMS}")
     if tells not in _TELLS:
         raise UnknownNameError(
             f"{quoted(tells)} in the rule {quoted(text)} is unknown; give tell or tell-all"
