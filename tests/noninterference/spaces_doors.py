@@ -1,4 +1,4 @@
-"""Doors of environments for learners: nested beliefs as arrays, and what is rendered."""
+"""Doors of environments for learners: nested beliefs as arrays, masks, and what is rendered."""
 
 from dataclasses import replace
 
@@ -6,9 +6,19 @@ from tests.noninterference.doors import door
 from tests.noninterference.environment_doors import _BOUNDS
 from tests.noninterference.pairs import AGENTS, Played
 
-from beliefnest.adapters.pettingzoo.order import KnownOrder
+from beliefnest.adapters.pettingzoo.actions import Calls
+from beliefnest.adapters.pettingzoo.flat import ActorMind, FlatActions
+from beliefnest.adapters.pettingzoo.order import KINDS, KnownOrder
 from beliefnest.adapters.pettingzoo.rendering import line, picture
 from beliefnest.world.paths import parse_path, path_text, paths_below
+from beliefnest.world.values import Position
+from beliefnest.worlds.scripted.footpaths import InReach, Near
+from beliefnest.worlds.scripted.ground_cache import Grounds
+from beliefnest.worlds.scripted.hand import REACH
+
+_BOUNDS_OF_FLAT = replace(_BOUNDS, most={**dict.fromkeys(KINDS, 8), "places": 0})
+_FLAT = FlatActions(Calls(_BOUNDS_OF_FLAT, {"hello": ()}), _BOUNDS_OF_FLAT.most, speaks=True)
+_GROUNDS = Grounds()
 
 
 @door(every=4)
@@ -24,6 +34,22 @@ def nested_arrays(world: Played, path: str) -> object:
     told = {path: bounds.arrays(order, state) for path, state in below.items()}
     found = bounds.with_nested(bounds.arrays(order, own), order, told)
     return {name: array.tolist() for name, array in found.items()}
+
+
+@door(every=2)
+def masks(world: Played, path: str) -> object:
+    """Return which actions can begin by the belief, and what their numbers stand for."""
+    state, order = world.nest[path].state, KnownOrder()
+    order.note(state)
+    ground = _GROUNDS.of(state.box, state.blocks.terrain).with_doors_opened
+
+    def may_reach(place: Position, near: float | None) -> bool:
+        feet = state.agents[state.path[-1]].position
+        goal = InReach(place, REACH) if near is None else Near(place, near)
+        return feet is not None and ground.may_lead(ground.cell_of(feet), goal)
+
+    mind = ActorMind(state.path[-1], state, order.things, (), True, may_reach)
+    return _FLAT.mask(mind).tolist(), order.things
 
 
 @door(every=12)

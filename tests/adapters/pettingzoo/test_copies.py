@@ -33,6 +33,7 @@ EPISODE = {
 }
 FORMS: dict[str, dict[str, Any]] = {
     "steps": {"step_ticks": 2, "nested": 2, "phrases": ["yes", "no"]},
+    "flat": {"step_ticks": 2, "actions": "flat"},
     "whole actions": {"phrases": ["yes", "no"], "observations": "dict"},
     "task": {"nested": 2, "phrases": ["yes", "no"]},
 }

@@ -28,6 +28,7 @@ PHRASES = ("yes", "no")
 FORMS: Mapping[str, dict[str, Any]] = {
     "arrays": {"step_ticks": 2, "senses": "percepts", "nested": 2},
     "plain data": {"step_ticks": 1, "senses": "percepts", "observations": "dict"},
+    "flat": {"step_ticks": 2, "senses": "percepts", "actions": "flat"},
     "task": {"step_ticks": 4, "has_goal": True, "nested": ["/ann/bob"]},
 }
 
@@ -98,8 +99,13 @@ def episode(scenario: Scenario, seed: int, which: int, form: Mapping[str, Any]) 
             draws = chance["here" if agent in ("ann", "bob") else "there"]
             space.seed(draws.randrange(2**31))
             action = space.sample()
+            if form.get("actions") == "flat":
+                call = env.calls(agent)[action]
+                skill = "" if call is None else call.skill
+            else:
+                skill = env.skills[action["skill"]]
             # A whisper is heard through walls: it would be a difference that Ann perceives.
-            is_whisper = env.skills[action["skill"]] == "whisper"
+            is_whisper = skill == "whisper"
             if draws.random() < 0.7 and not (is_whisper and agent not in ("ann", "bob")):
                 actions[agent] = action
         observations, rewards, ended, cut, infos = env.step(actions)

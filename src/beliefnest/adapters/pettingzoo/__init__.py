@@ -27,7 +27,7 @@ def parallel_env(
     parameters: "Mapping[str, Any] | None" = None,
     condition: int | None = None,
     world: str = "scripted",
-    actions: Literal["skills", "programs"] = "skills",
+    actions: Literal["skills", "programs", "flat"] = "skills",
     observations: Literal["arrays", "dict"] = "arrays",
     agents: Sequence[str] | None = None,
     nested: int | Sequence[str] = (),
@@ -58,7 +58,8 @@ def parallel_env(
         condition: Number of a condition, if `scenario` is a name or a path; None for the
             scenario as written.
         world: `scripted`, without physics, or `embedded`, Minecraft.
-        actions: `skills`, calls of skills in a structured space, or `programs`, JavaScript.
+        actions: `skills`, calls of skills in a structured space; `flat`, one number for each call
+            of a skill and each claim, with a mask; or `programs`, JavaScript.
         observations: `arrays` of a fixed layout, or a `dict` of plain data.
         agents: Agents that act; None for all, in tasks for the players.
         nested: Beliefs about beliefs, which observations, and infos under `beliefs`, hold too:

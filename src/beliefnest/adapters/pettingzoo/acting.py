@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.nest import Nest
 from beliefnest.skills.calls import Call
@@ -13,10 +11,9 @@ from beliefnest.timeline.run_records import Senses
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import path_text
-from beliefnest.world.registry import Registry
-from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, Position
 from beliefnest.worlds.scripted.footpaths import Ground
+from beliefnest.worlds.scripted.ground_cache import Grounds
 from beliefnest.worlds.scripted.hand import Doing, Hand
 from beliefnest.worlds.scripted.skills import perform
 
@@ -115,7 +112,7 @@ class SkillActing:
         self._speech_ticks = speech_ticks
         self._doing: dict[str, Doing] = {}
         self._spoken = False
-        self._grounds: dict[str, tuple[Terrain, Ground]] = {}
+        self._grounds = Grounds()
         world.listen(self._hear)
 
     def act(self, actions: Mapping[str, Call | str]) -> JointStep:
@@ -171,18 +168,11 @@ class SkillActing:
     def _known_ground(self, agent: str) -> Ground:
         if self._senses == "world":
             return self._real_ground()
-        return self._ground(agent, self._nest[path_text((agent,))].state.blocks.terrain)
+        terrain = self._nest[path_text((agent,))].state.blocks.terrain
+        return self._grounds.of(self._world.box, terrain)
 
     def _real_ground(self) -> Ground:
-        return self._ground("", self._world.terrain)
-
-    def _ground(self, whose: str, blocks: Terrain) -> Ground:
-        """Return the ground of a terrain, computed again only if the terrain has changed."""
-        known = self._grounds.get(whose)
-        if known is None or not _is_same(known[0], blocks):
-            ground = Ground(Registry.load(), self._world.box, blocks)
-            known = self._grounds[whose] = (blocks, ground)
-        return known[1]
+        return self._grounds.of(self._world.box, self._world.terrain)
 
     def _others(self, agent: str) -> Mapping[str, AgentState]:
         others = {name: each for name, each in self._world.agents.items() if name != agent}
@@ -200,11 +190,3 @@ class SkillActing:
     def _hear(self, frame: Frame) -> None:
         if any(event.kind is EventKind.CHAT for event in frame.events):
             self._spoken = True
-
-
-def _is_same(known: Terrain, blocks: Terrain) -> bool:
-    """Return True if two terrains are the same; False if that would take long to find out."""
-    if known is blocks:
-        return True
-    both_small = known.is_dense and blocks.is_dense
-    return both_small and np.array_equal(known.dense(), blocks.dense())

@@ -18,7 +18,10 @@ _LONGEST = 200
 MOST_ITEMS = 64
 """Greatest number of items of one kind that one call moves."""
 
-_KINDS = {
+SPEECH = ("say", "whisper")
+"""Skills that others hear."""
+
+KIND_OF_PART = {
     "container": "containers",
     "door": "doors",
     "lever": "levers",
@@ -58,13 +61,16 @@ class Calls:
     Attributes:
         skills: Names of the skills that are possible here; an action's `skill` is an index into
             them.
+        possible: The same skills.
         parts: Number of values of each part of an action; `position` has three numbers instead.
     """
 
     def __init__(self, bounds: SpaceBounds, phrases: Phrases) -> None:
         self._bounds = bounds
         self._phrases = phrases
-        sizes = {part: bounds.most[kind] for part, kind in _KINDS.items() if kind in bounds.most}
+        sizes = {
+            part: bounds.most[kind] for part, kind in KIND_OF_PART.items() if kind in bounds.most
+        }
         sizes |= {"position": 1, "count": MOST_ITEMS, "phrase": len(bounds.phrases)}
         # An agent cannot give or whisper to itself.
         sizes["agent"] = sizes["agent"] if sizes["agent"] > 1 else 0
@@ -73,9 +79,9 @@ class Calls:
         self._lacking = {
             each.name: [part for part in each.parts if not sizes[part]] for each in actions
         }
-        self._possible = [each for each in actions if not self._lacking[each.name]]
-        self.skills = tuple(each.name for each in self._possible)
-        used = {part for each in self._possible for part in each.parts}
+        self.possible = [each for each in actions if not self._lacking[each.name]]
+        self.skills = tuple(each.name for each in self.possible)
+        used = {part for each in self.possible for part in each.parts}
         self.parts = {part: size for part, size in sizes.items() if part in used}
 
     def action(self, things: Things, skill: str, given: Mapping[str, object]) -> NamedAction:
@@ -100,7 +106,7 @@ class Calls:
                 f"there is no skill {skill!r} here; skills are {', '.join(self.skills)}"
             )
         index = self.skills.index(skill)
-        needs = self._possible[index].parts
+        needs = self.possible[index].parts
         parts = {"count": 1, **given} if "count" in needs else dict(given)
         if parts.keys() != set(needs):
             raise InputError(f"{skill} takes {', '.join(needs) or 'nothing'}; got {sorted(parts)}")
@@ -129,11 +135,12 @@ class Calls:
             if not isinstance(value, int | np.integer) or not 1 <= value <= MOST_ITEMS:
                 raise InputError(f"count is {value!r}; give 1 to {MOST_ITEMS}")
             return np.int64(value)
-        known = self._named(things, part)
+        known = self.known(things, part)
         if value not in known:
             there = ", ".join(map(str, known)) or "none"
             raise UnknownNameError(
-                f"{value!r} is not among the {_KINDS[part]} that the agent knows, which are {there}"
+                f"{value!r} is not among the {KIND_OF_PART[part]} that the agent knows, which are "
+                f"{there}"
             )
         return np.int64(known.index(value))
 
@@ -149,7 +156,7 @@ class Calls:
             NotKnownError: A number stands for nothing that the agent knows.
         """
         try:
-            skill = self._possible[_index(action["skill"])]
+            skill = self.possible[index_of(action["skill"])]
             used = [each for each in skill.parameters if each.action != ()]
             args = [self._argument(things, each, action) for each in used]
             return Call(skill.name, tuple(each for each in args if each != []))
@@ -171,18 +178,19 @@ class Calls:
     def _value(self, things: Things, part: str, value: Any) -> Any:
         if part == "position":
             return self._position(value)
-        index = _index(value)
+        index = index_of(value)
         if part == "count":
             return index
         if index >= self.parts[part]:
             raise IndexError(f"{part} {index} of {self.parts[part]}")
-        known = self._named(things, part)
+        known = self.known(things, part)
         if index >= len(known):
             raise NotKnownError(f"it knows no {part} {index} so far")
         return known[index]
 
-    def _named(self, things: Things, part: str) -> tuple[Any, ...]:
-        known = self._bounds.phrases if part == "phrase" else getattr(things, _KINDS[part])
+    def known(self, things: Things, part: str) -> tuple[Any, ...]:
+        """Return the things, or the phrases, that a part of an action numbers."""
+        known = self._bounds.phrases if part == "phrase" else getattr(things, KIND_OF_PART[part])
         return tuple(known)
 
     def _position(self, index: Any) -> Position:
@@ -193,7 +201,8 @@ class Calls:
         return (low[0] + x, low[1] + y, low[2] + z)
 
 
-def _index(value: Any) -> int:
+def index_of(value: Any) -> int:
+    """Return a number as an index; raises IndexError below 0, and what `int` raises."""
     number = int(value)
     if number < 0:
         raise IndexError(f"{number} is below 0")

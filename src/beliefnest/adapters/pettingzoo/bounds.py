@@ -23,7 +23,7 @@ from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.world.claims import Claim
 from beliefnest.world.paths import BeliefPath
-from beliefnest.world.values import Box
+from beliefnest.world.values import Box, Position
 
 Arrays = dict[str, npt.NDArray[Any]]
 """An observation or a belief as arrays by name."""
@@ -51,10 +51,12 @@ class ThingsLayout(Things):
     Attributes:
         box: Region of the scenario; `blocks` has its shape.
         phrases: Texts that can be said and written on signs.
+        places: Named places, sorted by name.
     """
 
     box: Box
     phrases: tuple[str, ...]
+    places: tuple[Position, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,7 @@ class SpaceBounds:
         first, *others = layouts
         counts = [each.counts for each in (first, *others)]
         most = {kind: max(each[kind] for each in counts) for kind in KINDS}
+        most["places"] = max(len(each.places) for each in (first, *others))
         bounds = cls(first.box, {**most, **given}, first.phrases)
         for each in others:
             bounds.check_box(each)

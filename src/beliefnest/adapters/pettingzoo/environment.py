@@ -13,6 +13,7 @@ from pettingzoo import ParallelEnv
 from beliefnest.adapters.pettingzoo.acting import Acting, ActionState, ProgramActing, SkillActing
 from beliefnest.adapters.pettingzoo.actions import MOST_ITEMS, Calls, NamedAction, NotKnownError
 from beliefnest.adapters.pettingzoo.bounds import ArrayShape, Phrases, SpaceBounds, ThingsLayout
+from beliefnest.adapters.pettingzoo.flat import ActorMind, FlatActions
 from beliefnest.adapters.pettingzoo.layout import layout_of
 from beliefnest.adapters.pettingzoo.order import KnownOrder, Things
 from beliefnest.adapters.pettingzoo.playing import Instances, TaskActing
@@ -34,8 +35,12 @@ from beliefnest.timeline.journal import FOLLOW, TimelineInfo
 from beliefnest.timeline.run_records import Senses
 from beliefnest.world.paths import BeliefPath, parse_path, path_text, paths_below
 from beliefnest.world.seeds import checked_seed
+from beliefnest.world.values import Position
 from beliefnest.worlds.by_name import Worlds
 from beliefnest.worlds.names import check_world
+from beliefnest.worlds.scripted.footpaths import InReach, Near
+from beliefnest.worlds.scripted.ground_cache import Grounds
+from beliefnest.worlds.scripted.hand import REACH
 
 _RENDER_MODES = ("human", "rgb_array")
 _MAX_STEPS = 100
@@ -44,7 +49,10 @@ _TRIED = 8
 """Number of instances whose things are counted for the sizes of arrays."""
 _LONGEST_PROGRAM = 10_000
 _OF_WORLD = frozenset(
-    ("_own", "_worlds", "_nest", "_acting", "_played", "_by_hand", "_left", "_heard", "_orders")
+    (
+        *("_own", "_worlds", "_nest", "_acting", "_grounds"),
+        *("_played", "_by_hand", "_left", "_heard", "_orders"),
+    )
 )
 """Attributes of an environment that belong to its open world."""
 _LETTERS = frozenset(map(chr, range(32, 127))) | {"\n", "\t"}
@@ -58,7 +66,7 @@ class EnvironmentOptions:
     """Options of an environment; the arguments of `parallel_env`, with the same names."""
 
     world: str = "scripted"
-    actions: Literal["skills", "programs"] = "skills"
+    actions: Literal["skills", "programs", "flat"] = "skills"
     observations: Literal["arrays", "dict"] = "arrays"
     agents: tuple[str, ...] | None = None
     nested: int | tuple[str, ...] = ()
@@ -80,8 +88,8 @@ class EnvironmentOptions:
         check_world(self.world, servers=False)
         if self.senses not in (None, "world", "percepts"):
             raise InputError(f"senses is {self.senses!r}; it is 'world' or 'percepts'")
-        if self.actions not in ("skills", "programs"):
-            raise InputError(f"actions is {self.actions!r}; it is 'skills' or 'programs'")
+        if self.actions not in ("skills", "programs", "flat"):
+            raise InputError(f"actions is {self.actions!r}; it is 'skills', 'programs' or 'flat'")
         if self.observations not in ("arrays", "dict"):
             raise InputError(f"observations is {self.observations!r}; it is 'arrays' or 'dict'")
         if self.render_mode not in (None, *_RENDER_MODES):
@@ -179,7 +187,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         players: Sequence[str] = ()
         if isinstance(source, Instances):
             options.check_task()
-            task = source.of(options.seed)
+            task = self._task = source.of(options.seed)
             scenario, players = task.scenario, task.players
         else:
             options.check_scenario()
@@ -199,6 +207,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         context = context_of(scenario.setting)
         if isinstance(options.nested, int):
             check_nested(context, self.possible_agents, options.nested)
+        speaks = any(map(self._may_speak, self.possible_agents))
+        self._flat = FlatActions(self._calls, self._bounds.most, speaks=speaks)
         self._nested = _nested(options.nested, self.possible_agents, self.layout.agents)
         self._nested_of = {
             agent: tuple(path for path in self._nested if path[0] == agent)
@@ -227,6 +237,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._left: TimelineInfo | None = None
         self._heard: dict[str, int] = {}
         self._orders: dict[str, KnownOrder] = {}
+        self._grounds = Grounds()
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what a copy has: everything but the world, and the episode as it was saved."""
@@ -320,12 +331,17 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
     def _spaces_of(self) -> tuple[spaces.Space[Any], spaces.Space[Any]]:
         """Return new spaces of an agent's observations and actions."""
         is_plain = self._options.observations == "dict"
-        seen = BeliefSpace() if is_plain else _space_of(self._bounds.shapes())
+        shapes = dict(self._bounds.shapes())
+        if self._options.actions == "flat":
+            shapes["action_mask"] = ((len(self._flat.offers),), np.int8, 0, 1)
+        seen = BeliefSpace() if is_plain else _space_of(shapes)
         return seen, self._new_action_space()
 
     def _new_action_space(self) -> spaces.Space[Any]:
         if self._options.actions == "programs":
             return spaces.Text(_LONGEST_PROGRAM, min_length=0, charset=_LETTERS)
+        if self._options.actions == "flat":
+            return spaces.Discrete(len(self._flat.offers))
         parts: dict[str, spaces.Space[Any]] = {"skill": spaces.Discrete(len(self.skills))}
         for part, size in self._calls.parts.items():
             if part == "position":
@@ -399,6 +415,49 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         self._show()
         return told
 
+    def calls(self, agent: str) -> tuple[Call | None, ...]:
+        """Return what each number of the space `flat` stands for now; None: nothing known.
+
+        Raises:
+            InputError: No episode has begun, or the agent cannot act.
+        """
+        mind, found = self._mind(agent), []
+        for number in range(len(self._flat.offers)):
+            try:
+                found.append(self._flat.call(number, mind))
+            except NotKnownError:
+                found.append(None)
+        return tuple(found)
+
+    def action_masks(self, agent: str | None = None) -> npt.NDArray[np.int8]:
+        """Return 1 for each action of the space `flat` that can begin as far as its agent knows.
+
+        Args:
+            agent: Name of the agent; None: a row for each of `possible_agents`.
+
+        Raises:
+            InputError: No episode has begun, or the agent cannot act.
+        """
+        if agent is None:
+            return np.stack([self.action_masks(each) for each in self.possible_agents])
+        return self._flat.mask(self._mind(agent))
+
+    def _mind(self, agent: str) -> ActorMind:
+        """Return what an agent knows about what it can do."""
+        things, state = self.known(agent), self.nest[path_text((agent,))].state
+        ground = self._grounds.of(state.box, state.blocks.terrain).with_doors_opened
+        feet = state.agents[agent].position
+
+        def may_reach(place: Position, near: float | None) -> bool:
+            goal = InReach(place, REACH) if near is None else Near(place, near)
+            return feet is not None and ground.may_lead(ground.cell_of(feet), goal)
+
+        speaks = self._may_speak(agent)
+        return ActorMind(agent, state, things, self.layout.places, speaks, may_reach)
+
+    def _may_speak(self, agent: str) -> bool:
+        return self._task is None or agent in self._task.form.talk
+
     def save(self) -> SavedEpisode:
         """Return the episode up to now, for `restore` of this environment or of a copy.
 
@@ -467,7 +526,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         if chosen.plays_script:
             nest.play()
         senses, timeout = chosen.senses or "world", chosen.timeout_ticks or _TIMEOUT_TICKS
-        if chosen.actions == "skills" and chosen.world == "scripted":
+        if chosen.actions != "programs" and chosen.world == "scripted":
             speech = source.setting.perception.speech_ticks
             return SkillActing(nest, chosen.step_ticks, timeout, senses, speech)
         return ProgramActing(nest, timeout, senses)
@@ -605,6 +664,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             return action
         if isinstance(action, NamedAction):
             return action.call
+        if self._options.actions == "flat":
+            return self._flat.call(action, self._mind(agent))
         return self._calls.read(self.known(agent), action)
 
     def _told(
@@ -628,6 +689,10 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
                 observations[agent] = self._bounds.with_nested(own, self._orders[agent], below)
             else:
                 observations[agent] = {**own, "beliefs": told} if told else own
+            if self._options.actions == "flat":
+                mask = self.action_masks(agent)
+                infos[agent]["action_mask"] = mask
+                observations[agent] = {**observations[agent], "action_mask": mask}
         return observations, infos
 
     def _belief(self, path: BeliefPath, *, spoken: bool) -> Any:

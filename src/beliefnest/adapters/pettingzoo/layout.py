@@ -38,4 +38,5 @@ def layout_of(setting: Setting, phrases: Phrases, items: Sequence[str] = ()) -> 
         **placed,
         box=snapshot.box,
         phrases=tuple(phrases),
+        places=tuple(place for _, place in sorted(setting.places.items())),
     )

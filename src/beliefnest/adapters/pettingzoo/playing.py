@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import msgspec
 
 from beliefnest.adapters.pettingzoo.acting import ActionState, JointStep
+from beliefnest.adapters.pettingzoo.actions import SPEECH
 from beliefnest.episodes.agent_view import GO_ON, AgentView
 from beliefnest.episodes.decided import latest_end
 from beliefnest.episodes.episode import Episode
@@ -16,7 +17,6 @@ from beliefnest.skills.calls import Call
 from beliefnest.worlds.by_name import Worlds
 
 _FAILED = ("no_way", "failed", "lost")
-_SPEECH = ("say", "whisper")
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ class TaskActing:
         return self._rewards[agent]
 
     def _is_refused(self, agent: str, action: Call | str) -> bool:
-        speaks = isinstance(action, Call) and action.skill in _SPEECH
+        speaks = isinstance(action, Call) and action.skill in SPEECH
         return speaks and agent not in self._task.form.talk
 
     def _deed(self, agent: str, refused: set[str]) -> ActionState:

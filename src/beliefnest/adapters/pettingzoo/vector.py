@@ -106,6 +106,10 @@ class BeliefVectorEnv(VectorEnv[Any, Any, Any]):
         observations, infos = self._gathered(told)
         return observations, rewards, ended, cut, infos
 
+    def action_masks(self) -> npt.NDArray[np.int8]:
+        """Return the masks of all rows; see `BeliefEnv.action_masks`."""
+        return np.concatenate([env.action_masks() for env in self.envs])
+
     def render(self) -> tuple[Any, ...]:
         """Return the picture of its copy for each row, as the mode of the copies says."""
         shown = [env.render() for env in self.envs]

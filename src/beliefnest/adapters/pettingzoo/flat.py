@@ -1,0 +1,194 @@
+"""Actions by number: calls of skills and utterances about the things that an agent numbers.
+
+A number always stands for the same skill with the same numbers of things. Which of them can begin
+is computed from the belief of their agent alone.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from beliefnest.adapters.pettingzoo.actions import (
+    KIND_OF_PART,
+    SPEECH,
+    Calls,
+    NotKnownError,
+    index_of,
+)
+from beliefnest.adapters.pettingzoo.order import BLOCK_CLASSES, PLACED, Things, block_classes
+from beliefnest.belief.view import State
+from beliefnest.episodes.policies.candidates import said
+from beliefnest.errors import InputError
+from beliefnest.skills.calls import Call
+from beliefnest.world.claims import Claim
+from beliefnest.world.values import Position, block_at
+
+_NEAR = 2
+_GOALS = ("agent", "container", "door", "lever", "button", "sign", "place")
+"""Parts that name somewhere to go."""
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """Action with a number of its own.
+
+    Attributes:
+        skill: Name of the skill.
+        parts: Numbers of the things that it is about, by part.
+    """
+
+    skill: str
+    parts: tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True)
+class ActorMind:
+    """Knowledge of an agent about what it can do.
+
+    Attributes:
+        agent: Name of the agent.
+        state: Its belief.
+        things: The things that it knows, in its order.
+        places: Named places, which everybody knows.
+        may_speak: True if others can hear what it says.
+        may_reach: Function of a place, and of a distance at which to stand or None for where a
+            hand reaches the place; it returns False if the agent knows that there is no way.
+    """
+
+    agent: str
+    state: State
+    things: Things
+    places: Sequence[Position]
+    may_speak: bool
+    may_reach: Callable[[Position, float | None], bool]
+
+
+class FlatActions:
+    """Actions of an environment by number.
+
+    Args:
+        calls: Conversion of names to calls.
+        most: Greatest numbers of things by kind, `places` among them.
+        speaks: True if any agent may speak.
+
+    Attributes:
+        offers: The actions; the first one is to do nothing.
+    """
+
+    def __init__(self, calls: Calls, most: Mapping[str, int], *, speaks: bool) -> None:
+        self._calls = calls
+        self.offers = tuple(_offers(calls, most, speaks=speaks and most["agents"] > 1))
+
+    def call(self, number: object, mind: ActorMind) -> Call:
+        """Return the call that a number stands for.
+
+        Raises:
+            InputError: There is no such number.
+            NotKnownError: It stands for nothing that the agent knows.
+        """
+        try:
+            offer = self.offers[index_of(number)]
+        except (TypeError, ValueError, OverflowError, IndexError):
+            raise InputError(
+                f"{number!r:.100} is not in the action space; give a number from 0 to "
+                f"{len(self.offers) - 1}"
+            ) from None
+        named = self._named(offer, mind)
+        match offer.skill, named:
+            case "goToPosition", _:
+                return Call("goToPosition", (_goal(named, mind), 0 if "place" in named else _NEAR))
+            case "say", {"item": item, "container": place}:
+                return said(Claim.located(item, place))
+            case "whisper", {"agent": hearer, "item": item, "container": place}:
+                return Call("whisper", (hearer, *said(Claim.located(item, place)).args))
+        return self._calls.action(mind.things, offer.skill, named).call
+
+    def mask(self, mind: ActorMind) -> npt.NDArray[np.int8]:
+        """Return 1 for each action that can begin as far as its agent knows, and 0 for others."""
+        return np.array([self._can_begin(offer, mind) for offer in self.offers], np.int8)
+
+    def _can_begin(self, offer: Offer, mind: ActorMind) -> bool:
+        try:
+            named = self._named(offer, mind)
+            goal = _goal(named, mind) if offer.skill not in SPEECH and named else None
+        except NotKnownError:
+            return False
+        if named.get("agent") == mind.agent or _lacks(offer.skill, named, mind.state):
+            return False
+        if goal is None:
+            return mind.may_speak or offer.skill not in SPEECH
+        is_walk = offer.skill in ("goToPosition", "giveItemToOther")
+        near = 0 if "place" in named else _NEAR
+        return _is_there(named, mind) and mind.may_reach(goal, near if is_walk else None)
+
+    def _named(self, offer: Offer, mind: ActorMind) -> Mapping[str, Any]:
+        """Return the things that an action is about, by part."""
+        found = {}
+        for part, number in offer.parts:
+            known = mind.places if part == "place" else self._calls.known(mind.things, part)
+            if number >= len(known):
+                raise NotKnownError(f"it knows no {part} {number} so far")
+            found[part] = known[number]
+        return found
+
+
+def _offers(calls: Calls, most: Mapping[str, int], *, speaks: bool) -> Iterator[Offer]:
+    for skill in calls.possible:
+        parts = [part for part in skill.parts if part != "count"]
+        if parts == ["position"]:
+            for part in _GOALS:
+                yield from _each(skill.name, {part: most[KIND_OF_PART.get(part, "places")]})
+        elif speaks or skill.name not in SPEECH:
+            yield from _each(skill.name, {part: calls.parts[part] for part in parts})
+    if speaks:
+        about = {"item": most["items"], "container": most["containers"]}
+        yield from _each("say", about)
+        yield from _each("whisper", {"agent": most["agents"], **about})
+
+
+def _each(skill: str, sizes: Mapping[str, int]) -> Iterator[Offer]:
+    for numbers in product(*map(range, sizes.values())):
+        yield Offer(skill, tuple(zip(sizes, numbers, strict=True)))
+
+
+def _goal(named: Mapping[str, Any], mind: ActorMind) -> Position:
+    """Return where an agent goes for an action.
+
+    Raises:
+        NotKnownError: It does not know where another agent is.
+    """
+    where: Position = next(named[part] for part in _GOALS if part in named)
+    if "agent" not in named:
+        return where
+    position = mind.state.agents[named["agent"]].position
+    if position is None:
+        raise NotKnownError(f"it does not know where {named['agent']} is")
+    return block_at(position)
+
+
+def _lacks(skill: str, named: Mapping[str, Any], state: State) -> bool:
+    """Return True if the holder of a belief knows that what an action needs is not there."""
+    item, me = named.get("item"), state.agents[state.path[-1]]
+    match skill:
+        case "getItemFromChest":
+            known = state.containers.get(named["container"])
+            return known is not None and known.complete and not known.items.get(item, 0)
+        case "depositItemIntoChest":
+            return not me.inventory.get(item, 0)
+        case "giveItemToOther":
+            return not me.inventory.get(item, 0) or not state.agents[named["agent"]].current
+    return False
+
+
+def _is_there(named: Mapping[str, Any], mind: ActorMind) -> bool:
+    """Return False if an agent knows that a thing is no longer where it was."""
+    for part, thing in named.items():
+        if KIND_OF_PART.get(part) in PLACED:
+            state = mind.state.blocks.terrain[mind.state.box.index(thing)]
+            if block_classes()[state] not in (-1, BLOCK_CLASSES.index(KIND_OF_PART[part])):
+                return False
+    return True
