@@ -15,6 +15,7 @@ BENCHES: Mapping[str, str] = {
     "size": "beliefnest_benchmarks.size",
     "programs": "beliefnest_benchmarks.programs",
     "timelines": "beliefnest_benchmarks.timelines",
+    "histories": "beliefnest_benchmarks.histories",
     "prompts": "beliefnest_benchmarks.prompts",
     "beliefs": "beliefnest_benchmarks.beliefs",
     "growth": "beliefnest_benchmarks.growth",

@@ -8,8 +8,10 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
+from beliefnest.belief.columns import cell_of
 from beliefnest.belief.grounds import Basis, Source
-from beliefnest.world.values import DroppedItem, Event, Items
+from beliefnest.world.frames import Frame
+from beliefnest.world.values import Box, DroppedItem, Event, Items
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +138,27 @@ class Holdings:
             dict(self.writers),
             dict(self.told),
         )
+
+    def take(self, frame: Frame, box: Box) -> None:
+        """Set the contents and dropped items of a simulator from a frame of its own timeline."""
+        basis = Basis(frame.tick, Source.SEEN)
+        for place, items in frame.containers.items():
+            cell = cell_of(box, place)
+            old = self.containers.pop(cell, None)
+            if items is not None:
+                complete = old is None or old.complete
+                self.containers[cell] = Content(dict(items), complete, basis)
+        for number, item in frame.items.items():
+            self.items.pop(number, None)
+            if item is not None:
+                self.items[number] = item
+
+    def take_block(self, cell: int, name: str | None, tick: int) -> None:
+        """Begin or end a container at a block that changed; None: the block is no container."""
+        if name is None:
+            self.containers.pop(cell, None)
+        elif cell not in self.containers:
+            self.containers[cell] = Content({}, True, Basis(tick, Source.SEEN))
 
     def drop(self, cell: int) -> None:
         """Forget a container and everything that was perceived in it."""

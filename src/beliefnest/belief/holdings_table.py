@@ -213,19 +213,8 @@ class HoldingsTable:
 
     def apply_frame(self, frame: Frame | None) -> None:
         """Set contents and dropped items of node 0 from a frame."""
-        if frame is None:
-            return
-        holdings, basis = self._holdings[0], Basis(frame.tick, Source.SEEN)
-        for place, items in frame.containers.items():
-            cell = cell_of(self._context.box, place)
-            old = holdings.containers.pop(cell, None)
-            if items is not None:
-                complete = old is None or old.complete
-                holdings.containers[cell] = Content(dict(items), complete, basis)
-        for number, item in frame.items.items():
-            holdings.items.pop(number, None)
-            if item is not None:
-                holdings.items[number] = item
+        if frame is not None:
+            self._holdings[0].take(frame, self._context.box)
 
     def follow(
         self,
@@ -249,11 +238,7 @@ class HoldingsTable:
             which: bool (N,), nodes to update.
         """
         for _, _, cell, _, new, _, _ in rows.get(0, ()):
-            if self._context.container_name(new) is None:
-                self._holdings[0].containers.pop(cell, None)
-            elif cell not in self._holdings[0].containers:
-                basis = Basis(tick, Source.SEEN)
-                self._holdings[0].containers[cell] = Content({}, True, basis)
+            self._holdings[0].take_block(cell, self._context.container_name(new), tick)
         looking = self._looking(acts, which)
         seeing = {node for node in self._in_sight if which[node]}
         for node in sorted(looking | rows.keys() | seeing):

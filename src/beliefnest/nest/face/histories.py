@@ -15,6 +15,8 @@ from beliefnest.nest.face.given import check_branch_name, tick_of, whole
 from beliefnest.nest.face.history_starts import HistoryStarts
 from beliefnest.nest.face.imagine_arguments import Evidence, goal_conditions
 from beliefnest.nest.past.recording import Recording
+from beliefnest.nest.past.summed_state import StateSums
+from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.owned import Barred
 from beliefnest.timeline.journal import ForkPoint, TimelineKey
 from beliefnest.timeline.store import Journal
@@ -95,9 +97,11 @@ class History(Barred):
         Raises:
             TickError: The tick is after the end of the history, or before the start of the run.
         """
-        recording, then = self._imagined._recorded(self._course), tick_of(tick)
-        recording.moment(self._imagined._path, then)
-        return self._imagined._faces.past(recording, self._imagined._path, then)
+        imagined, then = self._imagined, tick_of(tick)
+        recording = imagined._recorded(self._course)
+        if not imagined.since <= then <= self.tick:
+            recording.moment(imagined._path, then)
+        return imagined._faces.past(recording, imagined._path, then)
 
     def feet(self, agent: str) -> dict[int, Point]:
         """Return the feet of an agent at every tick from `since` at which the history has it.
@@ -200,6 +204,7 @@ class Imagined(Barred):
         self.log_evidence = -math.inf if drawing.lost is not None else drawing.log_evidence
         self._particles = [each for each in drawing.particles if each.weight > 0]
         self._read: dict[Course, Recording] = {}
+        self._begun: dict[tuple[int, ...], TimelineState] = {}
 
     def __len__(self) -> int:
         return len(self._particles)
@@ -344,7 +349,16 @@ class Imagined(Barred):
             key = TimelineKey(self._path, f"history {len(self._read)}")
             self._append(self._side.journal, key, course)
             found = self._read[course] = self._side.on(key)
+            found.sums = {self._path: self._sums(key, course)}
         return found
+
+    def _sums(self, key: TimelineKey, course: Course) -> StateSums:
+        """Return the sums of a course; courses with the same alternatives share their beginning."""
+        first = self._side.journal.info(key).entries - len(course.entries)
+        if course.drawn not in self._begun:
+            state = self._side.history.state(key, self._path, first, self.since)
+            self._begun[course.drawn] = state
+        return StateSums(self._begun[course.drawn], key, first, course.entries, course.tick)
 
     def _append(self, journal: Journal, key: TimelineKey, course: Course) -> None:
         """Add a course to a journal as a timeline of its own."""

@@ -196,7 +196,7 @@ def _percept(forest: Forest, path: BeliefPath, tick: int, before: int) -> tuple[
 def _in_reach(forest: Forest, path: BeliefPath, owner: str) -> Iterable[int]:
     """Return cells among which are all whose block is current in a node; its owner is present."""
     context, far = forest.context, forest.context.options.max_visible_distance
-    feet = forest.feet(path[:-1], owner)
+    feet = forest.feet(path, owner)
     if context.is_dense or far is None or feet is None:
         return range(context.cells)
     eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])

@@ -14,6 +14,7 @@ from beliefnest.errors import BranchError, StoreError, TickError
 from beliefnest.nest.past.history import StateHistory
 from beliefnest.nest.past.setting import MAIN, Setting
 from beliefnest.nest.past.setting_codec import decode_start
+from beliefnest.nest.past.summed_state import StateSums
 from beliefnest.nest.past.timeline_state import TimelineState
 from beliefnest.nest.past.turn import Turn
 from beliefnest.owned import Barred, is_own
@@ -41,6 +42,7 @@ class Recording(Barred):
         turn: Lock of the thread that uses the nest.
         world: Name of the world in which the nest was opened.
         remembered: Caches of readers, by keys of their own.
+        sums: Sums of an imagined history, by path of its simulator.
         told: Path and moment for which observations and names were read last, and these.
     """
 
@@ -57,6 +59,7 @@ class Recording(Barred):
         self.setting = setting
         self.world = world
         self.remembered: dict[object, object] = {}
+        self.sums: Mapping[BeliefPath, StateSums] = {}
         self.told: tuple[tuple[BeliefPath, ForkPoint], ToldMind] | None = None
         self.journal = journal
         self.seed = seed
@@ -93,13 +96,14 @@ class Recording(Barred):
         """
         other = copy(self)
         above = {p: k for p, k in self.selected.items() if key.path[: len(p)] == p}
-        other.selected = {**above, key.path: key}
+        other.selected, other.sums = {**above, key.path: key}, {}
         return other
 
     def following(self, path: BeliefPath) -> Self:
         """Return the recording with the simulators of a path and below in follow mode."""
         other = copy(self)
         other.selected = {p: k for p, k in self.selected.items() if p[: len(path)] != path}
+        other.sums = {}
         return other
 
     def controller(self, path: BeliefPath) -> TimelineKey:
@@ -159,6 +163,8 @@ class Recording(Barred):
 
     def state(self, path: BeliefPath, tick: int | None = None) -> TimelineState:
         """Return the state of a node now, or at a past tick; raises as `moment` does."""
+        if (sums := self.sums.get(path)) is not None and (found := sums.state(tick)) is not None:
+            return found
         moment = self.moment(path, tick)
         return self.history.state(moment.timeline, path, moment.entries, moment.tick)
 
