@@ -10,8 +10,6 @@ from beliefnest.nest.face.nest import Nest
 from beliefnest.worlds.scripted.world import ScriptedWorld
 from beliefnest_benchmarks.figures import Metric
 
-__all__ = ["measure"]
-
 _HISTORIES, _TICKS, _RUNS = 1000, 60, 3
 _PLACES = {"K": (1, 1, 1), "L": (13, 1, 7), "M": (13, 1, 1)}
 

@@ -27,13 +27,13 @@ class Owned:
     """
 
     def __init__(self) -> None:
-        self._owner = os.getpid()
+        self._owner = _process
         _all.add(self)
 
     @property
     def is_own(self) -> bool:
         """True if this process created the object; False in a forked child."""
-        return self._owner == os.getpid()
+        return self._owner == _process
 
     def check_own(self, what: str) -> None:
         """Refuse the use in a forked child; messages begin with `what`, the object's name.
@@ -85,14 +85,14 @@ _process = os.getpid()
 
 
 def _disown_all() -> None:
-    global _process  # noqa: PLW0603 - each process has its own
+    global _process  # each process has its own
+    parent, _process = _process, os.getpid()
     for each in list(_all):
         each.disown()
     for barred in filter(is_own, list(_to_bar)):
         kind = type(barred)
-        barring = {"__getattribute__": _refuse, "_opened_by": _process}
+        barring = {"__getattribute__": _refuse, "_opened_by": parent}
         barred.__class__ = type(kind.__name__, (kind,), barring)
-    _process = os.getpid()
 
 
 if hasattr(os, "register_at_fork"):

@@ -25,8 +25,6 @@ from beliefnest.world.frames import Frame
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.values import AgentState, DroppedItem, Position
 
-__all__ = ["StateSums"]
-
 
 class StateSums:
     """Sums of the entries of a timeline after a known state of its own simulator.
@@ -85,6 +83,8 @@ class StateSums:
         if self._reached is None or self._reached[0] > count:
             self._reached = (0, self.base.numbers, _holdings(self.base))
         reached, numbers, holdings = self._reached
+        if reached == count:
+            return numbers, holdings
         context, frames = self.base._context, self.frames[reached:count]
         draft = numbers.draft() if any(frame.blocks for frame in frames) else None
         for frame in frames:
@@ -127,9 +127,9 @@ class _SummedState(TimelineState):
     def containers(self) -> Mapping[Position, ContainerBelief]:
         """The contents, in order of position; found at either half of a double chest."""
         held = self._sums.after(self._count)[1].containers
-        found = {}
+        found, ground = {}, self._ground
         for cell in sorted(held):
-            content, ground = held[cell], self._ground
+            content = held[cell]
             if not self._count:
                 ground = replace(content.basis, observed_at=self.tick)
             place = place_of(self.box, cell)
@@ -161,7 +161,7 @@ class _SummedState(TimelineState):
         """Return a mask of the events after the first `count`, all of which count as perceived."""
         return np.ones(max(self.count_of_events - count, 0), dtype=np.bool_)
 
-    @Part
+    @property
     def _ground(self) -> Basis:
         return Basis(self.tick, Source.SEEN)
 
