@@ -81,7 +81,7 @@ def readings(world: Played, path: str) -> object:
     return heard, model.asked
 
 
-@door(every=4)
+@door(every=8)
 def policies(world: Played, path: str) -> object:
     """Return what a policy of the owner reads: its prompts, its memories and its claims."""
     own, nest = world.nest[path], world.nest

@@ -21,7 +21,7 @@ class Door:
     Attributes:
         name: Its name, for messages.
         look: The function.
-        every: By day only one pair out of so many goes through it; at night all do.
+        every: Only one pair out of so many goes through it; by day one out of three times as many.
     """
 
     name: str
@@ -37,7 +37,7 @@ def door(*, every: int = 1) -> Callable[[Look], Look]:
     """Register a door.
 
     Args:
-        every: By day only one pair out of so many goes through it, if it takes long.
+        every: Only one pair out of so many goes through it, if it takes long.
     """
 
     def registered(look: Look) -> Look:

@@ -28,14 +28,14 @@ def plain_story(world: Played, path: str) -> object:
     return world.nest[path].render("{{ branch | beginning }}\n{{ branch | story }}")
 
 
-@door()
+@door(every=2)
 def earlier_story(world: Played, path: str) -> object:
     """Return the prose at an earlier tick."""
     then = world.nest.at(world.nest.tick // 2)[path]
     return then.render("{{ branch | beginning }}\n{{ branch | story(narrated=true) }}")
 
 
-@door()
+@door(every=2)
 def filters(world: Played, path: str) -> object:
     """Return the text of every built-in filter."""
     told = {}

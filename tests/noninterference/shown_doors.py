@@ -23,7 +23,7 @@ def states(world: Played, path: str) -> object:
     return repr(state), state.perceived, seen.tobytes()
 
 
-@door(every=4)
+@door(every=8)
 def explanations(world: Played, path: str) -> object:
     """Return the explanations of beliefs about what is in the western room."""
     if "carl" in path:  # Reasons tell where he really is.
@@ -39,7 +39,7 @@ def comparisons(world: Played, path: str) -> object:
     return world.nest.compare(path, _BELOW.get(path, "/ann"))
 
 
-@door()
+@door(every=2)
 def claims(world: Played, path: str) -> object:
     """Return the claims that the owner heard, and the ticks of its percepts."""
     return world.nest[path].heard_claims, world.nest[path].changes(0)

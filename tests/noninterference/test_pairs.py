@@ -16,18 +16,18 @@ PAIRS, PARTS = at_night(5000, 200), 10
 
 
 def chosen(seed: int) -> tuple[list[Door], tuple[str, ...]]:
-    """Return the doors and paths of a pair: at night all; by day one path and a few doors."""
-    if NIGHTLY:
-        return list(DOORS.values()), PATHS
+    """Return the doors and paths of a pair: at night all paths; by day one, and fewer doors."""
     turn = seed // PARTS + seed % PARTS
-    doors = [door for n, door in enumerate(DOORS.values()) if (turn + n) % (3 * door.every) == 0]
-    return doors, (PATHS[(turn // 3) % len(PATHS)],)
+    paths = PATHS if NIGHTLY else (PATHS[(turn // 3) % len(PATHS)],)
+    times = 1 if NIGHTLY else 3
+    numbered = enumerate(DOORS.values())
+    return [door for n, door in numbered if (turn + n) % (times * door.every) == 0], paths
 
 
 def looks(world: Played, seed: int) -> dict[tuple[str, str], str]:
-    """Return what doors show of paths."""
+    """Return what doors show of paths, path by path: what was read of one is kept until then."""
     doors, paths = chosen(seed)
-    return {(each.name, path): repr(each.look(world, path)) for each in doors for path in paths}
+    return {(each.name, path): repr(each.look(world, path)) for path in paths for each in doors}
 
 
 @pytest.mark.parametrize("part", range(PARTS))
