@@ -7,8 +7,8 @@ from pathlib import Path
 from beliefnest.cli.console import progress_on
 from beliefnest.cli.terminal_text import say
 from beliefnest.studies.archive import write_zip
-from beliefnest.studies.bundling import bundled, facts_of, opened
-from beliefnest.studies.methods import MethodsForm, methods_text
+from beliefnest.studies.bundling import bundled, opened
+from beliefnest.studies.methods import MethodsForm, facts_of, methods_text
 from beliefnest.world.words import counted
 
 

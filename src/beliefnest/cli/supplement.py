@@ -19,21 +19,20 @@ from beliefnest.llm.stored_exchange import encode_exchange
 from beliefnest.nest.past.versions import own_versions
 from beliefnest.scenarios.sources import read_document
 from beliefnest.studies.archive import damaged_files, unpack
-from beliefnest.studies.bundling import Results, kind_of, opened
-from beliefnest.studies.comparing import ERROR, PairedDifference, differing_contents, differing_rows
+from beliefnest.studies.bundling import opened
+from beliefnest.studies.comparing import ERROR, PairedDifference, differing_contents
 from beliefnest.studies.foreign_code import Code, check_trust, code_of, functions_in
 from beliefnest.studies.jobs import StudyProgress
-from beliefnest.studies.methods import run_facts
-from beliefnest.studies.plainframe import csv_rows, read_csv_rows
+from beliefnest.studies.methods import facts_of
 from beliefnest.studies.reproducing import (
     Reproduction,
     check_templates,
     code_in_study,
+    differing_table,
     reproduce_study,
 )
-from beliefnest.studies.run_result import RunResult
+from beliefnest.studies.run_result import ReportedRun, read_report
 from beliefnest.studies.study_record import StudyRecord
-from beliefnest.world.texts import quoted
 from beliefnest.world.words import counted
 from beliefnest.worlds.names import WORLDS
 
@@ -64,7 +63,7 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
         if not supplement.is_dir():
             folder = unpack(supplement, Path(scratch, "unpacked"))
         result = opened(folder)
-        damaged = damaged_files(folder, kind_of(result))
+        damaged = damaged_files(folder, result.folder.kind)
         if damaged and trust:
             raise InputError(
                 f"{supplement} is not what was bundled: {damaged[0].text}"
@@ -81,15 +80,13 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
             def told(progress: StudyProgress) -> None:
                 on_progress("playing", progress.done + progress.failed, progress.total)
 
-            if isinstance(result, StudyRecord):
-                found = reproduce_study(folder, again, jobs, told, trust=trust)
-                recorded = dict(result.plan["versions"])
-            else:
+            if isinstance(result.folder, ReportedRun):
                 on_progress("playing", 0, 0)
-                found = _reproduce_run(result, again, trust=trust)
-                recorded = dict(result.report["versions"])
+                found = _reproduce_run(result, result.folder, again, trust=trust)
+            else:
+                found = reproduce_study(folder, again, jobs, told, trust=trust)
         differences = [*damaged, *found.differences]
-    other = _other_versions(recorded)
+    other = _other_versions(result.plan["versions"])
     if as_json:
         sys.stdout.write(json.dumps(_report(found, differences, other), indent=2) + "\n")
     else:
@@ -97,11 +94,12 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
     return 1 if differences else 0
 
 
-def _code_of(result: Results) -> list[Code]:
+def _code_of(result: StudyRecord) -> list[Code]:
     """Return the Python code that playing a study or run again runs."""
-    if isinstance(result, StudyRecord):
-        return code_in_study(result.folder.path)
-    document = read_document(str(result.folder / "scenario.yaml"))
+    folder = result.folder
+    if folder.kind == "study":
+        return code_in_study(folder.path)
+    document = read_document(str(folder.path / "scenario.yaml"))
     check_templates(document)
     return [code_of(name) for name in functions_in(document.root)]
 
@@ -168,9 +166,11 @@ def _other_versions(recorded: Mapping[str, str]) -> dict[str, tuple[str, str]]:
     }
 
 
-def _reproduce_run(result: RunResult, again: Path, *, trust: bool) -> Reproduction:
+def _reproduce_run(
+    result: StudyRecord, run: ReportedRun, again: Path, *, trust: bool
+) -> Reproduction:
     """Run the conditions of a run again, with its recorded answers, and compare the results."""
-    folder, settings = result.folder, result.report["settings"]
+    folder, settings = run.path, run.report["settings"]
     check_trust(_code_of(result), trust=trust)
     models = _replaying(result, again.with_name("answers"))
     if settings["world"] not in WORLDS:
@@ -182,48 +182,42 @@ def _reproduce_run(result: RunResult, again: Path, *, trust: bool) -> Reproducti
     if "system" in settings:
         system = again.with_name("system.txt")
         replace_file(system, str(settings["system"]))
-    try:
-        options = RunOptions(
-            scenario=str(folder / "scenario.yaml"),
-            condition=list(settings["conditions"]),
-            world=settings["world"],
-            models=",".join(models[name] for name in settings["models"]),
-            repeat=settings["repeat"],
-            out=again,
-            seed=settings["seed"],
-            cache="off",
-            attempts=settings["attempts"],
-            temperature=settings["temperature"],
-            claims_from=models.get(settings.get("claims_from", "")),
-            json=True,
-            # Limits of time have no effect on recorded answers.
-            system=system,
-            skills=settings.get("skills"),
-            max_output_tokens=settings.get("max_output_tokens"),
-        )
-    except (KeyError, TypeError) as error:
-        raise InputError(
-            f"{folder / 'run.json'} has settings that cannot be: {quoted(str(error))} is unknown "
-            "or missing"
-        ) from None
+    options = RunOptions(
+        scenario=str(folder / "scenario.yaml"),
+        condition=list(settings["conditions"]),
+        world=settings["world"],
+        models=",".join(models[name] for name in settings["models"]),
+        repeat=settings["repeat"],
+        out=again,
+        seed=settings["seed"],
+        cache="off",
+        attempts=settings["attempts"],
+        temperature=settings["temperature"],
+        claims_from=models.get(settings.get("claims_from", "")),
+        json=True,
+        # Limits of time have no effect on recorded answers.
+        system=system,
+        skills=settings.get("skills"),
+        max_output_tokens=settings.get("max_output_tokens"),
+    )
     # What a command prints is not the result here: the report in the folder is.
     with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(ModelError):
         run_scenarios(options)
-    played = RunResult.read(again)
+    played = read_report(again)
     return Reproduction(
-        cells=len(result.report["runs"]),
-        left_out=len(result.report["failures"]),
+        cells=len(run.report["runs"]),
+        left_out=len(run.report["failures"]),
         rows=sum(row["outcome"] != "error" for row in result.rows),
-        differences=tuple(_differences(result, played, models)),
+        differences=(*differing_table(result), *_differences(run.report, played, models)),
     )
 
 
-def _replaying(result: RunResult, folder: Path) -> dict[str, str]:
+def _replaying(result: StudyRecord, folder: Path) -> dict[str, str]:
     """Return by name of a model the model that replays its answers, from files that are written."""
     folder.mkdir(parents=True, exist_ok=True)
     models = {"offline": "offline"}
-    exchanges = result.exchanges()
-    for number, name in enumerate(each.name for each in run_facts(result).models):
+    exchanges = result.folder.exchanges()
+    for number, name in enumerate(each.name for each in facts_of(result).models):
         if name != "offline":
             file = folder / f"{number}.jsonl"
             own = [encode_exchange(each) for each in exchanges if each.model == name]
@@ -233,22 +227,14 @@ def _replaying(result: RunResult, folder: Path) -> dict[str, str]:
 
 
 def _differences(
-    recorded: RunResult, again: RunResult, models: Mapping[str, str]
+    recorded: Mapping[str, Any], again: Mapping[str, Any], models: Mapping[str, str]
 ) -> Iterator[PairedDifference]:
-    file = recorded.folder / "rows.csv"
-    if file.is_file():
-        yield from differing_rows(
-            read_csv_rows(file, recorded.typed()),
-            csv_rows(recorded.typed()),
-            lambda n: f"rows.csv:{n + 1}",
-        )
-
     def key(run: Mapping[str, Any], model: str) -> tuple[Any, ...]:
         return run["condition"], run["seed"], model
 
-    failed = {key(each, each["model"]): each["error"] for each in again.report["failures"]}
-    after = {key(each, each["model"]): each for each in again.report["runs"]}
-    for number, before in enumerate(recorded.report["runs"]):
+    failed = {key(each, each["model"]): each["error"] for each in again["failures"]}
+    after = {key(each, each["model"]): each for each in again["runs"]}
+    for number, before in enumerate(recorded["runs"]):
         where = f"run.json, runs.{number}"
         known = key(before, models[before["model"]])
         if known in failed:

@@ -11,16 +11,14 @@ from beliefnest.llm.secrets import Secrets, secrets_in
 from beliefnest.studies.accuracy_figure import plot_accuracy, svg_of
 from beliefnest.studies.archive import check_secrets, with_manifest
 from beliefnest.studies.filter_packages import PACKAGES, filter_packages
-from beliefnest.studies.methods import RunFacts, methods_text, run_facts, study_facts
+from beliefnest.studies.methods import RunFacts, facts_of, methods_text
 from beliefnest.studies.page import page_text
 from beliefnest.studies.plainframe import csv_text
-from beliefnest.studies.run_result import RunResult
+from beliefnest.studies.run_result import ReportedRun, read_report
 from beliefnest.studies.study_record import StudyRecord
 
-Results = StudyRecord | RunResult
 
-
-def opened(folder: Path) -> Results:
+def opened(folder: Path) -> StudyRecord:
     """Return the results in the folder of a study or of a run.
 
     Raises:
@@ -29,19 +27,14 @@ def opened(folder: Path) -> Results:
     if (folder / "study.json").is_file() or (folder / "cells").is_dir():
         return StudyRecord.read(folder)
     if (folder / "run.json").is_file():
-        return RunResult.read(folder)
+        return StudyRecord(ReportedRun(folder, read_report(folder)))
     raise InputError(
         f"there is neither a study nor a run at {folder}; give the folder of `beliefnest study "
         "--out` or `beliefnest run --out`"
     )
 
 
-def facts_of(result: Results) -> RunFacts:
-    """Return the recorded facts about a study or run; raise InputError if a file is damaged."""
-    return study_facts(result) if isinstance(result, StudyRecord) else run_facts(result)
-
-
-def bundled(result: Results, environment: Mapping[str, str], *, runs: bool) -> dict[str, bytes]:
+def bundled(result: StudyRecord, environment: Mapping[str, str], *, runs: bool) -> dict[str, bytes]:
     """Return the files of the supplement of a study or run, by path.
 
     Args:
@@ -54,20 +47,13 @@ def bundled(result: Results, environment: Mapping[str, str], *, runs: bool) -> d
     """
     files = _files(result, runs=runs)
     check_secrets(files, _secrets(environment))
-    return with_manifest(files, kind_of(result), facts_of(result).versions)
+    return with_manifest(files, result.folder.kind, result.plan["versions"])
 
 
-def kind_of(result: Results) -> str:
-    """Return the kind of results, as manifests name it: `study` or `run`."""
-    return "study" if isinstance(result, StudyRecord) else "run"
-
-
-def _files(result: Results, *, runs: bool) -> dict[str, bytes]:
-    if isinstance(result, StudyRecord):
-        files = dict(_study_files(result, runs=runs))
-    else:
-        files = dict(_run_files(result, runs=runs))
-    files |= filter_packages()
+def _files(result: StudyRecord, *, runs: bool) -> dict[str, bytes]:
+    of_kind = _study_files if result.folder.kind == "study" else _run_files
+    files = {**dict(of_kind(result, runs=runs)), **filter_packages()}
+    files["rows.csv"] = csv_text(result.typed()).encode()
     facts = facts_of(result)
     for form, name in (("markdown", "methods.md"), ("latex", "methods.tex")):
         files[name] = methods_text(facts, "latex" if form == "latex" else "markdown").encode()
@@ -77,16 +63,15 @@ def _files(result: Results, *, runs: bool) -> dict[str, bytes]:
 
 def _study_files(result: StudyRecord, *, runs: bool) -> Iterator[tuple[str, bytes]]:
     folder = result.folder.path
-    planned = {cell["name"] for cell in result.plan["cells"]}
     yield "study.json", read_regular(folder / "study.json")
     for name in ("people.json", "people.csv"):
         if (folder / name).is_file():
             yield name, read_regular(folder / name)
     for path in _below(folder, ("inputs", "answers", *(["runs"] if runs else []))):
         yield path.relative_to(folder).as_posix(), path.read_bytes()
-    for name in sorted(planned & result.folder.names()):
-        yield f"cells/{name}.json", read_regular(folder / "cells" / f"{name}.json")
-    yield "rows.csv", csv_text(result.typed()).encode()
+    for name in sorted(cell["name"] for cell in result.plan["cells"]):
+        if (folder / "cells" / f"{name}.json").is_file():
+            yield f"cells/{name}.json", read_regular(folder / "cells" / f"{name}.json")
     yield "study.html", page_text(result, result.groups).encode()
     yield from _figure(result.counted(result.groups), result.groups)
 
@@ -100,13 +85,12 @@ def _figure(groups: Sequence[Mapping[str, Any]], by: Sequence[str]) -> Iterator[
         return
 
 
-def _run_files(result: RunResult, *, runs: bool) -> Iterator[tuple[str, bytes]]:
-    folder = result.folder
+def _run_files(result: StudyRecord, *, runs: bool) -> Iterator[tuple[str, bytes]]:
+    folder = result.folder.path
     for path in _below(folder, (".",)):
         is_store = path.suffix == ".bn" or path.name.endswith((".bn-wal", ".bn-shm"))
         if (runs or not is_store) and path.suffix not in (".part", ".lock"):
             yield path.relative_to(folder).as_posix(), path.read_bytes()
-    yield "rows.csv", csv_text(result.typed()).encode()
 
 
 def _below(folder: Path, names: Sequence[str]) -> list[Path]:
@@ -127,10 +111,10 @@ def _secrets(environment: Mapping[str, str]) -> Secrets:
     return Secrets(values)
 
 
-def _readme(result: Results, facts: RunFacts, files: Mapping[str, bytes]) -> str:
+def _readme(result: StudyRecord, facts: RunFacts, files: Mapping[str, bytes]) -> str:
     version = facts.versions.get("beliefnest", "")
     pin = f"=={version}" if version else ""
-    kind = kind_of(result)
+    kind = result.folder.kind
     filters = ""
     if any(name.startswith(f"{PACKAGES}/") for name in files):
         filters = (

@@ -8,14 +8,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from beliefnest.studies.cells import digest
-from beliefnest.studies.study_folder import StudyFolder
+from beliefnest.studies.study_folder import ResultFolder
 
 _OWN = ("key", "seed", "run")
 """Keys of a cell's file that identify the cell and are no part of its result."""
 
 
 def rows_with_copies(
-    folder: StudyFolder,
+    folder: ResultFolder,
     plan: Mapping[str, Any],
     rows_of: Callable[[Mapping[str, Any], Mapping[str, Any]], Iterable[dict[str, Any]]],
 ) -> Iterator[dict[str, Any]]:

@@ -5,22 +5,18 @@ import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any, Literal, get_args
-
-import msgspec
 
 from beliefnest.errors import InputError
 from beliefnest.files import read_regular
 from beliefnest.llm.resolve import can_vary
-from beliefnest.llm.stored_exchange import Exchange, decode_exchange
+from beliefnest.llm.stored_exchange import Exchange
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.judging import LOST, unanswered_words
 from beliefnest.studies.allocation import PARTICIPANT
 from beliefnest.studies.clusters import DRAWS
 from beliefnest.studies.counting import Row
 from beliefnest.studies.participants.exclusions import excluded_words
-from beliefnest.studies.run_result import RunResult
 from beliefnest.studies.study_record import StudyRecord
 from beliefnest.world.words import counted
 
@@ -123,19 +119,6 @@ class RunFacts:
     people: Sequence[PeopleFacts] = ()
 
 
-def exchanges_in(folder: Path) -> Iterator[Exchange]:
-    """Yield the answers in a folder of cached answers.
-
-    Raises:
-        InputError: A file is damaged.
-    """
-    for file in sorted(folder.glob("*.json")):
-        try:
-            yield decode_exchange(read_regular(file))
-        except (msgspec.MsgspecError, OSError) as error:
-            raise InputError(f"{file} is damaged: {error}; delete it") from None
-
-
 def answered(names: Sequence[str], exchanges: Sequence[Exchange]) -> list[ModelFacts]:
     """Return the facts about each model, from its recorded answers."""
     found = []
@@ -159,25 +142,25 @@ def usage_of(rows: Sequence[Row]) -> tuple[int, float, int]:
     )
 
 
-def study_facts(result: StudyRecord) -> RunFacts:
-    """Return the facts about a study, from its folder.
+def facts_of(result: StudyRecord) -> RunFacts:
+    """Return the facts about a study or run, from its folder.
 
     Raises:
         InputError: A file of the folder is damaged.
     """
-    plan, rows = result.plan, result.rows
+    plan, rows, kind = result.plan, result.rows, result.folder.kind
     names = [each.removeprefix("model:") for each in plan["models"]]
     names += [plan["claims_from"]] if plan.get("claims_from") else []
     tokens, cost, unpriced = usage_of(rows)
     judged = [row for row in rows if row["ok"] is not None and row["copy_of"] is None]
     return RunFacts(
-        kind="study",
+        kind=kind,
         versions=plan["versions"],
         world=plan["world"],
         subjects=_subjects(plan),
         factors=list(_factors(plan)),
         seed=None if "seed" not in plan else f"seed {plan['seed']}",
-        models=answered(names, list(exchanges_in(result.folder.answers))),
+        models=answered(names, result.folder.exchanges()),
         asking=_asking(plan, rows),
         templates=_templates(result),
         cells=sum(PARTICIPANT not in cell["key"] for cell in plan["cells"]),
@@ -192,7 +175,7 @@ def study_facts(result: StudyRecord) -> RunFacts:
         not_answered=_not_answered(judged),
         rounds_not_answered=_rounds_not_answered(judged),
         asked_again=sum(row.get("asked_again") or 0 for row in judged),
-        intervals=_intervals(result.counted(result.groups)),
+        intervals=_intervals(result.counted(result.groups)) if kind == "study" else (),
         people=list(_people(result)),
     )
 
@@ -215,47 +198,6 @@ def _people(result: StudyRecord) -> Iterator[PeopleFacts]:
             dates=(days[0], days[-1]) if days else None,
             sessions=result.folder.sessions().get(name, {}),
         )
-
-
-def run_facts(result: RunResult) -> RunFacts:
-    """Return the facts about a run, from its folder.
-
-    Raises:
-        InputError: A file of the folder is damaged.
-    """
-    report, rows = result.report, result.rows
-    settings = report["settings"]
-    names = [*settings["models"], *filter(None, [settings.get("claims_from")])]
-    tokens, cost, unpriced = usage_of(rows)
-    judged = [row for row in rows if row["ok"] is not None]
-    numbers = sorted({row["condition"] for row in rows if row["condition"] is not None})
-    factors = [f"the {_several('model', settings['models'])}"]
-    if settings["repeat"] > 1:
-        factors.append(counted(settings["repeat"], "repeat"))
-    told = f"the scenario {_code(report['scenario'])}"
-    excluded = {"unjudged": sum(row["ok"] is None for row in rows)}
-    return RunFacts(
-        kind="run",
-        versions=report["versions"],
-        world=settings["world"],
-        subjects=f"{told} under {_several('condition', numbers, '')}" if numbers else told,
-        factors=factors,
-        seed=f"seed {settings['seed']}",
-        models=answered(names, result.exchanges()),
-        asking=_asking(settings, rows),
-        templates={},
-        cells=len(report["runs"]) + len(report["failures"]),
-        rows=len(rows),
-        judged=len(judged),
-        variations=len({row["variation"] for row in judged}),
-        tokens=tokens,
-        cost=cost,
-        unpriced=unpriced,
-        excluded={name: count for name, count in excluded.items() if count},
-        computed=_computed(judged),
-        not_answered=_not_answered(judged),
-        asked_again=sum(row.get("asked_again") or 0 for row in judged),
-    )
 
 
 def _not_answered(rows: Sequence[Row]) -> dict[str, int]:
@@ -357,16 +299,12 @@ def _asking(plan: Mapping[str, Any], rows: Sequence[Row]) -> str:
 
 
 def _templates(result: StudyRecord) -> dict[str, str | None]:
-    index = result.plan["inputs"]["templates"]
     found: dict[str, str | None] = {}
     for name in result.plan.get("templates", []):
-        if name in BUILT_IN_TEMPLATES:
-            found[name] = None
-        elif name in index:
-            text = read_regular(result.folder.path / index[name])
+        found[name] = None
+        if name not in BUILT_IN_TEMPLATES:
+            text = read_regular(result.folder.path / result.plan["inputs"]["templates"][name])
             found[name] = hashlib.sha256(text).hexdigest()[:12]
-        else:
-            found[name] = "hash not recorded"
     return found
 
 

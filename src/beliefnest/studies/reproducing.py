@@ -99,7 +99,7 @@ def reproduce_study(
     for planned, cell in zip(ended, cells, strict=True):
         _restore(place, planned, cell.key.name, inputs.names)
     differences = [
-        *_differing_table(recorded),
+        *differing_table(recorded),
         *_differing_cells(recorded, StudyRecord.read(again), ended),
     ]
     names = {cell["name"] for cell in ended}
@@ -142,7 +142,7 @@ def _renamed(value: Any, names: Mapping[str, str]) -> Any:
     return value
 
 
-def _differing_table(recorded: StudyRecord) -> Iterator[PairedDifference]:
+def differing_table(recorded: StudyRecord) -> Iterator[PairedDifference]:
     """Yield differences of `rows.csv` from the cells beside it."""
     file = recorded.folder.path / "rows.csv"
     if file.is_file():

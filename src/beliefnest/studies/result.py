@@ -12,12 +12,13 @@ from beliefnest.studies.archive import write_zip
 from beliefnest.studies.bundling import bundled
 from beliefnest.studies.counting import count_rows
 from beliefnest.studies.fits import Family
-from beliefnest.studies.methods import MethodsForm, methods_text, study_facts
+from beliefnest.studies.methods import MethodsForm, facts_of, methods_text
 from beliefnest.studies.plainframe import Typed, plain_frame, write_csv, write_parquet
 from beliefnest.studies.power import power_rows
 from beliefnest.studies.power_sources import SIZES
 from beliefnest.studies.regression import Effect, FitKind, Regression, fit_rows
 from beliefnest.studies.reproducing import Reproduction, reproduce_study
+from beliefnest.studies.study_folder import StudyFolder
 from beliefnest.studies.study_record import COMPARED, StudyRecord
 
 if TYPE_CHECKING:  # pandas and matplotlib are optional, and imported when they are needed.
@@ -31,6 +32,8 @@ class StudyResult(StudyRecord):
     Attributes:
         folder: Folder of the study.
     """
+
+    folder: StudyFolder
 
     def frame(self) -> "pandas.DataFrame":
         """Return one row for each probe of each cell, or each episode, in the order of the plan.
@@ -272,7 +275,7 @@ class StudyResult(StudyRecord):
         Raises:
             InputError: The format does not exist, or a file of the folder is damaged.
         """
-        return methods_text(study_facts(self.whole), form)
+        return methods_text(facts_of(self.whole), form)
 
     def reproduce(self, jobs: int = 1, *, trust: bool = False) -> Reproduction:
         """Play all cells with a result again, without any model, and compare all rows.

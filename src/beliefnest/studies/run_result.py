@@ -1,10 +1,10 @@
-"""Results in the folder of `beliefnest run`, in the form of a study's rows."""
+"""Folder of `beliefnest run`, read as that of a study: its report as a plan and cells."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 import msgspec
 
@@ -14,8 +14,6 @@ from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.scenarios.record_forms import ExpectationForm, ProbeForm
 from beliefnest.studies.cells import variation_id
 from beliefnest.studies.forms import read_marked
-from beliefnest.studies.plainframe import Typed
-from beliefnest.studies.rows import PROBES
 
 REPORT = "run.json"
 FORM = "beliefnest run 1"
@@ -37,10 +35,20 @@ class _FailureForm(msgspec.Struct):
     outcome: str
 
 
+class _SettingsForm(msgspec.Struct):
+    conditions: list[int]
+    world: str
+    models: list[str]
+    repeat: int
+    seed: int
+    attempts: int
+    temperature: float | None
+
+
 class _ReportForm(msgspec.Struct):
     scenario: str
     status: str
-    settings: dict[str, Any]
+    settings: _SettingsForm
     runs: list[_RunForm]
     failures: list[_FailureForm]
     versions: dict[str, str]
@@ -60,64 +68,86 @@ def read_report(folder: Path, remedy: str = _OTHER) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class RunResult:
-    """Results in a run folder.
+class ReportedRun:
+    """Run folder, see `ResultFolder`.
 
     Attributes:
-        folder: The run folder.
+        path: The run folder.
         report: Content of `run.json`.
     """
 
-    folder: Path
+    kind: ClassVar[Literal["run"]] = "run"
+    path: Path
     report: Mapping[str, Any]
 
-    @classmethod
-    def read(cls, folder: Path) -> "RunResult":
-        """Return the results in a run folder; raise InputError as `read_report` does."""
-        return cls(folder, read_report(folder))
+    def plan(self) -> dict[str, Any]:
+        """Return settings and cells: one for each condition of each model and repeat."""
+        settings = self.report["settings"]
+        return {
+            **settings,
+            "repeats": settings["repeat"],
+            "scenarios": [self.report["scenario"]],
+            "variations": {},
+            "versions": self.report["versions"],
+            "cells": [planned for planned, _ in self._cells.values()],
+            "invalid": [],
+        }
+
+    def cell(self, name: str) -> dict[str, Any]:
+        """Return the result of a condition, or why there is none."""
+        return self._cells[name][1]
+
+    def people(self) -> list[dict[str, Any]]:
+        """Return nothing: no participant answers a run."""
+        return []
+
+    def sessions(self) -> dict[str, dict[str, Any]]:
+        """Return nothing, see `people`."""
+        return {}
 
     @cached_property
-    def rows(self) -> list[dict[str, Any]]:
-        """Return a row for each probe of each condition, with the columns of a study."""
-        rows: list[dict[str, Any]] = []
+    def _cells(self) -> dict[str, tuple[dict[str, Any], dict[str, Any]]]:
+        """Return the entry of each cell in the plan, and its content, by name."""
+        found = {}
         for number, run in enumerate(self.report["runs"], 1):
-            cell = self._cell(f"run-{number}", run)
-            rows += PROBES.rows_of(cell, {"error": None, **run, "run": ""}, ())
+            name = f"run-{number}"
+            found[name] = (self._planned(name, run, []), {"error": None, **run, "run": ""})
         for number, failure in enumerate(self.report["failures"], 1):
-            cell = self._cell(f"failure-{number}", failure)
+            name = f"failure-{number}"
             there = failure["outcome"] != "error"
             kind = "ModelError" if there else "UnavailableModelError"
-            found = {"error": failure["error"], "kind": kind}
-            rows += PROBES.rows_of({**cell, "probes": self._probes}, found, ())
-        return rows
+            content = {"error": failure["error"], "kind": kind}
+            found[name] = (self._planned(name, failure, self._probes), content)
+        return found
 
     @property
-    def _probes(self) -> list[Mapping[str, Any]]:
+    def _probes(self) -> list[dict[str, Any]]:
         """Return the probes of conditions without a result: those of a condition with one."""
         known = self.report["runs"][:1]
         keys = ("label", "path", "acts_in", "agent", "task", "expected")
         probes = known[0]["probes"] if known else [{"expected": {"unknown": True}}]
         return [{key: probe[key] for key in keys if key in probe} for probe in probes]
 
-    def _cell(self, name: str, run: Mapping[str, Any]) -> dict[str, Any]:
+    def _planned(
+        self, name: str, run: Mapping[str, Any], probes: list[dict[str, Any]]
+    ) -> dict[str, Any]:
+        scenario = self.report["scenario"]
         key = {
-            "scenario": self.report["scenario"],
+            "scenario": scenario,
             "condition": run["condition"],
             "variation": {},
             "model": run["model"],
             "template": "",
             "repeat": 1 + run["seed"] - self.report["settings"]["seed"],
         }
-        variation = variation_id(key["scenario"], {})
         return {
-            **{"name": name, "seed": run["seed"], "key": key},
-            **{"variation": variation, "probes": []},
+            "name": name,
+            "seed": run["seed"],
+            "key": key,
+            "variation": variation_id(scenario, {}),
+            "alike": None,
+            "probes": probes,
         }
-
-    def typed(self) -> dict[str, Typed]:
-        """Return the columns of `rows`."""
-        kinds = PROBES.kinds(())
-        return {name: Typed([row[name] for row in self.rows], kind) for name, kind in kinds.items()}
 
     def exchanges(self) -> list[Exchange]:
         """Return all requests to models with their answers, in order.
@@ -125,7 +155,7 @@ class RunResult:
         Raises:
             InputError: The file is damaged.
         """
-        file = self.folder / "model.jsonl"
+        file = self.path / "model.jsonl"
         if not file.is_file():
             return []
         found = []

@@ -3,15 +3,16 @@
 import json
 import os
 import shutil
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Literal, Protocol
 
 import msgspec
 
 from beliefnest.errors import InputError
-from beliefnest.files import replace_file, replacing
+from beliefnest.files import read_regular, replace_file, replacing
+from beliefnest.llm.stored_exchange import Exchange, decode_exchange
 from beliefnest.locking import is_lock
 from beliefnest.scenarios.record_forms import checked_form, read_json, read_lines
 from beliefnest.studies.forms import PeopleForm, SecondsForm, cell_form, plan_form, read_marked
@@ -38,6 +39,33 @@ class PersonCell:
     found: Mapping[str, Any]
 
 
+class ResultFolder(Protocol):
+    """Folder with the results of the cells of a plan: of a study, or of a run."""
+
+    @property
+    def kind(self) -> Literal["study", "run"]:
+        """Kind of results."""
+
+    @property
+    def path(self) -> Path:
+        """The folder."""
+
+    def plan(self) -> dict[str, Any]:
+        """Return the latest plan."""
+
+    def cell(self, name: str) -> dict[str, Any] | None:
+        """Return the result of a cell; None: it has none."""
+
+    def people(self) -> list[dict[str, Any]]:
+        """Return the entries of all cells that participants answered."""
+
+    def sessions(self) -> dict[str, dict[str, Any]]:
+        """Return how many participants of each name began, ended and stopped."""
+
+    def exchanges(self) -> Sequence[Exchange]:
+        """Return the recorded answers of models; raise InputError if a file is damaged."""
+
+
 @dataclass(frozen=True, slots=True)
 class StudyFolder:
     """Folder of a study.
@@ -48,6 +76,7 @@ class StudyFolder:
     `runs/` (recorded runs).
     """
 
+    kind: ClassVar[Literal["study"]] = "study"
     path: Path
 
     @staticmethod
@@ -134,6 +163,16 @@ class StudyFolder:
     def note_seconds(self, name: str, seconds: float) -> None:
         """Append the wall time of a cell."""
         append_line(self._times, json.dumps({"cell": name, "seconds": round(seconds, 3)}))
+
+    def exchanges(self) -> list[Exchange]:
+        """Return the cached answers; raise InputError if a file is damaged."""
+        found = []
+        for file in sorted(self.answers.glob("*.json")):
+            try:
+                found.append(decode_exchange(read_regular(file)))
+            except (msgspec.MsgspecError, OSError) as error:
+                raise InputError(f"{file} is damaged: {error}; delete it") from None
+        return found
 
     def seconds(self) -> dict[str, float]:
         """Return the known wall times of cells, in seconds."""

@@ -1,4 +1,4 @@
-"""Recorded study: its rows, and statistics of them as plain values."""
+"""Recorded study or run: its rows, and statistics of them as plain values."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ from beliefnest.studies.power import VariationSource
 from beliefnest.studies.power_sources import recorded_sources
 from beliefnest.studies.row_filter import RowFilter
 from beliefnest.studies.rows import PROBES
-from beliefnest.studies.study_folder import StudyFolder
+from beliefnest.studies.study_folder import ResultFolder, StudyFolder
 from beliefnest.studies.table import Table, variation_columns
 
 COMPARED = (
@@ -28,14 +28,14 @@ COMPARED = (
 
 @dataclass(frozen=True)
 class StudyRecord:
-    """Recorded results in the folder of a study.
+    """Recorded results in the folder of a study or run.
 
     Attributes:
-        folder: Folder of the study.
+        folder: The folder.
         kept: Condition that all rows hold; None: all rows of the study.
     """
 
-    folder: StudyFolder
+    folder: ResultFolder
     kept: RowFilter | None = None
 
     @classmethod

@@ -9,7 +9,7 @@ from beliefnest.llm.failures import NOT_ASKED
 from beliefnest.scenarios.judging import OUTCOMES
 from beliefnest.studies.allocation import LABEL, LIST, PARTICIPANT
 from beliefnest.studies.copies import rows_with_copies
-from beliefnest.studies.study_folder import StudyFolder
+from beliefnest.studies.study_folder import ResultFolder
 
 _FAILED = "error"
 _NO_ANSWER = "no_answer"
@@ -104,7 +104,7 @@ class Table:
         """Names of the columns that the page shows after `first` and those of variations."""
         return tuple(each.name for each in self.columns if each.shown)
 
-    def rows(self, folder: StudyFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    def rows(self, folder: ResultFolder, plan: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield the rows of the cells of a plan, see `rows_with_copies`."""
         varied = variation_columns(plan)
 
