@@ -24,7 +24,7 @@ from beliefnest.llm.stored_exchange import decode_exchange
 from beliefnest.scenarios.editing import edited
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.yaml_reading import read_yaml
-from beliefnest.studies.archive import damaged_files, unpack
+from beliefnest.studies.archive import damaged_files, unpack, write_zip
 from beliefnest.studies.bundling import opened
 from beliefnest.studies.participants.answers import read_answers
 from beliefnest.studies.participants.exclusions import read_exclusions
@@ -283,6 +283,7 @@ ZIPS = {
     "a file twice": zipped({"Study.json": b"", "study.json": b""}),
     "a damaged file": broken(),
     "much more than its size": entry("study.json", size=2**28 + 1),
+    "a long list of files": zipped({f"{number:065000}": b"" for number in range(130)}),
     "half a file": zipped(SUPPLEMENT)[:80],
     "no archive": gzip.compress(b"x"),
 }
@@ -296,6 +297,17 @@ def test_a_supplement_that_is_none_is_refused(tmp_path, content):
     with pytest.raises(BeliefNestError, match=r"s\.zip"):
         unpack(path, tmp_path / "inner" / "out")
     assert {each.name for each in tmp_path.iterdir()} == {"inner"}
+
+
+def test_files_are_counted_before_they_are_unpacked(tmp_path, monkeypatch):
+    monkeypatch.setattr("beliefnest.studies.archive._MOST_FILES", 2)
+    path, out = tmp_path / "s.zip", tmp_path / "out"
+    with pytest.raises(BeliefNestError, match=r"s\.zip would hold 3 files; .* at most 2: bundle"):
+        write_zip(dict.fromkeys("abc", b""), path)
+    path.write_bytes(zipped(dict.fromkeys("abc", b"")))
+    with pytest.raises(BeliefNestError, match=r"s\.zip would unpack to 3 files .* at most 2 files"):
+        unpack(path, out)
+    assert not out.exists()
 
 
 # A structure of one block, whose number is an empty compound.

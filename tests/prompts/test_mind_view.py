@@ -53,8 +53,9 @@ def test_a_mind_has_names_for_what_it_knows(nest):
 def test_templates_get_views_and_no_simulators(nest):
     told = nest["/ann"].render("{{ other.names }}", other=nest["/bob"])
     assert told == "{(9, 1, 2): 'red box'}"
-    with pytest.raises(bn.BeliefNestError):
+    with pytest.raises(bn.BeliefNestError, match=r"<view of /ann at tick 2> has no 'figure'$"):
         nest["/ann"].render("{{ branch.figure }}")
+    assert nest["/ann"].render("{{ branch }}") == "<view of /ann at tick 2>"
 
 
 def test_a_thing_has_the_name_of_what_its_owner_came_to_see(nest):

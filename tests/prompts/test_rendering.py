@@ -231,6 +231,7 @@ def test_numbers_in_texts_are_no_widths():
 
 
 BOX = "{% set box = namespace(it='ab', row=[1]) %}"
+KEYS = "{% set key = (1,) * 900000 %}{% set values = dict(range(99998) | batch(2)).values() %}"
 LONG = "{% set long = [1] * 900000 %}"
 
 
@@ -278,12 +279,23 @@ LONG = "{% set long = [1] * 900000 %}"
         "{{ ['x' * 900000] * 900000 }}",
         f"{LONG}{{% for i in range(99999) %}}{{% if 2 in long %}}{{% endif %}}{{% endfor %}}",
         f"{LONG}{{% for i in range(99999) %}}{{% set some = long[::-1] %}}{{% endfor %}}",
+        *(
+            f"{KEYS}{{% for i in range(99999) %}}{{% set found = {look} %}}{{% endfor %}}"
+            for look in ("key in {}", "{}[key] is defined", "key in {key: 1}", "0.5 in values")
+        ),
         "{% for i in range(99999) %}{% set told = branch | story %}{% endfor %}",
     ],
 )
 def test_a_template_without_end_is_refused(source):
     with pytest.raises(TemplateError, match=r"^mine, line \d+: .*(steps|parts|nested too deeply)"):
         show(Template("mine", source))
+
+
+def test_templates_include_no_files() -> None:
+    with pytest.raises(
+        TemplateError, match=r"no template '/etc/passwd' to include; .* built-in answering, "
+    ):
+        show(Template("mine", "{% include '/etc/passwd' %}"))
 
 
 def test_each_rendering_has_its_own_bound():
@@ -301,6 +313,7 @@ def test_bounded_templates_are_filled_as_by_jinja():
         "{{ 'a,b'.split(',') | join('-') | center(5) }}{{ '%05.1f%%' | format(2.5) }}"
         "{{ ('a b ' * 90000) | wordwrap(79) | length }}{{ ([1] * 200000) | sum }} "
         "{{ {'a': [1]} | tojson }}{{ 7 // 2 - 1 }}{{ 'a' in ('a', 'b') }}{{ 'x' is in ['x'] }}"
+        "{% for a in ['x'] %}{{ a in {'x': 1}.values() }}{{ {'x': 1}[a] < 2 }}{% endfor %}"
     )
-    expected = 'x1z 11/2 2/2 none (1,)[1, 2] a-b 002.5%359999200000 {"a": [1]}2TrueTrue'
+    expected = 'x1z 11/2 2/2 none (1,)[1, 2] a-b 002.5%359999200000 {"a": [1]}2TrueTrueFalseTrue'
     assert render(source, example_branch(), {}) == expected

@@ -2,7 +2,7 @@
 
 import re
 import threading
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Set, ValuesView
 from typing import Any
 
 from jinja2 import Environment, nodes, pass_context
@@ -206,7 +206,7 @@ def _size(value: object) -> tuple[int, int]:
             parts += len(each)
         elif isinstance(each, dict):
             inner = [*each.keys(), *each.values()]
-        elif isinstance(each, list | tuple | set | frozenset):
+        elif isinstance(each, list | tuple | Set | ValuesView):
             inner = each
         parts += len(inner)
         waiting += inner
@@ -236,8 +236,10 @@ class _Metered(NodeTransformer):
                 if texts:
                     letters = nodes.Const(sum(map(len, texts)), lineno=node.lineno)
                     node.nodes.insert(0, _through(_TEXT, letters))
-            case nodes.Operand() if not isinstance(node.expr, nodes.Const):
+            case nodes.Operand() | nodes.Compare() if not isinstance(node.expr, nodes.Const):
                 node.expr = _through(_VALUE, node.expr)
+            case nodes.Getitem() if not isinstance(node.arg, nodes.Const | nodes.Slice):
+                node.arg = _through(_VALUE, node.arg)  # a key is read to its end
             case nodes.Concat():
                 return _through("join", nodes.Tuple(node.nodes, "load", lineno=node.lineno))
             case (

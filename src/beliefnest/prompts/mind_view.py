@@ -48,6 +48,9 @@ class MindView:
         self._told, self._below = told, below
         self._told_once: ToldMind | None = None
 
+    def __repr__(self) -> str:
+        return f"<view of {self.path} at tick {self.tick}>"
+
     @property
     def path(self) -> str:
         """The belief path as text."""

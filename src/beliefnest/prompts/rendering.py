@@ -11,6 +11,7 @@ import jinja2
 from jinja2 import meta, nodes, pass_context
 from jinja2.runtime import Context, Macro
 from jinja2.sandbox import ImmutableSandboxedEnvironment
+from jinja2.utils import missing
 
 from beliefnest.errors import BeliefNestError, TemplateError
 from beliefnest.prompts.bounds import StepMeter, check_numbers, metered
@@ -24,7 +25,7 @@ from beliefnest.prompts.templates import (
     load_template,
 )
 from beliefnest.prompts.text import nearest
-from beliefnest.world.texts import quoted, visible
+from beliefnest.world.texts import quoted, shortened, visible
 
 NO_CODE = "No code was executed"
 NO_ERROR = "No error"
@@ -179,6 +180,17 @@ def _with_markers(text: str) -> str:
     return text
 
 
+class _Missing(jinja2.StrictUndefined):
+    """Value that is missing. Its message shows objects of this package, not their classes."""
+
+    @property
+    def _undefined_message(self) -> str:
+        held = self._undefined_obj
+        if held is missing or self._undefined_hint or isinstance(held, _PLAIN_TYPES):
+            return super()._undefined_message
+        return f"{shortened(repr(held))} has no {quoted(self._undefined_name)}"
+
+
 class _ReadingEnvironment(ImmutableSandboxedEnvironment):
     """Sandbox in which a template can read simulators but not act through them."""
 
@@ -186,7 +198,7 @@ class _ReadingEnvironment(ImmutableSandboxedEnvironment):
 
     def __init__(self, filters: FilterSet) -> None:
         super().__init__(
-            undefined=jinja2.StrictUndefined,
+            undefined=_Missing,
             autoescape=False,  # a prompt is plain text, not HTML
             keep_trailing_newline=True,
             loader=jinja2.FunctionLoader(_built_in_source),
@@ -298,6 +310,9 @@ def _unknown_variable(tree: nodes.Template, line: int, known: set[str], said: st
 
 def _words(error: Exception) -> str:
     """Return an error's message; add the type unless the message is written for users."""
+    if isinstance(error, jinja2.TemplateNotFound):
+        known = ", ".join(BUILT_IN_TEMPLATES)
+        return f"no template {quoted(error.name)} to include; there are only the built-in {known}"
     if isinstance(error, jinja2.TemplateError):
         return error.message or type(error).__name__
     if isinstance(error, BeliefNestError):

@@ -1,6 +1,7 @@
 """Supplements: a study or run with everything to read it and to play it again, in one ZIP file."""
 
 import hashlib
+import io
 import json
 import lzma
 import stat
@@ -29,7 +30,9 @@ _LARGEST = 4 * 2**30
 _MOST_TIMES = 100
 """Greatest ratio of the unpacked size to the size of an archive that unpacks to `_MUCH` bytes."""
 _MUCH = 2**28
-_MOST_FILES = 200_000
+_MOST_FILES = 50_000
+_LONGEST_LIST = 2**23
+"""Greatest size in bytes of an archive's list of files."""
 _BLOCK = 2**20
 _READ_BELOW = ("inputs", "answers", "cells")
 """Folders of a supplement whose files are all in its manifest."""
@@ -86,8 +89,13 @@ def write_zip(files: Mapping[str, bytes], out: Path) -> None:
     """Write a ZIP file; the same files give the same bytes.
 
     Raises:
-        InputError: The file cannot be written.
+        InputError: There are too many files to be read back, or the file cannot be written.
     """
+    if len(files) > _MOST_FILES:
+        raise InputError(
+            f"{out} would hold {len(files):,} files; a supplement has at most {_MOST_FILES:,}: "
+            "bundle the study in parts"
+        )
     try:
         with replacing(out) as file, zipfile.ZipFile(file, "w") as archive:
             for name in sorted(files):
@@ -101,6 +109,18 @@ def write_zip(files: Mapping[str, bytes], out: Path) -> None:
         raise InputError(f"{out} cannot be written: {error.strerror}") from None
 
 
+class _InParts(io.BufferedReader):
+    """File that is read in parts; `zipfile` reads the list of files, and nothing else, at once."""
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        """Read at most `size` bytes; more than such a list may have are refused."""
+        if size is not None and size > _LONGEST_LIST:
+            raise zipfile.BadZipFile(
+                f"its list of files has {size:,} bytes, of at most {_LONGEST_LIST:,}"
+            )
+        return super().read(size)
+
+
 def unpack(file: Path, folder: Path) -> Path:
     """Unpack a supplement and return its folder.
 
@@ -108,7 +128,11 @@ def unpack(file: Path, folder: Path) -> Path:
         InputError: The file is no supplement.
     """
     try:
-        with open_regular(file) as opened, zipfile.ZipFile(opened) as archive:
+        with (
+            open_regular(file) as opened,
+            _InParts(io.FileIO(opened.fileno(), closefd=False)) as parts,
+            zipfile.ZipFile(parts) as archive,
+        ):
             _unpack_all(archive, file, folder)
     except FileNotFoundError:
         raise InputError(f"there is no file {file}; give a supplement's ZIP file") from None

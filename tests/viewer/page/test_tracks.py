@@ -129,6 +129,19 @@ def test_tracks_hold_what_states_hold_at_every_tick(story):
             assert set(row[1] if row else ()) == things(story, path, tick), (path, tick)
 
 
+@pytest.mark.parametrize("quiet", [0, 3])
+def test_what_an_act_shows_is_current_in_its_tick_alone(quiet: int) -> None:
+    world = bn.ScriptedWorld(box=BOX, agents={"ann": (2.5, 1, 2.5)}, containers={CHESTS[0]: {}})
+    nest = bn.Nest(world)
+    world.open("ann", CHESTS[0])
+    world.step(quiet)
+    world.think("ann", "hm")
+    recorder, _ = recorded(nest, [("ann",)])
+    (rows,) = recorder.tracks[0].contents.values()
+    opened = [row[:4] for row in rows if row[0]]
+    assert opened == [[1, {}, True, True], [2, {}, True, False]]
+
+
 def put_runs(grid, text, first) -> None:
     """Write the blocks of a text into a flat grid, as the page does."""
     numbers, cell = iter(text_numbers(text)), 0

@@ -41,6 +41,10 @@ OTHERS = {
     "a shared buffer": ("new SharedArrayBuffer(2 ** 40)", "error"),
     "an error of a long text": ("throw new Error('x'.repeat(1e7))", "error"),
     "a thrown long text": ("throw 'x'.repeat(1e7)", "error"),
+    "a long result of a listener": (
+        "bot.on('chat', () => 'x'.repeat(5e6)); bot.chat('x'); await waitTicks(bot, 5)",
+        "refused",
+    ),
     "nesting": ("(" * 19_000, "syntax"),
     "a value without end": (
         "let a = []; for (let n = 0; n < 1e4; n++) a = [a]; await say(bot, a)",

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Protocol
 
-from beliefnest.belief.view import State
 from beliefnest.nest.acting.sensing import believer_of
 from beliefnest.nest.past.labelled import Labelled
 from beliefnest.nest.past.observing import observations_of
@@ -131,13 +130,12 @@ def _is_fitting(text: str) -> bool:
     return holds_items(registry, registry.state_id(text)) or is_door(name) or is_switch(name)
 
 
-def _labels(recording: Recording, path: BeliefPath, believed: State) -> Mapping[Position, str]:
+def _labels(recording: Recording, path: BeliefPath, believed: TimelineState) -> dict[Position, str]:
     labelled = Labelled(recording, recording.moment(path))
-    observations = observations_of(recording, path)
-    return labelled.known(believed, observations, recording.setting.labels)
+    return labelled.known(believed, observations_of(recording, path), recording.setting.labels)
 
 
-def _items(recording: Recording, path: BeliefPath, believed: State) -> set[str]:
+def _items(recording: Recording, path: BeliefPath, believed: TimelineState) -> set[str]:
     """Return the items that an agent believes in, at first or now, has seen moved or heard of."""
     found: set[str] = set()
     for state in (recording.state(path, recording.info(path).start), believed):

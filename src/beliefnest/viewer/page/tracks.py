@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.forest import Forest
-from beliefnest.belief.grounds import Basis
+from beliefnest.belief.holdings import Content
 from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
 from beliefnest.nest.explain.made_claims import says_otherwise
@@ -278,12 +278,14 @@ class TrackRecorder:
             told = (raw.items, raw.complete, current, None if current else raw.basis)
             if last.get(cell) == told:
                 continue
+            rows = track.contents.setdefault(cell, [])
+            content = forest.holdings.content(number, cell).at(tick)
+            _put(rows, _content_row(tick, content, current=current))
+            if number and raw.current and not raw.in_sight:
+                # An act shows contents in its own tick alone, whenever the next entry comes.
+                told = (raw.items, raw.complete, False, raw.basis)
+                _put(rows, _content_row(tick + 1, content, current=False))
             last[cell] = told
-            basis: Basis = forest.holdings.content(number, cell).at(tick).basis
-            event = "" if basis.event is None else basis.event.value
-            row = [tick, dict(raw.items), raw.complete, current]
-            row += [basis.observed_at, basis.source.value, event, basis.speaker]
-            _put(track.contents.setdefault(cell, []), row)
 
     def _note_items(self, at: int, track: Track, number: int, tick: int) -> None:
         lying = self._forest.holdings.of(number).items
@@ -333,6 +335,13 @@ _NOTHING = object()
 
 def _empty(agents: int) -> list[list[TrackRow]]:
     return [[] for _ in range(agents)]
+
+
+def _content_row(tick: int, content: Content, *, current: bool) -> TrackRow:
+    basis = content.basis
+    event = "" if basis.event is None else basis.event.value
+    told = [basis.observed_at, basis.source.value, event, basis.speaker]
+    return [tick, dict(content.items), content.complete, current, *told]
 
 
 def _put(rows: list[TrackRow], row: TrackRow) -> None:

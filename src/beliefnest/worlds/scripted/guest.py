@@ -103,9 +103,13 @@ class Guest:
             text = engine.string(json.dumps(message))
             answer = engine.call(self._functions["dispatch"], [text])
             engine.free(text)
-            result: dict[str, Any] = parsed(engine.text(answer))
+            told = engine.text(answer)
             engine.free(answer)
-        return result
+        most = parts().limits.message
+        if len(told) > most:
+            return {"ok": False, "value": {"message": too_much(most), "kind": "refused"}}
+        answered: dict[str, Any] = parsed(told)
+        return answered
 
     def charge(self, units: int) -> None:
         """Take fuel for work that the host does for the program; it ends when none is left."""
@@ -213,6 +217,11 @@ def _uncaught(error: GuestError) -> tuple[str, str, str]:
         return _LIMITS[error.message], error.message, error.stack
     kind = "syntax" if error.name == "SyntaxError" else "error"
     return kind, f"{error.name}: {error.message}", error.stack
+
+
+def too_much(most: int) -> str:
+    """Return the message about more than `most` characters in one message of a program."""
+    return f"more than {most} characters leave the program at once, which is the limit"
 
 
 def parsed(text: str) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 from beliefnest.worlds.protocol import Fault, Unfinished
 from beliefnest.worlds.scripted.bot_reads import BotBody, BotReads, OpenWindow, state_of
 from beliefnest.worlds.scripted.desk import Desk, DeskFacts, Prepared, TooIntricateError
-from beliefnest.worlds.scripted.guest import Guest, GuestEndedError, parsed
+from beliefnest.worlds.scripted.guest import Guest, GuestEndedError, parsed, too_much
 from beliefnest.worlds.scripted.requests import Request, error_of, fault_of
 from beliefnest.worlds.scripted.sandbox_parts import parts
 from beliefnest.worlds.scripted.sfc32 import Sfc32
@@ -284,9 +284,7 @@ class JavaScriptProgram:
     def _asked(self, text: str) -> Any:
         most = parts().limits.message
         if len(text) > most:
-            raise RefusedError(
-                f"more than {most} characters leave the program at once, which is the limit"
-            )
+            raise RefusedError(too_much(most))
         action, *args = parsed(text)
         return _ACTIONS[action](self, *args)
 

@@ -11,7 +11,7 @@ const { Memories } = require('./memories')
 const { guestSource } = require('./guest/source')
 const { kindNames, tables } = require('./policy/kinds')
 const { GOAL_NAMES } = require('./constructions')
-const { parsed } = require('./text')
+const { parsed, tooMuch } = require('./text')
 
 const SHADOW_STACK_BYTES = 400_000
 const UNMETERED = 0x7fffffff
@@ -208,18 +208,19 @@ class Guest {
   /**
    * Send a message to the guest, and run everything that can run.
    * @param {Array} message
+   * @param {number} most number of characters that may leave the program; more are its error
    * @returns {{ok: boolean, value: *}}
    */
-  send (message) {
+  send (message, most) {
     const { interpreter } = this
     return this.enter(() => {
       this.charge(WAKE_COST)
       const text = interpreter.string(JSON.stringify(message))
       const answer = interpreter.call(this.functions.dispatch, [text])
       interpreter.free(text)
-      const result = parsed(interpreter.text(answer))
+      const told = interpreter.text(answer)
       interpreter.free(answer)
-      return result
+      return told.length > most ? { ok: false, value: { message: tooMuch(most), kind: 'refused' } } : parsed(told)
     })
   }
 

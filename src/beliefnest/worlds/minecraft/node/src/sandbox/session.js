@@ -11,7 +11,7 @@ const { GuestEnded } = require('./engine')
 const { stateOf } = require('./policy/types')
 const { kindOf } = require('./kind-of')
 const { aimOfCall, aimOfSkill } = require('./aims')
-const { cut, parsed } = require('./text')
+const { cut, parsed, tooMuch } = require('./text')
 const { BY_NAME } = require('../../../../../skills/code')
 
 const LIMITS = { message: 1_000_000, calls: 100, timers: 1000, listeners: 100, logLines: 1000, logCharacters: 50_000, error: 4000, name: 100, level: 10 }
@@ -116,7 +116,7 @@ class Session {
     if (this.outcome !== null) return
     try {
       this.guarded(() => {
-        const { ok, value } = this.guest.send(message)
+        const { ok, value } = this.guest.send(message, LIMITS.message)
         if (!ok) this.finish({ ok: false, error: value })
         else if (this.guest.idle) this.look()
       })
@@ -129,7 +129,7 @@ class Session {
     try {
       this.guest.charge(REQUEST_COST.each + REQUEST_COST.character * Math.min(text.length, LIMITS.message))
       if (text.length > LIMITS.message) {
-        throw new RefusedError(`more than ${LIMITS.message} characters leave the program at once, which is the limit`)
+        throw new RefusedError(tooMuch(LIMITS.message))
       }
       const [action, ...args] = parsed(text)
       if (typeof action !== 'string' || !Object.hasOwn(HANDLERS, action)) throw new RefusedError('the request is of an unknown form')
@@ -179,7 +179,7 @@ class Session {
       const ticket = this.nextId++
       const wires = args.map((arg, i) => this.exchange.toGuest(arg, `argument ${i + 1} of the callback`))
       const later = new Promise((resolve, reject) => this.tickets.set(ticket, { resolve, reject }))
-      const { ok, value } = this.guarded(() => this.guest.send(['invoke', id, wires, ticket]))
+      const { ok, value } = this.guarded(() => this.guest.send(['invoke', id, wires, ticket], LIMITS.message))
       if (ok && value.later) return later
       this.tickets.delete(ticket)
       if (!ok) throw this.errorOfGuest(value)

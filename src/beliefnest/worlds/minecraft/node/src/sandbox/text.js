@@ -21,4 +21,9 @@ function cut (text, most) {
   return text.slice(0, most).toWellFormed()
 }
 
-module.exports = { parsed, cut }
+/** Return the message about more than `most` characters in one message of a program. @returns {string} */
+function tooMuch (most) {
+  return `more than ${most} characters leave the program at once, which is the limit`
+}
+
+module.exports = { parsed, cut, tooMuch }

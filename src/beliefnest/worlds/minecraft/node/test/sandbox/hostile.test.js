@@ -15,6 +15,7 @@ const HARM = [
   ['an endless chain of promises', 'const again = () => Promise.resolve().then(again); await again()', 'fuel', /fuel exhausted/],
   ['an endless loop in a timer', 'setTimeout(() => { for (;;) {} }, 0); await bot.waitForTicks(1000)', 'fuel', /fuel exhausted/],
   ['an endless loop in a listener', 'bot.on("health", () => { for (;;) {} }); await emit("health")', 'fuel', /fuel exhausted/],
+  ['a long result of a callback', "await exploreUntil(bot, new Vec3(1, 0, 0), 3, () => '€'.repeat(1.4e6))", 'skill', /more than 1000000 characters/],
   ['an endless loop in a callback', 'await exploreUntil(bot, new Vec3(1, 0, 0), 3, () => { for (;;) {} })', 'fuel', /fuel exhausted/],
   ['an endless loop in a matcher', 'bot.findBlocks({ matching: () => { for (;;) {} } })', 'fuel', /fuel exhausted/],
   ['an endless loop in a getter', 'await echo(bot, { get x() { for (;;) {} } })', 'fuel', /fuel exhausted/],
