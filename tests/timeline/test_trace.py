@@ -70,6 +70,51 @@ def test_what_a_line_leaves_out_stays(registry):
     assert trace.entries == (Frame(1, {"sally": sally}),)
 
 
+RIGHT, LEFT = (4, 1, 7), (5, 1, 7)
+HALVES = {
+    "blocks": [
+        [*RIGHT, "chest[facing=south,type=right]"],
+        [*LEFT, "chest[facing=south,type=left]"],
+    ]
+}
+
+
+@pytest.mark.parametrize(
+    ("first", "later", "last"),
+    [
+        ([[*RIGHT, {"egg": 1}]], [[*LEFT, {}]], {}),
+        ([[*LEFT, {"egg": 1}]], [[*RIGHT, {"egg": 2}]], {"egg": 2}),
+        ([[*RIGHT, {"egg": 1}], [*LEFT, {}]], [[*LEFT, {"egg": 4}]], {"egg": 5}),
+        ([[*LEFT, {}], [*RIGHT, {"egg": 1}]], [[*RIGHT, {"bone": 1}]], {"bone": 1}),
+        ([], [[*LEFT, {"egg": 1}], [*RIGHT, {"egg": 1, "bone": 1}]], {"egg": 2, "bone": 1}),
+    ],
+)
+def test_contents_at_either_half_are_those_of_one_chest(registry, first, later, last):
+    begun = {**FIRST, **HALVES, "containers": first}
+    told = [{"kind": "located", "item": "egg", "place": LEFT}]
+    events = [
+        {"kind": "open_container", "actor": "sally", "detail": {"position": LEFT}},
+        {"kind": "chat", "actor": "sally", "detail": {"text": "egg", "claims": told}},
+    ]
+    lines = [begun, {"tick": 2, "containers": later, "events": events}]
+    trace = read_trace([json.dumps(line).encode() for line in lines], registry)
+    assert trace.bad == ()
+    assert trace.first.containers == ({RIGHT: {"egg": 1}} if first else {})
+    (frame,) = trace.entries
+    assert frame.containers == {RIGHT: last}
+    opened, said = frame.events
+    assert opened.detail["position"] == RIGHT
+    assert said.detail["claims"][0]["place"] == RIGHT
+
+
+def test_a_double_chest_holds_54_stacks(registry):
+    both = {**FIRST, **HALVES, "containers": []}
+    for count, fits in ((54, True), (55, False)):
+        line = {"tick": 1, "containers": [[*LEFT, {"iron_sword": count}]]}
+        trace = read_trace([json.dumps(each).encode() for each in (both, line)], registry)
+        assert (trace.bad == ()) == fits
+
+
 def test_items_and_new_containers(registry):
     trace = read(
         registry,

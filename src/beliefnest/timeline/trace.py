@@ -6,6 +6,7 @@ together.
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,6 +21,12 @@ from beliefnest.timeline.events import event_from
 from beliefnest.timeline.journal import Entry, TimelineKey
 from beliefnest.timeline.store import Journal
 from beliefnest.world.claims import Claim, claims_from_plain, claims_of
+from beliefnest.world.double_chests import (
+    StateAt,
+    container_at,
+    is_double,
+    whole_chests,
+)
 from beliefnest.world.event_kinds import AT_CONTAINERS, EventKind
 from beliefnest.world.frames import Frame, PlainClaims, Snapshot
 from beliefnest.world.limits import (
@@ -28,10 +35,10 @@ from beliefnest.world.limits import (
     WORN_SLOTS,
     agent_name_fault,
     box_fault,
-    container_slots,
     dropped_fault,
     items_fault,
     point_fault,
+    slots_at,
     tick_fault,
 )
 from beliefnest.world.registry import Registry
@@ -93,6 +100,7 @@ class _SignLine(msgspec.Struct, array_like=True, forbid_unknown_fields=True):
 
 _BlockLine = tuple[int, int, int, str]
 _ContainerLine = tuple[int, int, int, dict[str, int] | None]
+_Halves = dict[Position, dict[Position, Items | None]]
 
 
 class _FirstLine(msgspec.Struct, forbid_unknown_fields=True):
@@ -237,8 +245,10 @@ class _Reader:
             self._grid.fill((x0, y0, z0), (x1 + 1, y1 + 1, z1 + 1), registry.state_id(text))
         for place, state in self._blocks(line.blocks).items():
             self._grid[self._box.index(place)] = state
+        self._grid = whole_chests(registry, self._box, self._grid.terrain()).draft()
         signs = self._signs(((at.x, at.y, at.z, at.text) for at in line.signs), {})
-        containers = self._containers(line.containers, {})
+        self._halves: _Halves = {}
+        containers, self._halves = self._containers(line.containers, {})
         self._agents: dict[str, AgentState | None] = {}
         self._agents = self._changed_agents(line.agents)
         self.first = Snapshot(
@@ -263,16 +273,18 @@ class _Reader:
         _check(tick_fault(line.tick))
         agents = self._changed_agents(line.agents)
         blocks = self._blocks(line.blocks)
+        containers, halves = self._containers(line.containers, blocks)
         frame = Frame(
             line.tick,
             agents,
             blocks | self._signs(line.signs, blocks),
-            self._containers(line.containers, blocks),
+            containers,
             self._entities(line.items),
             tuple(self._event(event, blocks) for event in line.events),
         )
         self._tick = line.tick
         self._agents |= agents
+        self._halves |= halves
         for place, state in blocks.items():
             self._grid[self._box.index(place)] = state
         return frame
@@ -310,7 +322,7 @@ class _Reader:
             claims = self._checked(claims_from_plain(line.claims))
         except BeliefNestError as fault:
             raise InputError(f"{where}: {fault}") from fault
-        return tuple(claim.plain() for claim in claims)
+        return tuple(claim.of_whole(lambda at: self._whole(at, {})).plain() for claim in claims)
 
     def _checked(self, claims: tuple[Claim, ...]) -> tuple[Claim, ...]:
         """Return claims that are about the box and the agents of the trace."""
@@ -320,17 +332,47 @@ class _Reader:
 
     def _containers(
         self, lines: Iterable[_ContainerLine], changed: Mapping[Position, int]
-    ) -> dict[Position, Items | None]:
-        contents: dict[Position, Items | None] = {}
+    ) -> tuple[dict[Position, Items | None], _Halves]:
+        """Return contents by container, and the contents of both halves of double chests.
+
+        A line that names both halves gives each its own; from then on a half that is named alone
+        gives its own, too. Before, it gives the contents of the whole chest.
+        """
+        given: _Halves = {}
         for x, y, z, items in lines:
             place = (x, y, z)
             state = changed.get(place, self._grid[self._index(place)])
             name = self._registry.name(state)
             if items is not None and not self._registry.is_container(name):
                 raise InputError(f"the block at {place} is {name}, which holds no items")
-            slots = container_slots(name)
-            contents[place] = None if items is None else self._items(items, slots, f"a {name}")
-        return contents
+            given.setdefault(self._whole(place, changed), {})[place] = items
+        contents: dict[Position, Items | None] = {}
+        halves: _Halves = {}
+        state_at = self._state_at(changed)
+        for place, named in given.items():
+            parts, known = named, self._halves.get(place, {})
+            if (known or len(named) > 1) and is_double(self._registry, state_at, place):
+                parts = halves[place] = {**known, **named}
+            held = [items for items in parts.values() if items is not None]
+            name = self._registry.name(state_at(place))
+            slots = slots_at(self._registry, state_at, place)
+            for items in held:
+                self._items(items, slots, f"a {name}")
+            total = dict(sum((Counter(items) for items in held), Counter()))
+            contents[place] = self._items(total, slots, f"a {name}") if held else None
+        return contents, halves
+
+    def _whole(self, place: Position, changed: Mapping[Position, int]) -> Position:
+        """Return the position of the container to which a block belongs."""
+        return container_at(self._registry, self._state_at(changed), place)
+
+    def _state_at(self, changed: Mapping[Position, int]) -> StateAt:
+        def state_at(place: Position) -> int:
+            if place not in self._box:
+                return self._registry.air
+            return changed[place] if place in changed else self._grid[self._box.index(place)]
+
+        return state_at
 
     def _items(self, items: Mapping[str, int], slots: int, holder: str) -> dict[str, int]:
         for name, count in items.items():
@@ -394,8 +436,14 @@ class _Reader:
         if "block" in detail:
             self._registry.state_id(detail["block"])
         self._items(detail.get("items", {}), _AGENT_SLOTS, "an agent")
-        self._checked(claims_of(event))
-        return event
+        claims = self._checked(claims_of(event))
+        told = dict(detail)
+        if event.kind in AT_CONTAINERS:
+            told["position"] = self._whole(detail["position"], changed)
+        if claims:
+            wholes = (claim.of_whole(lambda at: self._whole(at, changed)) for claim in claims)
+            told["claims"] = tuple(claim.plain() for claim in wholes)
+        return replace(event, detail=told)
 
     def _check_place(
         self, kind: EventKind, place: Position, changed: Mapping[Position, int]

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 import beliefnest as bn
 from beliefnest.cli.app import run_command_line
 from beliefnest.errors import InputError, StoreError
+from beliefnest.nest.face.recorded import RecordedNest
 from beliefnest.nest.past.trace_import import import_trace
 from beliefnest.timeline.trace import load_trace, read_trace
 from beliefnest.world.registry import Registry
@@ -22,6 +23,7 @@ FIRST = {
     "agents": {"sally": {"position": [2.5, 1, 2.5]}, "anne": {"position": [5.5, 1, 2.5]}},
 }
 FAR = 30_000_001
+HALVES = ((0, "right"), (1, "left"))
 
 
 def opening(place):
@@ -180,3 +182,25 @@ def test_what_is_imported_teaches_of_what_is_there_alone(registry, tmp_path_fact
             for place, content in nest[name].state.containers.items():
                 assert place in told.first.box
                 assert not (content.items or content.complete) or place in opened
+
+
+def test_two_halves_of_a_chest_are_one_belief(tmp_path, registry):
+    halves = {"blocks": [[3 + x, 1, 3, f"chest[facing=south,type={t}]"] for x, t in HALVES]}
+    apart = {"containers": [[3, 1, 3, {"diamond": 1}], [4, 1, 3, {"egg": 2}]]}
+    taking = {"kind": "get_item_from_chest", "actor": "sally"}
+    taken = {
+        "tick": 3,
+        "containers": [[4, 1, 3, {"egg": 1}]],
+        "events": [{**taking, "detail": {"position": [4, 1, 3], "items": {"egg": 1}}}],
+    }
+    look = {"tick": 1, "events": [opening([4, 1, 3])]}
+    trace = load_trace(written(tmp_path, {**FIRST, **halves, **apart}, look, taken), registry)
+    import_trace(trace, "halves", tmp_path / "halves.bn")
+    with RecordedNest.read(tmp_path / "halves.bn") as nest:
+        for path in ("/", "/sally"):
+            held = nest[path].state.containers
+            assert {at: dict(each.items) for at, each in held.items()} == {
+                (3, 1, 3): {"diamond": 1, "egg": 1}
+            }
+            assert held[4, 1, 3].complete
+        assert nest["/anne/sally"].state.containers[4, 1, 3].items == {}

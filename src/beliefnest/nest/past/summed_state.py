@@ -85,16 +85,18 @@ class StateSums:
         reached, numbers, holdings = self._reached
         if reached == count:
             return numbers, holdings
-        context, frames = self.base._context, self.frames[reached:count]
-        draft = numbers.draft() if any(frame.blocks for frame in frames) else None
-        for frame in frames:
+        context, changed = self.base._context, {}
+        for frame in self.frames[reached:count]:
             holdings.take(frame, context.box)
             for place, block in frame.blocks.items():
                 number = context.number(block, claims_written(frame, place))
-                draft[context.box.index(place)] = number
+                changed[context.box.index(place)] = number
                 name = context.container_name(number)
                 holdings.take_block(cell_of(context.box, place), name, frame.tick)
-        if draft is not None:
+        if changed:
+            draft = numbers.draft()
+            for index, number in changed.items():
+                draft[index] = number
             numbers = draft.terrain()
         self._reached = (count, numbers, holdings)
         return numbers, holdings
