@@ -9,7 +9,7 @@ import beliefnest as bn
 from beliefnest.errors import ScenarioError
 from beliefnest.facts.kinds import BlockIs
 from beliefnest.llm.offline import OfflineModel
-from beliefnest.scenarios.expected_state import Expectation
+from beliefnest.scenarios.expected import Expectation
 from beliefnest.scenarios.running import run_scenario
 
 BLOCKS = {"red": (4, 1, 2), "green": (6, 1, 7), "blue": (8, 1, 2)}

@@ -12,8 +12,7 @@ import beliefnest as bn
 from beliefnest.errors import InputError, ScenarioError
 from beliefnest.facts.kinds import FactEntry
 from beliefnest.scenarios.document import plain
-from beliefnest.scenarios.expected import ExpectEntry
-from beliefnest.scenarios.expected_state import ExpectationEntry
+from beliefnest.scenarios.expected import ExpectationEntry, ExpectEntry
 from beliefnest.scenarios.expressions import evaluate
 from beliefnest.scenarios.format import (
     AgentEntry,

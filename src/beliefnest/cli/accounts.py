@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 from beliefnest.nest.face.nest import Nest
-from beliefnest.scenarios.naming import titled
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.world.event_words import happens, is_lid
 from beliefnest.world.values import Position
+from beliefnest.world.words import titled
 
 _MOST = 40
 """Greatest number of events listed for a probe; earlier ones are left out."""

@@ -17,13 +17,13 @@ from beliefnest.scenarios.expected_acts import Arrives
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_kinds import Infers
 from beliefnest.scenarios.inferring import means_text
-from beliefnest.scenarios.naming import container_name, named_place, titled
+from beliefnest.scenarios.naming import container_name, named_place
 from beliefnest.scenarios.outcome import Outcome, ProbeOutcome
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.store import Journal
 from beliefnest.world.frames import Frame, Snapshot
 from beliefnest.world.paths import parse_path, path_text
-from beliefnest.world.words import listed, with_the
+from beliefnest.world.words import listed, titled, with_the
 
 
 def read_condition(nest: Nest, journal: Journal, outcome: Outcome) -> ConditionPicture:

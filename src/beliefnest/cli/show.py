@@ -34,7 +34,7 @@ from beliefnest.prompts.templates import (
     built_in_template,
     load_template,
 )
-from beliefnest.scenarios.naming import container_name, named_place, titled
+from beliefnest.scenarios.naming import container_name, named_place
 from beliefnest.scenarios.records import placed_json
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.timeline.export_tables import prompt_row
@@ -43,7 +43,7 @@ from beliefnest.timeline.run_records import ProgramRecord, PromptRecord
 from beliefnest.timeline.store import Journal
 from beliefnest.world.paths import parse_path, path_text
 from beliefnest.world.texts import on_one_line
-from beliefnest.world.words import items_words
+from beliefnest.world.words import items_words, titled
 
 _FRAMES = 120
 """Greatest number of pictures in an animation."""

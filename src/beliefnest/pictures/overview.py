@@ -10,7 +10,7 @@ from beliefnest.pictures.marks import XY, Drawing, Rectangle
 from beliefnest.pictures.marks import DrawnMark as Drawn
 from beliefnest.pictures.palette import INK, PAPER, QUIET, AgentLook, Mark, agent_looks, mix
 from beliefnest.pictures.panel import PanelBlock, paragraph
-from beliefnest.pictures.plan import draw_plan
+from beliefnest.pictures.plan import DrawnPlan, draw_plan
 from beliefnest.pictures.scene import Scene, Store
 
 _GAP = 12.0
@@ -92,7 +92,7 @@ class _Page:
     marks: list[Drawn]
     kinds: set[str]
 
-    def add(self, block: PanelBlock) -> None:
+    def add(self, block: PanelBlock | DrawnPlan) -> None:
         self.marks += block.marks
         self.kinds |= block.kinds
 
@@ -129,8 +129,7 @@ def _row(
     for each, head, left in zip(row, heads, lefts, strict=True):
         page.add(head)
         plan = draw_plan(each.scene, page.looks, (left, level), wide, TEXT_SIZE, each.trails)
-        page.marks += plan.marks
-        page.kinds |= plan.kinds
+        page.add(plan)
         below = PanelBlock(bottom=plan.bottom + 4)
         if plan.unnamed:
             words = f"too close for a name: {', '.join(plan.unnamed)}"
@@ -179,8 +178,7 @@ def _beside(page: _Page, condition: ConditionPicture, at: XY, inner: float) -> f
     wide = (inner - _GAP) * 0.56
     level = head.bottom + 4
     plan = draw_plan(condition.scene, page.looks, (left, level), wide, TEXT_SIZE, condition.trails)
-    page.marks += plan.marks
-    page.kinds |= plan.kinds
+    page.add(plan)
     story = PanelBlock(bottom=plan.bottom + 5)
     if plan.unnamed:
         paragraph(story, f"too close for a name: {', '.join(plan.unnamed)}", left, wide, TEXT_SIZE)

@@ -99,7 +99,9 @@ def _draw(rows: Sequence[PlotRow], acts: Sequence[NotedAct], title: str, width: 
         bands += _bands(chart, row, top)
         tops.append(top)
         top += _STEP
-    lines = tuple(((chart.x(act.tick), first - 1.5), (chart.x(act.tick), top - 4)) for act in acts)
+    lines = tuple(
+        ((chart.axis.x(act.tick), first - 1.5), (chart.axis.x(act.tick), top - 4)) for act in acts
+    )
     marks += [mark for mark in bands if not isinstance(mark, Text)]
     if lines:
         marks.append(Lines(lines, INK, 0.4))
@@ -124,10 +126,6 @@ class _Chart:
         self.told = {each.believed for row in rows for each in row.told}
         self.unknown = any(not band.words for row in rows for band in row.bands)
 
-    def x(self, tick: int) -> float:
-        """Return the x position of a tick."""
-        return self.axis.x(tick)
-
 
 def _fills(words: Iterable[str]) -> Mapping[str, str]:
     """Return a fill for each value; values that name the same colour get different shades."""
@@ -142,7 +140,7 @@ def _fills(words: Iterable[str]) -> Mapping[str, str]:
 def _bands(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
     marks: list[Drawn] = []
     for band in row.bands:
-        x0, x1 = chart.x(band.start), chart.x(band.end)
+        x0, x1 = chart.axis.x(band.start), chart.axis.x(band.end)
         wide = max(x1 - x0, 0.8)
         marks += _swatch(chart, band.words, (x0, top), wide, _HIGH)
         inner = x0 + 3.0
@@ -164,7 +162,7 @@ def _told(chart: _Chart, row: PlotRow, top: float) -> list[Drawn]:
     """Return a balloon above the row for each claim that was heard."""
     marks: list[Drawn] = []
     for each in row.told:
-        at = (chart.x(each.tick), top - _BALLOON * 1.5)
+        at = (chart.axis.x(each.tick), top - _BALLOON * 1.5)
         marks += icons.hearsay(at, _BALLOON, believed=each.believed)
     return marks
 

@@ -12,6 +12,7 @@ from beliefnest.pictures.palette import Mark, agent_looks
 from beliefnest.pictures.panel import draw_body
 from beliefnest.pictures.scene import AgentSight, Device, PlanColumn, Scene, Store
 from beliefnest.world.values import Point, Position
+from beliefnest.world.words import titled
 
 _WIDTH = 260.0
 """Width of a still, in points."""
@@ -92,17 +93,13 @@ def _with_names(scene: Scene, names: Mapping[Position, str]) -> Scene:
     """Return a scene whose containers and agents have the names that stories use."""
     return replace(
         scene,
-        agents=tuple(map(_titled, scene.agents)),
+        agents=tuple(map(titled, scene.agents)),
         stores=tuple(_named(store, names) for store in scene.stores),
-        people=tuple(replace(each, name=_titled(each.name)) for each in scene.people),
-        sights=tuple(AgentSight(_titled(each.name), each.seen) for each in scene.sights),
+        people=tuple(replace(each, name=titled(each.name)) for each in scene.people),
+        sights=tuple(AgentSight(titled(each.name), each.seen) for each in scene.sights),
     )
 
 
 def _named(store: Store, names: Mapping[Position, str]) -> Store:
     kind = (store.name or "container").replace("_", " ")
     return replace(store, label=names.get(store.position, kind))
-
-
-def _titled(name: str) -> str:
-    return name[:1].upper() + name[1:]

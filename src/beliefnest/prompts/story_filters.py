@@ -22,7 +22,7 @@ from beliefnest.world.near import BESIDE, names_near
 from beliefnest.world.registry import block_name
 from beliefnest.world.signs import sign_words
 from beliefnest.world.values import Items, Point, Position, block_at, feet_in
-from beliefnest.world.words import listed, point_words, things_words, with_the
+from beliefnest.world.words import listed, point_words, things_words, titled, with_the
 
 _ROW_HEADER = "time;what;agent_name;description"
 _AT_CONTAINER = (EventKind.GET_ITEM_FROM_CHEST, EventKind.DEPOSIT_ITEM_INTO_CHEST)
@@ -265,7 +265,7 @@ class _Teller:
     def _outset(self, outset: Outset) -> Iterator[str]:
         if self._owner is None:
             yield _sentence(
-                f"This is a story about {listed([_titled(name) for name in outset.feet])}"
+                f"This is a story about {listed([titled(name) for name in outset.feet])}"
             )
             things = [self._thing(at, mention=True) for at in self._names]
             if things:
@@ -423,7 +423,7 @@ class _Teller:
             words = f"everybody else {did}"
         else:
             only = "only " if others > {*those} else ""
-            words = f"{only}{listed([_titled(name) for name in those])} {did}"
+            words = f"{only}{listed([titled(name) for name in those])} {did}"
         if self._owner is not None:
             words = f"as far as {self._object(self._owner)} knew, {words}"
         return _sentence(words)
@@ -439,14 +439,10 @@ class _Teller:
     def _subject(self, agent: str | None) -> str:
         if agent is None:
             return ""
-        return "You" if agent == self._you else _titled(agent)
+        return "You" if agent == self._you else titled(agent)
 
     def _object(self, agent: str) -> str:
-        return "you" if agent == self._you else _titled(agent)
-
-
-def _titled(name: str) -> str:
-    return name[:1].upper() + name[1:]
+        return "you" if agent == self._you else titled(agent)
 
 
 def _sight_of(each: Observation) -> int | None:

@@ -17,10 +17,9 @@ from beliefnest.scenarios.agent_entries import build_agents
 from beliefnest.scenarios.checks import Checks, check_inside
 from beliefnest.scenarios.content import Probe, ScenarioContent, ScenarioWarning
 from beliefnest.scenarios.document import Document, KeyPath, plain
-from beliefnest.scenarios.expected import Expected
+from beliefnest.scenarios.expected import Expectation, Expected
 from beliefnest.scenarios.expected_answers import Answers
 from beliefnest.scenarios.expected_kinds import Infers, read_expected, read_inferred
-from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.format import (
     BelievedSignEntry,
     BlockEntry,

@@ -6,9 +6,8 @@ from typing import Any
 
 from beliefnest.nest.past.setting import Setting
 from beliefnest.prompts.templates import Template, built_in_template
-from beliefnest.scenarios.expected import Expected
+from beliefnest.scenarios.expected import Expectation, Expected
 from beliefnest.scenarios.expected_answers import Answers
-from beliefnest.scenarios.expected_state import Expectation
 from beliefnest.scenarios.inferring import Inferring
 from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.timeline.run_records import Senses

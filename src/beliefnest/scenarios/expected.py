@@ -12,12 +12,12 @@ from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
 import msgspec
 
-from beliefnest.facts.kinds import WITHIN
+from beliefnest.facts.kinds import WITHIN, Fact, FactEntry
+from beliefnest.facts.reading import check_entry, fact_in
 from beliefnest.nest.past.setting import Setting
 from beliefnest.scenarios.believed import Believed, BelievedEntry, StateOf
 from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
-from beliefnest.scenarios.expected_state import ExpectationEntry
 from beliefnest.scenarios.naming import Naming
 from beliefnest.scenarios.trial import Trial
 from beliefnest.world import forms
@@ -82,6 +82,46 @@ class InferredEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     above: Annotated[float | str | None, note("A number, or a factor with a lower mean.")] = None
     below: Annotated[float | str | None, note("A number, or a factor with a higher mean.")] = None
+
+
+class ExpectationEntry(FactEntry, frozen=True, kw_only=True):
+    """An expected fact about a simulator."""
+
+    path: Annotated[str, note("Belief path; / is the real world.", "path")]
+    label: Annotated[str, note("A name for tables and overrides.", "keep")] = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """Expectation about a simulator after the script.
+
+    Attributes:
+        path: Path of the simulator.
+        fact: Expected fact.
+        label: Name for tables.
+    """
+
+    path: str
+    fact: Fact
+    label: str = ""
+
+    @classmethod
+    def read(cls, entry: ExpectationEntry, path: KeyPath, checks: Checks) -> "Expectation":
+        """Return the expectation of an entry.
+
+        Raises:
+            ScenarioError: The entry is no expectation, or names something that does not exist.
+        """
+        return cls(entry.path, fact_in(check_entry(entry, path, checks)), entry.label)
+
+    def written(self) -> dict[str, Any]:
+        """Return plain values: path, label, and the fact with the keys of scenario files."""
+        return {"path": self.path, "label": self.label, "expected": self.fact.written()}
+
+    @property
+    def where(self) -> str:
+        """Return the simulator for people: `reality`, or its path."""
+        return "reality" if self.path == "/" else self.path
 
 
 class ExpectEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -15,6 +15,7 @@ from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import KeyPath
 from beliefnest.scenarios.expected import (
     Deed,
+    Expectation,
     Expected,
     ExpectEntry,
     Judgement,
@@ -22,10 +23,8 @@ from beliefnest.scenarios.expected import (
     as_list,
     source_of,
 )
-from beliefnest.scenarios.expected_state import Expectation
-from beliefnest.scenarios.functions import NamedFunction, function_of
 from beliefnest.scenarios.naming import Naming, container_name, named_place
-from beliefnest.scenarios.trial import Trial
+from beliefnest.scenarios.trial import NamedFunction, Trial, function_of
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.limits import AGENT_SLOTS
 from beliefnest.world.values import Items, Point, Position, block_at

@@ -10,8 +10,7 @@ import msgspec
 
 from beliefnest.facts.kinds import FactEntry
 from beliefnest.perception.options import Perception
-from beliefnest.scenarios.expected import ExpectEntry
-from beliefnest.scenarios.expected_state import ExpectationEntry
+from beliefnest.scenarios.expected import ExpectationEntry, ExpectEntry
 from beliefnest.scenarios.rules import EpisodeEntry
 from beliefnest.world import values as world
 from beliefnest.world.forms import WrittenPoint, WrittenPosition, note

@@ -10,12 +10,11 @@ from msgspec.structs import asdict
 from beliefnest.errors import InputError, PathError, ScenarioError, TickError
 from beliefnest.facts.reading import check_entry, edits_of
 from beliefnest.minds.mind_model import MindModel, simplex_grid
-from beliefnest.scenarios.checks import Checks, check_inside
+from beliefnest.scenarios.checks import Checks
 from beliefnest.scenarios.document import Document, KeyPath
 from beliefnest.scenarios.format import GridEntry, InferEntry, LevelsEntry
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.registry import Registry
-from beliefnest.world.texts import quoted
 from beliefnest.world.values import Items, Position
 
 if TYPE_CHECKING:
@@ -116,10 +115,15 @@ def build_inferring(
     Raises:
         ScenarioError: The model is not consistent, or names something that does not exist.
     """
-    _check(document, path, entry, snapshot)
+    checks = _Supposed(document, snapshot, Registry.load())
+    checks.agent((*path, "agent"), entry.agent)
+    for name, goal in entry.goals.items():
+        if goal.at is not None:
+            checks.inside((*path, "goals", name, "at"), goal.at)
+    if entry.until is not None and entry.until < entry.since:
+        raise document.fault((*path, "until"), f"{entry.until} is before since, {entry.since}")
     doubt = None
     if entry.doubt is not None:
-        checks = _Supposed(document, snapshot, Registry.load())
         doubt = {
             name: edits_of(
                 check_entry(each, (*path, "doubt", name, number), checks)
@@ -148,20 +152,6 @@ def build_inferring(
     return Inferring(
         model, entry.since, entry.until, entry.ended, entry.smooth, document.where(path)
     )
-
-
-def _check(document: Document, path: KeyPath, entry: InferEntry, snapshot: Snapshot) -> None:
-    """Refuse what is not in the scene, and an empty span of ticks."""
-    if entry.agent not in snapshot.agents:
-        known = ", ".join(snapshot.agents)
-        raise document.fault(
-            (*path, "agent"), f"there is no agent {quoted(entry.agent)}; agents are {known}"
-        )
-    for name, goal in entry.goals.items():
-        if goal.at is not None:
-            check_inside(document, (*path, "goals", name, "at"), goal.at, snapshot.box)
-    if entry.until is not None and entry.until < entry.since:
-        raise document.fault((*path, "until"), f"{entry.until} is before since, {entry.since}")
 
 
 def _credences(document: Document, path: KeyPath, entry: InferEntry) -> Any:

@@ -51,8 +51,3 @@ def named_place(point: Point, setting: Setting) -> str:
     """Return a point as text: `at` with a named place near it, or with its coordinates."""
     names = names_near(point, {at: name for name, at in setting.places.items()})
     return f"at {names[0] if names else point_text(point)}"
-
-
-def titled(name: str) -> str:
-    """Return an agent's name with a capital letter, for the start of a sentence."""
-    return name[:1].upper() + name[1:]

@@ -7,8 +7,7 @@ from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.llm.messages import AnswerForm, Usage
 from beliefnest.scenarios.content import Probe
-from beliefnest.scenarios.expected import Judgement
-from beliefnest.scenarios.expected_state import Expectation
+from beliefnest.scenarios.expected import Expectation, Judgement
 from beliefnest.scenarios.inferring import Inferred
 from beliefnest.scenarios.scenario import Scenario
 from beliefnest.scenarios.trial import Trial

@@ -9,7 +9,6 @@ from beliefnest.prompts import built_in_template
 from beliefnest.scenarios.believed import Believed, bare_words, content_names
 from beliefnest.scenarios.content import Probe, ScenarioWarning
 from beliefnest.scenarios.expected_answers import Answers
-from beliefnest.scenarios.naming import titled
 from beliefnest.scenarios.prose_reading import (
     UnreadError,
     read_contents,
@@ -18,7 +17,7 @@ from beliefnest.scenarios.prose_reading import (
 )
 from beliefnest.world.paths import parse_path
 from beliefnest.world.values import Position
-from beliefnest.world.words import listed, with_the
+from beliefnest.world.words import listed, titled, with_the
 
 _ELSEWHERE = "another place"
 """Place of somebody who walked to no named place, in stories."""

@@ -10,6 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
+from beliefnest.world.words import titled
+
 _SENTENCE = re.compile(r"(?:[^.“]|“[^”]*[^.!?”]”)*(?:“[^”]*[.!?]”|[.])")
 
 
@@ -371,7 +373,7 @@ def read_places(
     """
     if testimony == "informed":
         raise UnreadError("the reader does not weigh claims")
-    reader = _Reader(_titled(path), item.replace("_", " "), testimony == "accept")
+    reader = _Reader(tuple(map(titled, path)), item.replace("_", " "), testimony == "accept")
     return frozenset(reader.read(text))
 
 
@@ -416,11 +418,7 @@ def read_last_seen(
     Raises:
         UnreadError: The story does not make it clear.
     """
-    seen = _Watcher(_titled(path), thing, testimony != "none").watch(text)
+    seen = _Watcher(tuple(map(titled, path)), thing, testimony != "none").watch(text)
     if seen is None:
         raise UnreadError(thing)
     return seen
-
-
-def _titled(path: Sequence[str]) -> tuple[str, ...]:
-    return tuple(name[:1].upper() + name[1:] for name in path)

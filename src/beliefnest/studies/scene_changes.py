@@ -15,8 +15,7 @@ from beliefnest.facts.kinds import FactEntry
 from beliefnest.prompts.templates import BUILT_IN_TEMPLATES
 from beliefnest.scenarios.believed import BelievedEntry
 from beliefnest.scenarios.document import Document, KeyPath, YamlNode, plain, wrapped
-from beliefnest.scenarios.expected import AnswersEntry, ExpectEntry
-from beliefnest.scenarios.expected_state import ExpectationEntry
+from beliefnest.scenarios.expected import AnswersEntry, ExpectationEntry, ExpectEntry
 from beliefnest.scenarios.yaml_reading import template_text
 from beliefnest.world.forms import scene_kinds
 

@@ -35,10 +35,8 @@ def items_words(items: Items, joint: str = ", ", *, ids: bool = False, ones: boo
         ids: True to keep names as Minecraft writes them, such as `oak_planks`.
         ones: False to leave out the number 1.
     """
-    told = [
-        name if count == 1 and not ones else f"{count} {name}"
-        for name, count in sorted(items.items())
-    ]
+    counts = sorted(items.items())
+    told = [name if n == 1 and not ones else f"{n} {name}" for name, n in counts]
     return joint.join(told if ids else (each.replace("_", " ") for each in told))
 
 
@@ -128,3 +126,8 @@ def nearest_or_all(name: str, known: Sequence[str], listing: str = "there are") 
     """
     close = difflib.get_close_matches(name, known, n=1)
     return f"; did you mean {quoted(close[0])}?" if close else f"; {listing} {', '.join(known)}"
+
+
+def titled(name: str) -> str:
+    """Return a name with a capital letter, for the start of a sentence."""
+    return name[:1].upper() + name[1:]
