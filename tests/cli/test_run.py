@@ -278,6 +278,10 @@ def test_answers_from_a_script(capsys: pytest.CaptureFixture[str]) -> None:
     assert report()["runs"][0]["probes"][0]["attempts"] == 2
     assert run(model="scripted:nothing.json", out="s") == 3
     assert "nothing.json" in capsys.readouterr().err
+    Path("damaged.json").write_text('{"a": 1', encoding="utf-8")
+    for model in ("scripted:damaged.json", "replay:damaged.json"):
+        assert run(model=model, out="s") == 2
+        assert "beliefnest: damaged.json" in capsys.readouterr().err
     assert not Path("s").exists()
 
 

@@ -1,4 +1,8 @@
-"""Nothing that is said or shown for an agent differs in worlds that are the same to the agent."""
+"""Nothing that is said or shown for an agent differs in worlds that are the same to the agent.
+
+The words of `methods` and of the reports of runs and studies have no door: they name settings and
+count rows, and say nothing of a belief.
+"""
 
 import pytest
 import tests.noninterference.acting_doors

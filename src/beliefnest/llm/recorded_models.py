@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from beliefnest.errors import ModelError
+from beliefnest.errors import InputError, ModelError
 from beliefnest.files import decode_json, read_regular
 from beliefnest.llm.failures import excerpt
 from beliefnest.llm.messages import Answer, Message, Model, Sampling
@@ -103,12 +103,13 @@ def load_script(name: str, path: Path) -> ScriptedModel:
     """Load a scripted model from a JSON file: a list of answers.
 
     Raises:
-        ModelError: The file cannot be read or is not a list of texts.
+        ModelError: The file cannot be read.
+        InputError: It is not a list of texts.
     """
     try:
         answers = decode_json(_content(name, path), list[str])
     except msgspec.MsgspecError as error:
-        raise ModelError(f"{path} is not a JSON list of answers: {error}") from None
+        raise InputError(f"{path} is not a JSON list of answers: {error}") from None
     return ScriptedModel(name, deque(answers))
 
 
@@ -116,14 +117,15 @@ def load_replay(name: str, path: Path) -> ReplayModel:
     """Load a replaying model from the file of a `FileRecordingModel`.
 
     Raises:
-        ModelError: The file cannot be read, or a line is not an exchange.
+        ModelError: The file cannot be read.
+        InputError: A line is not an exchange.
     """
     recorded: defaultdict[_Question, deque[Exchange]] = defaultdict(deque)
     for number, line in enumerate(_content(name, path).splitlines(), start=1):
         try:
             exchange = decode_exchange(line)
         except msgspec.MsgspecError as error:
-            raise ModelError(f"{path}, line {number}, is not a recorded answer: {error}") from None
+            raise InputError(f"{path}, line {number}, is not a recorded answer: {error}") from None
         recorded[exchange.messages].append(exchange)
     return ReplayModel(name, dict(recorded))
 

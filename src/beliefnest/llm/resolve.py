@@ -76,7 +76,7 @@ def resolve_model(
 
     Raises:
         UnknownNameError: There is no such kind of model.
-        InputError: The part after the colon is missing.
+        InputError: The part after the colon is missing, or a file of answers is damaged.
         ModelError: A key, a URL or a file is missing.
     """
     if name == "offline":
