@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from tests.hostile.limits import ends_well
 import beliefnest as bn
 from beliefnest.errors import BeliefNestError
 from beliefnest.nest.face.recorded import RecordedNest
+from beliefnest.timeline import codec
 from beliefnest.timeline.journal import TimelineKey
 from beliefnest.timeline.store import Journal
 
@@ -282,6 +284,28 @@ def test_a_count_of_events_that_is_none_is_refused(run):
         key = TimelineKey((), "main")
         with pytest.raises(BeliefNestError, match="it counts"):
             journal.events_until(key, journal.info(key).entries)
+
+
+@pytest.mark.parametrize("name", ["first_tick", "last_tick", "events", "changes"])
+def test_a_chunk_that_tells_a_plausible_lie_is_refused(run, name):
+    change_rows(run, "piece", "compressed", lambda row: {**row, name: row[name] + 1})
+    with (
+        RecordedNest.read(run) as nest,
+        pytest.raises(BeliefNestError, match="a chunk tells|stands") as e,
+    ):
+        nest["/"].render("{{ branch | story }}")
+    assert e.value.exit_status == 2
+
+
+def test_agents_that_a_chunk_lies_about_are_refused(run):
+    def moved(row):
+        known = codec.decode_agents(zstandard.ZstdDecompressor().decompress(row["agents"]))
+        known["ann"] = replace(known["ann"], health=known["ann"].health - 1)
+        return {**row, "agents": zstandard.ZstdCompressor().compress(codec.encode(known))}
+
+    change_rows(run, "piece", "compressed", moved)
+    with RecordedNest.read(run) as nest, pytest.raises(BeliefNestError, match="other agents than"):
+        nest["/"].render("{{ branch | story }}")
 
 
 def test_a_chunk_that_unpacks_to_any_size_is_refused(run):

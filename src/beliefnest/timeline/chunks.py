@@ -156,11 +156,10 @@ class Chunks:
     ) -> Iterator[Entry]:
         """Yield the entries with indexes start to stop - 1; arguments and errors as for `raw`.
 
-        StoreError also if an entry is out of bounds.
+        StoreError also if an entry is out of bounds, or not as its chunk tells.
         """
         for chunk, part in self._parts(timeline, start, stop, gone):
-            for encoded in part:
-                yield self._decoded(chunk, encoded)
+            yield from self._decoded_all(chunk, part)
 
     def _parts(
         self, timeline: int, start: int, stop: int, gone: Callable[[], BranchError | None] | None
@@ -204,10 +203,9 @@ class Chunks:
             )
             if found is None:
                 return
-            encoded = self._encoded(found)
-            last = min(stop, found.first + found.count)
-            for number in range(max(start, found.first), last):
-                entry = self._decoded(found, encoded[number - found.first])
+            begin, last = max(start, found.first), min(stop, found.first + found.count)
+            part = self._encoded(found)[begin - found.first : last - found.first]
+            for number, entry in enumerate(self._decoded_all(found, part), begin):
                 if is_found(entry, what):
                     yield number, entry
             start = last
@@ -246,18 +244,25 @@ class Chunks:
             if first + last.count <= entries:
                 first += last.count
             agents = self._agents_before(timeline, first)
-        agents = agents | codec.decode_last_agents(self.raw(timeline, first, entries))
+        return self._checked(agents | codec.decode_last_agents(self.raw(timeline, first, entries)))
+
+    def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
+        """Return the agents stored with the compressed chunk before an entry, or none."""
+        found = self._chunk(timeline, "first < ? ORDER BY first DESC", first)
+        return {} if found is None else self._agents_of(found)
+
+    def _agents_of(self, chunk: _Chunk) -> dict[str, AgentState | None]:
+        """Return the agents stored with a compressed chunk."""
+        return self._checked(codec.decode_agents(self.decompressed(chunk.agents)))
+
+    def _checked(self, agents: dict[str, AgentState | None]) -> dict[str, AgentState | None]:
+        """Return agents; StoreError if they are out of bounds."""
         if self.bounds is not None:
             try:
                 self.bounds.check_agents(agents)
             except StoreError as fault:
                 raise damage(self._database.path, str(fault)) from fault
         return agents
-
-    def _agents_before(self, timeline: int, first: int) -> dict[str, AgentState | None]:
-        """Return the agents stored with the compressed chunk before an entry, or none."""
-        found = self._chunk(timeline, "first < ? ORDER BY first DESC", first)
-        return {} if found is None else codec.decode_agents(self.decompressed(found.agents))
 
     def _chunk(self, timeline: int, where: str, *values: int) -> _Chunk | None:
         chosen, what = f"piece WHERE timeline = ? AND {where} LIMIT 1", "entries"
@@ -288,15 +293,29 @@ class Chunks:
             timeline,
             first,
             len(encoded),
-            entries[0].tick,
-            entries[-1].tick,
-            sum(count_of_events(entry) for entry in entries),
-            sum(is_found(entry, EntryFilter.CHANGES) for entry in entries),
+            *_summary(entries),
             known,
             int(agents is not None),
             body,
         )
         self._database.write("INSERT INTO piece", **chunk._asdict())
+
+    def _decoded_all(self, chunk: _Chunk, part: Sequence[msgspec.Raw]) -> list[Entry]:
+        """Return entries of a chunk; StoreError also if they are all, and not as it tells."""
+        entries = [self._decoded(chunk, encoded) for encoded in part]
+        if self.bounds is None or len(entries) != chunk.count:
+            return entries
+        told = (chunk.first_tick, chunk.last_tick, chunk.events, chunk.changes)
+        if told != _summary(entries):
+            fault = f"a chunk tells {told} of entries with {_summary(entries)}"
+            raise damage(self._database.path, f"{fault} as ticks, events and changes")
+        before = self._agents_before(chunk.timeline, chunk.first) if chunk.compressed else {}
+        # None before a later chunk: a writer may have deleted the timeline meanwhile.
+        if before or (chunk.compressed and chunk.first == 0):
+            known = self._agents_of(chunk)
+            if known != before | codec.decode_last_agents(part):
+                raise damage(self._database.path, "a chunk tells other agents than its entries")
+        return entries
 
     def _decoded(self, chunk: _Chunk, encoded: msgspec.Raw) -> Entry:
         """Return an entry of a chunk; StoreError if it is damaged or out of bounds."""
@@ -321,3 +340,10 @@ class Chunks:
             counts = f"{len(encoded)} of {chunk.count} entries"
             raise damage(self._database.path, f"a chunk has {counts}")
         return encoded
+
+
+def _summary(entries: Sequence[Entry]) -> tuple[int, int, int, int]:
+    """Return first and last tick of entries, and the numbers of events and of changes in them."""
+    events = sum(count_of_events(entry) for entry in entries)
+    changes = sum(is_found(entry, EntryFilter.CHANGES) for entry in entries)
+    return entries[0].tick, entries[-1].tick, events, changes
