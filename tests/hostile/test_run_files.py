@@ -291,7 +291,7 @@ def test_a_chunk_that_tells_a_plausible_lie_is_refused(run, name):
     change_rows(run, "piece", "compressed", lambda row: {**row, name: row[name] + 1})
     with (
         RecordedNest.read(run) as nest,
-        pytest.raises(BeliefNestError, match="a chunk tells|stands") as e,
+        pytest.raises(BeliefNestError, match=r"a chunk tells|stands") as e,
     ):
         nest["/"].render("{{ branch | story }}")
     assert e.value.exit_status == 2
