@@ -280,6 +280,18 @@ RIGHT = (
     "Answer: A. It may be in B now, but he did not see that.",
     "Answer: A. B may be where it is now.",
 )
+RIGHT += (
+    "The red box, unless he saw it.",
+    "The answer is A unless Sally saw Anne move it.",
+    "A, unless he saw it move to B",
+    "The red box, unless Anne moved it into the blue box",
+    "The red box. If he had seen the move, he would look in the blue box.",
+    "Answer: A, because if he had seen it, it would be B.",
+    "B -> no, A",
+    "B, no wait, A",
+    "B. No, A.",
+    "The blue box, no, the red box",
+)
 OTHER = ("(B) the blue box",)
 UNKNOWN = (
     "He doesn't know.",
@@ -341,6 +353,24 @@ AMBIGUOUS = (
     "Answer: red box, quizás blue box",
     "Answer: A；也许 B",
     "Probably the red box, but maybe he does not know.",
+    # Each option under a condition.
+    "A, unless he saw it, then B",
+    "Answer: A, unless he saw it, then B",
+    "**A**, unless Sally looked; then **B**",
+    "The red box unless Anne told him, in which case the blue box.",
+    "A - unless he saw, in which case B",
+    "The red box (unless she looked, then the blue box)",
+    "(A) the red box, unless he saw it, then (B) the blue box",
+    '{"answer": "A unless he saw it, then B"}',
+    "\\boxed{A, \\text{ unless he saw it, then } B}",
+    "<answer>A, or B if he saw it</answer>",
+    "If she saw it, the blue box; otherwise, the red box.",
+    "Answer: It depends: if she saw the move, B; otherwise A.",
+    "If he peeked then B, else A.",
+    "A if she did not see, B if she did",
+    "Answer: **A** (if he did not see it) / **B** (if he did)",
+    "In the red box, provided that she left; otherwise in the blue box.",
+    "A... or is it the blue box?",
 )
 UNREAD = (
     "<think>B",

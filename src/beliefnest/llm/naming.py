@@ -81,13 +81,14 @@ _LABEL_BEFORE = (
     | _words(
         "option choice answer letter is be choose pick select chose picked say and or not but so "
         "than of with go either both neither nor between thus therefore number would will maybe "
-        "perhaps also otherwise else sometimes then first though although while see for out up"
+        "perhaps also otherwise else sometimes then first though although while see for out up "
+        "case it"
     )
 )
 _LABEL_NOUNS = frozenset(["option", "choice", "letter", "number", "answer"])
 _LABEL_AFTER = _ABROAD | _words(
     "and or but not nor because since as is are instead rather seems would makes fits for maybe "
-    "perhaps also otherwise sometimes then though although unless can could might may too"
+    "perhaps also otherwise sometimes then though although unless if can could might may too"
 )
 _HEDGES = _ABROAD | _words(
     "maybe perhaps possibly alternatively otherwise might could may sometimes second runner"
@@ -140,6 +141,7 @@ class NamedOptions:
         unsure: Numbers of options that it names, perhaps to rule them out.
         aside: Numbers of options that it names in grounds or conditions.
         maybe: Numbers of the options in `yes` that it names as alternatives: `perhaps B`.
+        either: Numbers of options in `aside` that hold under a condition: `unless ..., then B`.
         bare: True if the text holds nothing but names of options.
         told: True if the text states where or what, rather than what happened.
     """
@@ -149,6 +151,7 @@ class NamedOptions:
     unsure: set[int] = field(default_factory=set)
     aside: set[int] = field(default_factory=set)
     maybe: set[int] = field(default_factory=set)
+    either: set[int] = field(default_factory=set)
     bare: bool = False
     told: bool = False
 
@@ -262,9 +265,16 @@ class Names:
             place in inside or not word or _is_fill(word) for place, word in enumerate(words)
         )
         grounds = _grounds(tokens, inside)
+        sides = _sides(tokens, inside) if supposed else {}
+        answers = [each for each in mentions if sides.get(each.start) == "answer"]
+        for each in answers:
+            found.either |= each.options if not _negated(tokens, inside, each) else set()
+        # `A unless he saw it` is an answer with a doubt; `if he saw it, A` is half of one.
+        sole = len(found.either) == 1 and _CONDITIONS.isdisjoint({*outside} - {"unless"})
         for each in mentions:
             open_ = not supposed and _is_left_open(tokens, inside, each)
-            conditional = supposed or "otherwise" in outside[: each.start]
+            conditional = supposed and not (sole and each in answers)
+            conditional |= "otherwise" in outside[: each.start]
             if not open_ and (conditional or (each.start in grounds and not found.bare)):
                 found.aside |= each.options
                 continue
@@ -546,6 +556,30 @@ def _grounds(tokens: Sequence[Token], inside: dict[int, _Mention]) -> set[int]:
             if following is not None and following - place < 4:
                 found.add(following)
     return found
+
+
+def _sides(tokens: Sequence[Token], inside: dict[int, _Mention]) -> dict[int, str]:
+    """Return for the tokens of a sentence with a condition what they belong to.
+
+    It is an `answer`, the `condition` of one, or what would be if something `else` were so.
+    """
+    sides: dict[int, str] = {}
+    side = "answer"
+    for place, token in enumerate(tokens):
+        if place in inside:
+            pass
+        elif token.word in ("because", "since", "as"):
+            side = "else"
+        elif token.word in _CONDITIONS:
+            side = "condition" if side != "else" else side
+        elif side == "condition" and token.word in ("had", "were"):
+            side = "else"
+        elif token.raw in ".;/" or token.word in ("otherwise", "else"):
+            side = "answer"
+        elif token.raw in ",:)\u2014" or token.word in ("then", "which"):
+            side = "answer" if side == "condition" else side
+        sides[place] = side
+    return sides
 
 
 def _closes_on_name(tokens: Sequence[Token], place: int, inside: dict[int, _Mention]) -> bool:

@@ -45,6 +45,9 @@ _UNSURE = re.compile(
     r"|not possible to|no way to|need more|hard to say|it depends|undetermined)\b",
     re.IGNORECASE,
 )
+_TAKEN_BACK = re.compile(
+    r"\W*(?:no|wait|correction|scratch that|i mean|sorry|or rather|oops)\b", re.IGNORECASE
+)
 _STRONG_SIGNS = ("wait", "no", "correction", "scratch", "i mean", "sorry", "or rather", "oops",
                  "my mistake", "i was wrong", "on second", "never mind", "strike", "i take",
                  "i change", "edit", "hold on")  # fmt: skip
@@ -235,11 +238,18 @@ class _Reader:
             whole.no |= named.no
             whole.unsure |= named.unsure
             whole.aside |= named.aside
+            whole.either |= named.either
+        if not whole.yes and len(whole.either) > 1 and statement.kind != "prose":
+            whole.unsure |= whole.either
         return whole
 
     def _labelled(self, plain: str, number: int, rest: str) -> NamedOptions:
         """Return what a letter with a text behind it names: both must name the same."""
         head = sentences(rest)[:1] or [""]
+        if _TAKEN_BACK.match(rest):
+            other = self._names.named(_SIGNS.sub("", rest))
+            if other.bare and len(other.yes) == 1:
+                return other
         named = self._names.named(head[0])
         first = re.split(r"[,;(\u2014]|\s-\s|\b(?:because|since|as|so)\b", head[0])[0]
         lead = self._names.named(first)
@@ -255,6 +265,7 @@ class _Reader:
             inner = re.findall(r"(?<!\w)\(?([A-Z])\)\s", sentence)
             if inner:
                 whole.yes |= self._names.named(sentence).yes
+        whole.yes |= named.either
         whole.no |= named.no - whole.yes
         if number in named.no:
             whole.unsure.add(number)
@@ -299,15 +310,20 @@ class _Reader:
         whole = NamedOptions()
         told = False
         for sentence in sentences(plain):
-            if sentence.endswith("?"):
+            if sentence.endswith("?") and not re.match(r"\W*or\b", sentence, re.IGNORECASE):
                 continue
             named = self._names.named(sentence)
             whole.yes |= named.yes
             whole.unsure |= named.unsure
+            whole.either |= named.either if len(named.either) > 1 else set()
             told |= bool(named.yes) and (named.told or _is_headed(sentence, self._names))
         chosen = whole.yes | whole.unsure
-        if len(chosen) > 1 or whole.unsure:
-            return chosen, True, plain.strip()
+        if len(chosen) > 1 and (taken_back := afterthoughts(plain)) is not None:
+            other = self._names.named(_SIGNS.sub("", taken_back[1]))
+            if taken_back[0].startswith(_STRONG_SIGNS) and other.bare and len(other.yes) == 1:
+                return other.yes, False, plain.strip()
+        if len(chosen) > 1 or whole.unsure or (whole.either and not chosen):
+            return chosen or whole.either, True, plain.strip()
         doubts = _UNSURE.search(self._names_removed(plain))
         if not chosen or not told or doubts:
             return set(), False, plain.strip()

@@ -101,7 +101,8 @@ _KEYS = (
 _INNER = ("answer", "option", "choice", "letter", "label", "text", "value", "name", "id", "key")
 _LONGEST_LINE = 2000
 _AFTER = re.compile(
-    r"(?:[.!?;\n\u2014)-]\s*|\s-\s)(?P<sign>wait|hold on|no,|no\.|no wait|correction|scratch that|"
+    r"(?:[.!?;>\n\u2014)-]\s*|\s-\s|,\s+(?=no,|no wait|wait))"
+    r"(?P<sign>wait|hold on|no,|no\.|no wait|correction|scratch that|"
     r"on second thoughts?|hmm+|sorry|i mean|or rather|oops|my mistake|let me (?:re|correct|think)|"
     r"actually|on reflection|i was wrong|that is wrong|that's wrong|or maybe|or perhaps|"
     r"alternatively|never mind|strike that|i take that back|i change my mind|edit:|or:)"
