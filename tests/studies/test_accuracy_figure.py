@@ -105,6 +105,9 @@ def test_the_chance_level_of_choices_is_a_line():
     assert lines_at_chance(plot_accuracy(groups[:2], ["condition"])) == [0.5]
     assert lines_at_chance(plot_accuracy(groups, ["condition"])) == [0.5, 0.5, 0.25]
     assert lines_at_chance(plot_accuracy(groups[3:], ["condition"])) == []
+    # No line crosses a bar that has no chance level.
+    between = [groups[0], groups[3], groups[1]]
+    assert lines_at_chance(plot_accuracy(between, ["condition"])) == [0.5, 0.5]
 
 
 def test_models_have_the_shortest_names_that_tell_them_apart():

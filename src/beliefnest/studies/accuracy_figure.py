@@ -52,7 +52,7 @@ def plot_accuracy(
     figure = Figure(figsize=wanted if size is None else (size[0] / _MM, size[1] / _MM))
     axes = figure.add_subplot()
     width = 0.8 / max(1, len(colours))
-    chances: list[tuple[float, float]] = []
+    chances: list[tuple[float, float | None]] = []
     for number, name in enumerate(colours):
         own = [group for group in judged if _legend(group, by) == name]
         middles = [along.index(_told(g[by[0]])) + (number + 0.5) * width - 0.4 for g in own]
@@ -62,8 +62,7 @@ def plot_accuracy(
         colour = COLOURS[number % len(COLOURS)]
         axes.bar(middles, heights, width * 0.9, color=colour, label=name or None)
         axes.errorbar(middles, heights, [below, above], fmt="none", ecolor="#333333", capsize=3)
-        levels = zip(middles, (group.get("chance") for group in own), strict=True)
-        chances += [(middle, level) for middle, level in levels if level is not None]
+        chances += zip(middles, (group.get("chance") for group in own), strict=True)
     _draw_chance(axes, chances, width, in_legend=len(colours) > 1)
     axes.set_xticks(range(len(along)), along)
     axes.set_xlabel("\n".join([by[0], *_not_answered(judged)]))
@@ -85,21 +84,22 @@ def _not_answered(groups: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _draw_chance(
-    axes: "Axes", chances: Sequence[tuple[float, float]], width: float, *, in_legend: bool
+    axes: "Axes", bars: Sequence[tuple[float, float | None]], width: float, *, in_legend: bool
 ) -> None:
-    """Draw the accuracy of blind guesses at each bar, or one line if it is the same for all.
+    """Draw the accuracy of blind guesses at each bar, or one line if all have the same.
 
     Args:
         axes: The plot.
-        chances: Middle of each bar on the axis, and its chance level.
+        bars: Middle of each bar on the axis, and its chance level; None: it has none.
         width: Width of a bar with the space around it.
         in_legend: True if the figure has a legend; otherwise the line is named at its end.
     """
+    chances = [(middle, level) for middle, level in bars if level is not None]
     if not chances:
         return
     ends = [(middle - width / 2, middle + width / 2) for middle, _ in chances]
     levels = [level for _, level in chances]
-    if len({round(level, 9) for level in levels}) == 1:
+    if len({round(level, 9) for level in levels}) == 1 and len(chances) == len(bars):
         ends = [(min(left for left, _ in ends), max(right for _, right in ends))]
     drawn = axes.hlines(
         levels[: len(ends)],
