@@ -286,8 +286,17 @@ def test_each_kind_of_question_is_read_back(tmp_path: Path, kind: str) -> None:
     assert warned(tmp_path, HALL.replace("RIGHT", f"{{path: /, {kind}}}")) == []
     # Cat sees nothing of it: it takes for granted what the narrator does not tell.
     (told,) = warned(tmp_path, HALL.replace("RIGHT", f"{{path: /cat, {kind}}}"))
-    assert "scenario.yaml:28: " in told
+    assert "scenario.yaml:31: " in told
     assert "does not follow from the story, which says 'unknown'" in told
+
+
+def test_a_question_about_a_block_is_named_as_not_checked(tmp_path: Path) -> None:
+    text = HALL.replace("unknown]", "unknown, chest]").replace(
+        "RIGHT", "{path: /bob, block: [5, 1, 5]}"
+    )
+    (told,) = warned(tmp_path, text)
+    assert "scenario.yaml:31: " in told
+    assert "not checked that the right answer 'chest' follows from the story" in told
 
 
 def test_a_name_of_a_place_that_is_no_option_is_not_judged(tmp_path: Path) -> None:

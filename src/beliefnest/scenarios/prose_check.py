@@ -26,14 +26,15 @@ _STORY = "{{ branch | beginning }} {{ branch | story }}"
 
 
 class ProseWarning(ScenarioWarning):
-    """Warning that the right answer to a question does not follow from the text of its probe."""
+    """Warning that a right answer does not follow from the text of its probe, or is not checked."""
 
 
 def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
     """Warn of each question whose computed answer does not follow from its story.
 
     Checked are questions about an item, an agent, a container or a sign that the built-in template
-    `story` puts to a narrator's story.
+    `story` puts to a narrator's story. Questions about a block are named: stories tell who opens a
+    door, but not who sees it, so that no reader of the text can check them.
 
     Args:
         nest: The nest after the script.
@@ -45,7 +46,7 @@ def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
         for number, probe in enumerate(probes, 1)
         if probe.path == "/" and probe.template == told
         for question in probe.questions
-        if question.believed is not None and question.believed.kind != "block"
+        if question.believed is not None
     ]
     story = nest["/"].render(_STORY) if asked else ""
     for number, probe, question, believed in asked:
@@ -58,6 +59,13 @@ def warn_of_prose(nest: Nest, probes: Sequence[Probe]) -> None:
 
 def _faults(nest: Nest, story: str, question: Answers, believed: Believed) -> Iterator[str]:
     right = {_key(each) for each in question.right}
+    if believed.kind == "block":
+        told = listed(sorted(map(repr, question.right)), "or")
+        yield (
+            f"it is not checked that the right answer {told} follows from the story, which does "
+            "not tell who sees a block; read the story, or ask about an item"
+        )
+        return
     try:
         read = _read(nest, story, believed)
     except UnreadError:
