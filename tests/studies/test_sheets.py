@@ -27,6 +27,7 @@ def test_any_delimiter_encoding_and_line_end_is_read(delimiter, end):
         "utf-16-le": text.encode("utf-16-le"),
         "utf-16-be": text.encode("utf-16-be"),
         "utf-16-be with a mark": b"\xfe\xff" + text.encode("utf-16-be"),
+        "utf-32": text.encode("utf-32"),
         "cp1252": text.encode("cp1252"),
         "with sep=": f"sep={delimiter}{end}{text}".encode(),
     }
@@ -52,6 +53,8 @@ def test_rows_without_content_and_empty_columns_are_left_out():
         (b"a,b,a\n1,2,3\n", "has the column 'a' twice"),
         (b"a,b\n\xe3\xf0\xf3\xf8\xe0,\xe4\xe0\n", "is not UTF-8; save it"),
         (b"\xff\xfea\x00,\xd8", "is not UTF-8; save it"),
+        (b"PK\x03\x04\0\0", "a.csv is a workbook of a spreadsheet; save its sheet as CSV"),
+        (b'a,b\n1,"2\n3,4\n', "a.csv:3 cannot be read: unexpected end of data"),
     ],
 )
 def test_what_is_no_table_is_refused_with_its_line(content, told):

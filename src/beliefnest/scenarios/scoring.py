@@ -20,4 +20,5 @@ def wilson_interval(passed: float, total: int) -> tuple[float, float]:
     spread = _Z95**2 / total
     middle = (rate + spread / 2) / (1 + spread)
     half = _Z95 / (1 + spread) * math.sqrt(rate * (1 - rate) / total + spread / (4 * total))
-    return max(0.0, middle - half), min(1.0, middle + half)
+    # Rounding must not leave the rate itself outside.
+    return max(0.0, min(rate, middle - half)), min(1.0, max(rate, middle + half))

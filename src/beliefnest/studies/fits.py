@@ -335,8 +335,8 @@ class _Penalised:
                 if reached >= best - 1e-12:
                     break
                 step = step / 2
-            values, best = tried, reached
-            if np.abs(step).max() < 1e-9:
+            gained, values, best = reached - best, tried, reached
+            if np.abs(step).max() < 1e-9 or gained < 1e-12:
                 break
         return values
 
@@ -352,18 +352,20 @@ class _Penalised:
 
     def bounds(self, best: Floats, number: int, error: float) -> tuple[float, float]:
         """Return the 95 % interval of a coefficient by the profile likelihood."""
+        from scipy.optimize import brentq
+
+        def beyond(value: float) -> float:
+            return self._distance(best, number, value) - _CHI95
+
         found = []
         for side in (-1.0, 1.0):
             inside, outside = float(best[number]), float(best[number]) + side * 2 * error
-            while self._distance(best, number, outside) < _CHI95 and abs(outside) < 2 * _FARTHEST:
+            while beyond(outside) < 0 and abs(outside) < 2 * _FARTHEST:
                 inside, outside = outside, outside + side * 2 * error
-            for _ in range(40):
-                middle = (inside + outside) / 2
-                if self._distance(best, number, middle) < _CHI95:
-                    inside = middle
-                else:
-                    outside = middle
-            found.append((inside + outside) / 2)
+            is_within = beyond(outside) < 0
+            found.append(
+                outside if is_within else float(brentq(beyond, inside, outside, xtol=1e-7))
+            )
         return found[0], found[1]
 
 

@@ -89,7 +89,8 @@ def decode_sheet(content: bytes, where: str, needed: Sequence[str] = ()) -> Shee
     twice = [name for name, count in Counter(columns).items() if name and count > 1]
     if twice:
         raise InputError(f"{where}:{1 + skipped} has the column {quoted(twice[0])} twice; keep one")
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
+    # An open quotation mark would swallow the rows after it.
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
     rows: list[tuple[int, dict[str, str]]] = []
     try:
         next(reader, None)
@@ -118,7 +119,11 @@ def _check_cells(where: str, count: int) -> None:
 def _decoded(content: bytes, where: str) -> str:
     """Return the text of a file with Unix line ends and without a byte order mark."""
     head = content[:400]
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if content.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
+        raise InputError(f"{where} is a workbook of a spreadsheet; save its sheet as CSV UTF-8")
+    if content.startswith((b"\xff\xfe\0\0", b"\0\0\xfe\xff")):
+        encoding = "utf-32"
+    elif content.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
     elif b"\0" in head:
         # Of Latin letters in UTF-16, every second byte is 0.
