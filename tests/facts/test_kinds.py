@@ -1,5 +1,6 @@
 """Facts as files, other processes and code give them, and what they hold of."""
 
+import copy
 import pickle
 from typing import Any
 
@@ -9,7 +10,7 @@ import beliefnest as bn
 from beliefnest.belief.view import State
 from beliefnest.errors import InputError
 from beliefnest.facts.kinds import FactEntry
-from beliefnest.facts.reading import PlainScene, conditions_of, fact_entry, fact_in
+from beliefnest.facts.reading import PlainScene, conditions_of, fact_entry, fact_in, plain_entry
 from beliefnest.facts.states import StateFacts
 from beliefnest.world.values import Box
 
@@ -96,3 +97,20 @@ def test_a_fact_is_judged_and_written(
     assert (fact.instead(facts) is None) is is_expected
     assert fact_in(fact_entry(fact.written(), SCENE)) == fact
     assert all(fact.found(facts, str))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"container": (1, 1, 1), "items": {"apple": 1}},
+        {"agent": "ann", "at": None},
+        {"path": "/ann", "block": (2, 1, 2), "state": None},
+        {"sign": (1, 2, 3), "text": None},
+        {"agents": ("ann",), "sites": (((1, 1, 1),),)},
+    ],
+)
+def test_a_copied_fact_keeps_what_is_null_and_what_is_not_given(given: dict[str, Any]) -> None:
+    entry = plain_entry(given)
+    written = pickle.dumps(entry)
+    assert pickle.loads(written) == entry == copy.deepcopy(entry)
+    assert b"UNSET" not in written

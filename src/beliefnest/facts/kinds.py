@@ -86,6 +86,11 @@ class FactEntry(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_de
         note("Levers of each site; one site is enough.", "[[block]]"),
     ] = ()
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Learners copy environments by cloudpickle, which looks for a value that pickles as a bare
+        # name, as msgspec's UNSET does, in every module.
+        return msgspec.convert, (msgspec.to_builtins(self), FactEntry)
+
 
 @dataclass(frozen=True, slots=True)
 class Pursuit:
