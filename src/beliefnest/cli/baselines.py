@@ -1,7 +1,5 @@
 """`beliefnest play --baselines`: a table of tasks by policies, and its Markdown page."""
 
-import json
-import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
@@ -10,10 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich import box
-from rich.table import Table
-
-from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.console import print_report, progress_on, result_table
 from beliefnest.cli.options import PlayOptions
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.shortcuts import CHANCE, rules_of, trained_rule
@@ -75,11 +70,11 @@ def run_baselines(options: PlayOptions) -> int:
     if options.page is not None:
         _draw(names, found, options.page.parent / "img")
         replace_file(options.page, page_of(names, found, options.seeds))
-    if options.json:
-        content = {"seeds": options.seeds, "baselines": found}
-        sys.stdout.write(json.dumps(content, indent=2) + "\n")
-    else:
-        _print(found)
+    table = result_table(*_COLUMNS, title="baselines")
+    for each in found:
+        table.add_row(*_cells(each))
+    content = {"seeds": options.seeds, "baselines": found}
+    print_report(content, [table], as_json=options.json)
     tasks = [Task.load(name) for name in names]
     hidden = {task.name for task in tasks if not task.form.goals_known}
     # A task without instances has one only, which a rule wins or not.
@@ -252,12 +247,3 @@ def _rule_lines(found: Sequence[Group]) -> Iterator[str]:
 
 def _rate(found: Group) -> str:
     return f"{found['right']}/{found['judged']} ({found['low']:.2f} to {found['high']:.2f})"
-
-
-def _print(found: Sequence[Group]) -> None:
-    table = Table(title="baselines", title_justify="left", box=box.SIMPLE_HEAVY)
-    for column in _COLUMNS:
-        table.add_column(column)
-    for each in found:
-        table.add_row(*_cells(each))
-    print_table(stdout(), table)

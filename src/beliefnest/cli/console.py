@@ -1,21 +1,27 @@
 """Consoles of the commands: results go to stdout, progress goes to stderr."""
 
+import json
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from rich.box import SIMPLE_HEAVY
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, RenderableType
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.segment import Segment
 from rich.table import Column, Table
+from rich.text import Text
 
 from beliefnest.cli.terminal_text import printable
 
 if TYPE_CHECKING:  # Importing nests takes long, and many commands need none.
     from beliefnest.nest.acting.script import OnProgress
+
+ReportPart = Table | Text | str
+"""ReportPart of a report: a table, words to wrap, or a line to leave whole."""
 
 _PLAIN_WIDTH = 140
 _PIPE_WIDTH = 280
@@ -61,6 +67,43 @@ def folded(table: Table) -> Table:
 
 def _shown(cell: RenderableType) -> RenderableType:
     return printable(cell) if isinstance(cell, str) else cell
+
+
+def result_table(*headings: str, title: str | None = None, right: Collection[str] = ()) -> Table:
+    """Return a table without rows, with the look of all reports.
+
+    Args:
+        headings: Headings of the columns.
+        title: Title above the table; None: no title.
+        right: Headings of the columns of numbers, which are aligned at the right.
+    """
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAVY)
+    for heading in headings:
+        table.add_column(heading, justify="right" if heading in right else "left")
+    return table
+
+
+def report_text(parts: Iterable[ReportPart]) -> str:
+    """Return a report as text for stdout.
+
+    Args:
+        parts: Its parts; texts are no markup.
+    """
+    console = stdout()
+    with console.capture() as captured:
+        for part in parts:
+            if isinstance(part, Table):
+                print_table(console, part)
+            elif isinstance(part, Text):
+                console.print(part)
+            else:
+                console.print(part, markup=False, emoji=False, highlight=False, soft_wrap=True)
+    return captured.get()
+
+
+def print_report(found: object, parts: Iterable[ReportPart], *, as_json: bool) -> None:
+    """Print results: as a JSON value, or as a report (see `report_text`)."""
+    sys.stdout.write(json.dumps(found, indent=2) + "\n" if as_json else report_text(parts))
 
 
 def print_table(console: Console, table: Table) -> None:

@@ -1,17 +1,15 @@
 """`beliefnest suite food-trucks`: films acted out and judged, beside the judgments of people."""
 
-import json
 import math
 import sys
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from rich import box
 from rich.table import Table
 
-from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.locking import holding
@@ -64,10 +62,7 @@ def run_films(options: SuiteOptions, rows: Collection[int] | None) -> int:
         judged = _judge_all(films, parameters)
         report = _report(options, judged, parameters)
         report["files"] = _write(folder, options, judged)
-    if options.json:
-        sys.stdout.write(json.dumps(report, indent=2) + "\n")
-    else:
-        _print(options, judged, report)
+    print_report(report, _parts(judged, report), as_json=options.json)
     return 0
 
 
@@ -256,49 +251,41 @@ def _coefficient(pairs: JudgesAgreement, seed: int) -> str:
     return ", ".join(told).replace("-", "\u2212")
 
 
-def _print(
-    options: SuiteOptions,
-    judged: Mapping[Lesion | None, Sequence[Judgment]],
-    report: Mapping[str, Any],
-) -> None:
-    console = stdout()
+def _parts(
+    judged: Mapping[Lesion | None, Sequence[Judgment]], report: Mapping[str, Any]
+) -> Iterator[ReportPart]:
     title = f"{FILMS}: {report['films']} films, {report['scored']} of them scored"
     if report["correlations"]["model"]:
-        table = _table(title, "model")
+        table = _table(title, "model", *_NUMBERS, _PUBLISHED)
         for lesion in _MODELS:
             _add(table, _WORDS[lesion], report["correlations"][_key(lesion)])
-        print_table(console, table)
+        yield table
         if report["groups"]:
-            table = _table("inverse planning, by group of films", "group", published=False)
+            table = _table("inverse planning, by group of films", "group", *_NUMBERS)
             for group, found in report["groups"].items():
                 told = f"{group} ({found['films']} films)"
                 _add(table, told, found["correlations"], published=False)
-            print_table(console, table)
+            yield table
     else:
-        console.print(f"{title}; people judged none of them", markup=False)
+        yield f"{title}; people judged none of them"
     alone = [each for each in judged[None] if not each.film.people]
     if alone:
-        print_table(console, _alone(alone))
+        yield _alone(alone)
     for name, step in report["impossible"].items():
-        console.print(f"film {name} is left out: {step}", markup=False, soft_wrap=True)
+        yield f"film {name} is left out: {step}"
     for name, grid in report["coarser_grids"].items():
-        console.print(
-            f"film {name}: credences are multiples of 1/{grid}; finer ones do not fit into memory",
-            markup=False,
-            soft_wrap=True,
+        yield (
+            f"film {name}: credences are multiples of 1/{grid}; finer ones do not fit into memory"
         )
-    console.print(f"files: {', '.join(report['files'])}", markup=False, soft_wrap=True)
+    yield f"files: {', '.join(report['files'])}"
 
 
-def _table(title: str, heading: str, *, published: bool = True) -> Table:
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAVY)
-    table.add_column(heading)
-    table.add_column("judgments of")
-    for name in ("n", "r", "95 % interval"):
-        table.add_column(name, justify="right")
-    if published:
-        table.add_column("published, experiment 1", justify="right")
-    return table
+_NUMBERS = ("n", "r", "95 % interval")
+_PUBLISHED = "published, experiment 1"
+
+
+def _table(title: str, heading: str, *numbers: str) -> Table:
+    return result_table(heading, "judgments of", *numbers, title=title, right=numbers)
 
 
 def _add(table: Table, name: str, found: Mapping[str, Any], *, published: bool = True) -> None:
@@ -312,12 +299,8 @@ def _add(table: Table, name: str, found: Mapping[str, Any], *, published: bool =
 
 def _alone(judgments: Sequence[Judgment]) -> Table:
     """Return the model's judgments of films that people did not judge."""
-    table = Table(title="films without judgments of people", title_justify="left")
-    table.box = box.SIMPLE_HEAVY
-    table.add_column("film")
     shown: list[JudgedPart] = [a for a in ABOUT if any(a in each.model for each in judgments)]
-    for about in shown:
-        table.add_column(about)
+    table = result_table("film", *shown, title="films without judgments of people")
     for each in judgments:
         cells = [_means(each, about) for about in shown]
         table.add_row(_film_text(each.film), *cells)

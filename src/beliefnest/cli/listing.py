@@ -1,12 +1,8 @@
 """`beliefnest list`: names of installed scenarios, tasks, suites, templates and the like."""
 
-import json
-import sys
+from rich.text import Text
 
-from rich import box
-from rich.table import Table
-
-from beliefnest.cli.console import print_table, stdout
+from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.terminal_text import say
 from beliefnest.episodes.tasks import builtin_tasks
 from beliefnest.llm.resolve import model_names
@@ -21,34 +17,26 @@ from beliefnest.worlds.servers.address import SCHEME
 def print_installed(*, as_json: bool) -> None:
     """Print all names that commands accept, by kind."""
     scenarios = [builtin_outline(name) for name in builtin_names()]
-    if as_json:
-        content = {
-            "scenarios": [
-                {
-                    "name": scenario.name,
-                    "description": scenario.description,
-                    "conditions": {str(n): text for n, text in scenario.conditions.items()},
-                }
-                for scenario in scenarios
-            ],
-            "tasks": list(builtin_tasks()),
-            "suites": list(SUITES),
-            "templates": list(BUILT_IN_TEMPLATES),
-            "worlds": list(WORLDS),
-            "models": list(model_names()),
-        }
-        sys.stdout.write(json.dumps(content, indent=2) + "\n")
-        return
-    table = Table(box=box.SIMPLE_HEAVY)
-    table.add_column("scenario", no_wrap=True)
-    table.add_column("condition", justify="right")
-    table.add_column("about")
+    content = {
+        "scenarios": [
+            {
+                "name": scenario.name,
+                "description": scenario.description,
+                "conditions": {str(n): text for n, text in scenario.conditions.items()},
+            }
+            for scenario in scenarios
+        ],
+        "tasks": list(builtin_tasks()),
+        "suites": list(SUITES),
+        "templates": list(BUILT_IN_TEMPLATES),
+        "worlds": list(WORLDS),
+        "models": list(model_names()),
+    }
+    table = result_table("scenario", "condition", "about", right=("condition",))
     for scenario in scenarios:
         table.add_row(scenario.name, "", scenario.description)
         for number, text in scenario.conditions.items():
             table.add_row("", str(number), text)
-    console = stdout()
-    print_table(console, table)
     further = {
         "tasks": builtin_tasks(),
         "suites": SUITES,
@@ -56,8 +44,8 @@ def print_installed(*, as_json: bool) -> None:
         "worlds": (*WORLDS, f"{SCHEME}://HOST:PORT"),
         "models": model_names(),
     }
-    for what, names in further.items():
-        console.print(f"{what}: {', '.join(names)}", highlight=False)
+    lines = (Text(f"{what}: {', '.join(names)}") for what, names in further.items())
+    print_report(content, [table, *lines], as_json=as_json)
 
 
 def print_template(name: str | None) -> None:

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from rich import box
 from rich.table import Table
 
+from beliefnest.cli.console import result_table
 from beliefnest.cli.report import cost_text, count_outcomes
 from beliefnest.scenarios.judging import unanswered_words
 from beliefnest.scenarios.scoring import wilson_interval
@@ -94,16 +94,11 @@ def scores_json(scores: Sequence[ConditionScore]) -> list[dict[str, object]]:
 
 def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
     """Return a table with one row for each condition and model."""
-    table = Table(title=name, title_justify="left", box=box.SIMPLE_HEAVY)
-    table.add_column("condition", justify="right")
-    table.add_column("model")
-    for heading in ("passed", "rate", "95 % interval"):
-        table.add_column(heading, justify="right")
     words = [unanswered_words(score.outcomes) for score in scores]
-    if any(words):
-        table.add_column("not answered")
-    for heading in ("tokens", "cost", "seconds"):
-        table.add_column(heading, justify="right")
+    unanswered = ["not answered"] if any(words) else []
+    numbers = ("condition", "passed", "rate", "95 % interval", "tokens", "cost", "seconds")
+    headings = (*numbers[:1], "model", *numbers[1:4], *unanswered, *numbers[4:])
+    table = result_table(*headings, title=name, right=numbers)
     for score, told in zip(scores, words, strict=True):
         low, high = score.interval or (0.0, 1.0)
         table.add_row(

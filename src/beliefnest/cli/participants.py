@@ -1,13 +1,10 @@
 """`beliefnest participants`: the page of a study for people, and the way back of their answers."""
 
-import json
-import sys
 from typing import Any
 
-from beliefnest.cli.console import progress_on
+from beliefnest.cli.console import print_report, progress_on
 from beliefnest.cli.options import ParticipantsOptions
 from beliefnest.cli.study import write_files
-from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError
 from beliefnest.studies.study import Study
 from beliefnest.world.words import counted, listed
@@ -25,10 +22,7 @@ def run_participants(options: ParticipantsOptions) -> None:
     for name in (name for name, value in given.items() if value and not options.read):
         raise InputError(f"--{name} belongs to reading answers; give their files with --read")
     told, lines = _read(options) if options.read else _written(options)
-    if options.json:
-        sys.stdout.write(json.dumps(told, indent=2) + "\n")
-    else:
-        sys.stdout.write("".join(f"{printable(line)}\n" for line in lines))
+    print_report(told, lines, as_json=options.json)
 
 
 def _written(options: ParticipantsOptions) -> tuple[dict[str, Any], list[str]]:

@@ -1,18 +1,15 @@
 """`beliefnest play`: play a task with policies, round after round."""
 
 import json
-import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-from rich import box
-from rich.table import Table
 from rich.text import Text
 
-from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table, stdout
 from beliefnest.cli.options import PlayOptions, joining_address
 from beliefnest.cli.terminal_text import printable
 from beliefnest.episodes.considered import considered_lines
@@ -72,10 +69,7 @@ def play_task(options: PlayOptions) -> int:
         on_progress("over", limit, limit)
         report = _report(episode, options)
         lost = episode.model_errors
-    if options.json:
-        sys.stdout.write(json.dumps(report, indent=2) + "\n")
-    else:
-        _print(report)
+    print_report(report, _parts(report), as_json=options.json)
     if lost:
         raise ModelError(f"a model did not answer in {counted(len(lost), 'round')}: {lost[0]}")
     return 0 if report["success"] else 1
@@ -227,33 +221,29 @@ def _help(found: Help) -> dict[str, Any]:
     }
 
 
-def _print(report: Mapping[str, Any]) -> None:
-    table = Table(title=report["task"], title_justify="left", box=box.SIMPLE_HEAVY)
-    for heading in ("round", "agent", "program", "ended"):
-        table.add_column(heading, justify="right" if heading == "round" else "left")
+def _parts(report: Mapping[str, Any]) -> Iterator[ReportPart]:
+    headings = ("round", "agent", "program", "ended")
+    table = result_table(*headings, title=report["task"], right=("round",))
     for part in report["rounds"]:
         for agent, told in part["agents"].items():
             ended = (told["outcome"] or told["ended"]).replace("_", " ")
             cells = (str(part["round"]), agent, told["program"].strip(), ended)
             table.add_row(*(Text(printable(cell)) for cell in cells))
-    console = stdout()
-    print_table(console, table)
-    lines = list(_considered_lines(report["rounds"]))
-    lines += [f"failed in {failure}" for failure in report["measures"]["failures"]]
-    lines += _asked_lines(report["measures"])
-    lines += [_goal_line(each) for each in report["goal"]]
+    yield table
+    yield from _considered_lines(report["rounds"])
+    yield from (f"failed in {failure}" for failure in report["measures"]["failures"])
+    yield from _asked_lines(report["measures"])
+    yield from map(_goal_line, report["goal"])
     if "help" in report:
-        lines += _help_lines(report["help"], report["measures"])
+        yield from _help_lines(report["help"], report["measures"])
     measures = report["measures"]
     verdict = "reached" if report["success"] else "not reached"
     # Conditions have ticks of the world; the ticks of the goal count from the first round.
     start = f" of play, which began at tick {report['start']}" if report["start"] else ""
-    lines.append(
+    yield (
         f"goal {verdict} after {counted(measures['ticks'], 'tick')}{start}, "
         f"{counted(measures['rounds'], 'round')}, {counted(measures['messages'], 'message')}"
     )
-    for line in lines:
-        console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
 
 
 def _considered_lines(rounds: Sequence[Mapping[str, Any]]) -> Iterator[str]:

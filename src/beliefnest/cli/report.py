@@ -7,13 +7,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich import box
 from rich.console import Console
 from rich.markup import escape
 from rich.measure import Measurement
 from rich.table import Table
 
 from beliefnest.belief.plain import state_json
+from beliefnest.cli.console import result_table
 from beliefnest.cli.terminal_text import printable
 from beliefnest.facts.states import StateFacts
 from beliefnest.llm.messages import Usage
@@ -156,17 +156,12 @@ def outcome_table(rows: Sequence[OutcomeRow], console: Console) -> Table:
 
 def _wide_table(rows: Sequence[OutcomeRow]) -> Table:
     scenario = rows[0].scenario
-    table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
-    if scenario.conditions:
-        table.add_column("condition", justify="right")
-    for heading in _headings(rows):
-        table.add_column(heading)
-    table.add_column(f"as {scenario.reported_by or 'expected'}{_verb(scenario)}")
     asked = any(row.usage.requests for row in rows)
-    for heading in ("tokens", "cost") if asked else ():
-        table.add_column(heading, justify="right")
-    table.add_column("ticks", justify="right")
-    table.add_column("seconds", justify="right")
+    condition = ["condition"] if scenario.conditions else []
+    numbers = [*condition, *(("tokens", "cost") if asked else ()), "ticks", "seconds"]
+    verdict = f"as {scenario.reported_by or 'expected'}{_verb(scenario)}"
+    headings = (*condition, *_headings(rows), verdict, *numbers[len(condition) :])
+    table = result_table(*headings, title=scenario.name, right=numbers)
     for row in rows:
         cells = [str(row.scenario.condition)] if scenario.conditions else []
         cells += [row.cells.get(heading, "") for heading in _headings(rows)]
@@ -177,11 +172,11 @@ def _wide_table(rows: Sequence[OutcomeRow]) -> Table:
 
 def _tall_table(rows: Sequence[OutcomeRow]) -> Table:
     scenario = rows[0].scenario
-    table = Table(title=scenario.name, title_justify="left", box=box.SIMPLE_HEAVY)
-    table.add_column("condition" if scenario.conditions else "")
-    for row in rows:
-        number = row.scenario.condition
-        table.add_column("" if number is None else str(number))
+    numbers = (
+        "" if row.scenario.condition is None else str(row.scenario.condition) for row in rows
+    )
+    heading = "condition" if scenario.conditions else ""
+    table = result_table(heading, *numbers, title=scenario.name)
     for heading in _headings(rows):
         table.add_row(heading, *(row.cells.get(heading, "") for row in rows))
     verdicts = [_verdict(row) for row in rows]

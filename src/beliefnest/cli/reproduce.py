@@ -2,7 +2,6 @@
 
 import json
 import os
-import sys
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
@@ -10,10 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from rich import box
-from rich.table import Table
-
-from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.console import print_report, progress_on, result_table
 from beliefnest.errors import InputError
 from beliefnest.files import replace_file
 from beliefnest.studies.jobs import StudyProgress
@@ -101,11 +97,12 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
     about = f"{right} of {len(rows)} probes as expected, all conditions and copies, {seconds:.0f} s"
     if page is not None:
         _write_page(page, lines, about)
-    if as_json:
-        found = {"claims": lines, "rows": len(rows), "right": right, "seconds": round(seconds, 1)}
-        sys.stdout.write(json.dumps(found, indent=2) + "\n")
-    else:
-        _print(lines, about)
+    found = {"claims": lines, "rows": len(rows), "right": right, "seconds": round(seconds, 1)}
+    table = result_table(*_HEADINGS)
+    for line in lines:
+        table.add_row(*_cells(line))
+    commands = dict.fromkeys(line["command"] for line in lines)
+    print_report(found, [table, *commands, about], as_json=as_json)
     return 0 if right == len(rows) else 1
 
 
@@ -184,19 +181,6 @@ def _cells(line: Mapping[str, Any]) -> tuple[str, ...]:
         f"{line['seconds']:.1f} s",
         line["differs"],
     )
-
-
-def _print(lines: Sequence[Mapping[str, Any]], about: str) -> None:
-    table = Table(box=box.SIMPLE_HEAVY)
-    for heading in _HEADINGS:
-        table.add_column(heading)
-    for line in lines:
-        table.add_row(*_cells(line))
-    console = stdout()
-    print_table(console, table)
-    for line in dict.fromkeys(line["command"] for line in lines):
-        console.print(line, highlight=False)
-    console.print(about, highlight=False)
 
 
 def _write_page(page: Path, lines: Sequence[Mapping[str, Any]], about: str) -> None:

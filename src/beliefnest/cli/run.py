@@ -5,19 +5,18 @@ import math
 import os
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any, Literal
 
-from rich.console import Console
-from rich.table import Table
+from rich.text import Text
 
 from beliefnest.belief.kernels_ahead import kernels_ahead
 from beliefnest.cli.accounts import accounts
-from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.console import ReportPart, progress_on, report_text, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.options import RunOptions
@@ -26,7 +25,6 @@ from beliefnest.cli.report import OutcomeRow, outcome_json, outcome_table, repor
 from beliefnest.cli.run_cells import RunCell, plan_run_cells
 from beliefnest.cli.run_report import report_html
 from beliefnest.cli.streams import noted_warnings
-from beliefnest.cli.terminal_text import printable
 from beliefnest.cli.visits import check_visits, visited
 from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioError
 from beliefnest.files import replace_file
@@ -118,7 +116,9 @@ def _run_in(
         report["scores"] = scores_json(score_runs(run.results, run.failures))
         folder.write_report(report)
         folder.write_page(_page(report, options, first))
-    _print(run, cells, report, warned, as_json=options.json)
+    text = report_text(_parts(run, cells, warned))
+    folder.write_summary(text)
+    sys.stdout.write(json.dumps(report, indent=2) + "\n" if options.json else text)
     if run.failures:
         missing = len(cells) - len(run.results)
         raise ModelError(_failures_text(run.failures, missing, len(cells), folder))
@@ -307,29 +307,18 @@ def _failures_text(
     return f"{told}; run again with --out {folder.path} to go on; the first: {failures[0]['error']}"
 
 
-def _print(
-    run: _Run,
-    cells: Sequence[RunCell],
-    report: Mapping[str, object],
-    warned: Mapping[str, str],
-    *,
-    as_json: bool,
-) -> None:
-    console = stdout()
-    with console.capture() as captured:
-        for number, about in cells[0].scenario.conditions.items():
-            if any(cell.scenario.condition == number for cell in cells):
-                console.print(f"condition {number}: {printable(about)}", highlight=False)
-        print_table(console, _table(run, cells, console))
-        if _is_one_round(run, cells):
-            for line in (line for row in run.rows for line in row.notes):
-                console.print(printable(line), highlight=False, markup=False, soft_wrap=True)
-        for line in (*_unread(run.results), *warned.values()):
-            console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
-        console.print(f"recorded in {run.folder.path}", highlight=False, soft_wrap=True)
-    text = captured.get()
-    run.folder.write_summary(text)
-    sys.stdout.write(json.dumps(report, indent=2) + "\n" if as_json else text)
+def _parts(run: _Run, cells: Sequence[RunCell], warned: Mapping[str, str]) -> Iterator[ReportPart]:
+    for number, about in cells[0].scenario.conditions.items():
+        if any(cell.scenario.condition == number for cell in cells):
+            yield Text(f"condition {number}: {about}")
+    if _is_one_round(run, cells):
+        # The results of each condition, or scores if there are several models or repeats.
+        yield outcome_table(run.rows, stdout())
+        yield from (line for row in run.rows for line in row.notes)
+    else:
+        yield score_table(cells[0].scenario.name, score_runs(run.results, run.failures))
+    yield from (*_unread(run.results), *warned.values())
+    yield f"recorded in {run.folder.path}"
 
 
 def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -343,13 +332,6 @@ def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
         f"{count} of {asked} utterances could not be read for claims, and claim nothing; "
         f"the first: {failed[0]['first']}"
     ]
-
-
-def _table(run: _Run, cells: Sequence[RunCell], console: Console) -> Table:
-    """Return the findings of each condition, or scores if there are several models or repeats."""
-    if _is_one_round(run, cells):
-        return outcome_table(run.rows, console)
-    return score_table(cells[0].scenario.name, score_runs(run.results, run.failures))
 
 
 def _is_one_round(run: _Run, cells: Sequence[RunCell]) -> bool:

@@ -1,16 +1,13 @@
 """`beliefnest stats` and `beliefnest power`: statistics of a study, and of studies to come."""
 
-import json
-import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table
 from beliefnest.cli.options import PowerOptions, StatsOptions
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError
@@ -51,12 +48,10 @@ def run_stats(options: StatsOptions) -> int:
         found["positions"] = result.counted_positions(result.checked(by or result.position_groups))
     if options.figure is not None:
         _draw(result, options.figure, by)
-    if options.json:
-        sys.stdout.write(json.dumps(found, indent=2) + "\n")
-    else:
-        _print(found, options.by or list(result.groups))
-    if options.figure is not None and not options.json:
-        stdout().print(f"figure: {printable(str(options.figure))}", highlight=False, soft_wrap=True)
+    parts = [*_parts(found, options.by or list(result.groups))]
+    if options.figure is not None:
+        parts.append(f"figure: {options.figure}")
+    print_report(found, parts, as_json=options.json)
     return 0
 
 
@@ -83,54 +78,57 @@ def _fits(result: StudyResult, options: StatsOptions) -> list[dict[str, Any]]:
     return [{**values, **fitted.plain()} for values, fitted in fits]
 
 
-def _print(found: Mapping[str, Any], by: Sequence[str]) -> None:
+def _parts(found: Mapping[str, Any], by: Sequence[str]) -> Iterator[ReportPart]:
     shown = ["variations", "judged", "right", "accuracy", "low", "high", "interval"]
     if any(group["chance"] is not None for group in found["summary"]):
         shown.append("chance")
     shown += [name for name in LOST if any(group[name] for group in found["summary"])]
-    _show("accuracy, with 95 % intervals", found["summary"], (*by, *shown))
+    yield from _shown("accuracy, with 95 % intervals", found["summary"], (*by, *shown))
     for column, pairs in found.get("differences", {}).items():
-        _show(f"paired differences of accuracy: {column}", pairs)
+        yield from _shown(f"paired differences of accuracy: {column}", pairs)
     alone = [found["regression"]] if "regression" in found else []
     for told in found.get("regressions", alone):
-        _print_regression(told, [f"{name} {told[name]}" for name in by] if not alone else [])
+        yield from _regression_parts(
+            told, [f"{name} {told[name]}" for name in by] if not alone else []
+        )
     if "positions" in found:
-        _show("options chosen, by position of the right one", found["positions"])
+        yield from _shown("options chosen, by position of the right one", found["positions"])
 
 
-def _print_regression(told: Mapping[str, Any], group: Sequence[str]) -> None:
+def _regression_parts(told: Mapping[str, Any], group: Sequence[str]) -> Iterator[ReportPart]:
     counts = f"{told['rows']} rows, {counted(told['variations'], 'variation')}"
     references = ", ".join(f"{name} {level}" for name, level in told["references"].items())
     within = f" with {', '.join(group)}" if group else ""
     title = f"regression of right answers{within}: {counts}; reference {references}"
-    _show(title, told["terms"])
-    console = stdout()
+    yield from _shown(title, told["terms"])
     for name in ("correlation", "intercept_sd"):
         if told.get(name) is not None:
-            console.print(f"{name.replace('_', ' ')}: {told[name]:.3g}", highlight=False)
+            yield f"{name.replace('_', ' ')}: {told[name]:.3g}"
     if told["sound"]:
-        console.print(told["method"], highlight=False, soft_wrap=True)
+        yield told["method"]
         return
-    for line in (title, f"not sound, so without coefficients: {told['note']}"):
-        console.print(escape(printable(line)), highlight=False, soft_wrap=True)
+    yield from (title, f"not sound, so without coefficients: {told['note']}")
     other = told["substitute"]
     if other is not None:
-        _show("in its place", other["terms"])
-        console.print(escape(other["method"]), highlight=False, soft_wrap=True)
-    _show("accuracy at each combination of levels, with 95 % intervals", told["counts"])
+        yield from _shown("in its place", other["terms"])
+        yield other["method"]
+    yield from _shown("accuracy at each combination of levels, with 95 % intervals", told["counts"])
 
 
-def _show(title: str, rows: _Rows, columns: Sequence[str] | None = None) -> None:
+def _shown(title: str, rows: _Rows, columns: Sequence[str] | None = None) -> Iterator[Table]:
+    """Yield a table of rows; nothing if there are none."""
     if not rows:
         return
-    table = Table(box=box.SIMPLE_HEAVY, title=escape(title), title_justify="left")
-    names = list(columns or rows[0])
-    for name in names:
-        numbers = all(isinstance(row[name], int | float | None) for row in rows)
-        table.add_column(name.replace("_", " "), justify="right" if numbers else "left")
+    names = {name: name.replace("_", " ") for name in columns or rows[0]}
+    numbers = [
+        heading
+        for name, heading in names.items()
+        if all(isinstance(row[name], int | float | None) for row in rows)
+    ]
+    table = result_table(*names.values(), title=escape(title), right=numbers)
     for row in rows:
         table.add_row(*(_cell(name, row[name]) for name in names))
-    print_table(stdout(), table)
+    yield table
 
 
 _SHARES = (
@@ -170,17 +168,16 @@ def run_power(options: PowerOptions) -> int:
             on_progress("simulating", done, total)
 
         rows = power_rows(sources, options.size or SIZES, options.simulations, options.seed, told)
-    if options.json:
-        sys.stdout.write(json.dumps(rows, indent=2) + "\n")
-        return 0
+    print_report(rows, _power_parts(rows, options.simulations), as_json=options.json)
+    return 0
+
+
+def _power_parts(rows: _Rows, simulations: int) -> Iterator[ReportPart]:
     for title, measure in (("accuracies", "width"), ("paired differences", "difference_width")):
         own = [row for row in rows if row[measure] is not None]
-        _show(f"{title}, {options.simulations} simulated studies each", own, _POWER[measure])
-    console = stdout()
-    notes = dict.fromkeys(f"{row['of']}: {row['note']}" for row in rows if row["note"])
-    for line in (*map(escape, map(printable, notes)), *_NOTES):
-        console.print(line, highlight=False, soft_wrap=True)
-    return 0
+        yield from _shown(f"{title}, {simulations} simulated studies each", own, _POWER[measure])
+    yield from dict.fromkeys(f"{row['of']}: {row['note']}" for row in rows if row["note"])
+    yield from _NOTES
 
 
 _POWER = {

@@ -9,10 +9,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from rich import box
 from rich.table import Table
 
-from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table
 from beliefnest.cli.options import StudyOptions
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.streams import noted_warnings
@@ -79,10 +78,7 @@ def run_study(options: StudyOptions) -> int:
             raise
     by = options.by or result.groups
     write_files(result, by)
-    if options.json:
-        sys.stdout.write(json.dumps(_report(result, by), indent=2) + "\n")
-    else:
-        _print(result, by, warned)
+    print_report(_report(result, by), _parts(result, by, warned), as_json=options.json)
     return _status(result)
 
 
@@ -123,21 +119,20 @@ def _report(result: StudyResult, by: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _print(result: StudyResult, by: Sequence[str], warned: Mapping[str, str]) -> None:
-    console = stdout()
-    print_table(console, _table(by, result.counted(by)))
+def _parts(
+    result: StudyResult, by: Sequence[str], warned: Mapping[str, str]
+) -> Iterator[ReportPart]:
+    yield _table(by, result.counted(by))
     told = [f"no answer: {why}" for why in dict.fromkeys(result.failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]
     told += [*_lost_rounds(result.rows), *_not_read(result.rows), *warned.values()]
-    for line in told[:_MOST_TOLD]:
-        console.print(printable(line), markup=False, highlight=False, soft_wrap=True)
+    yield from told[:_MOST_TOLD]
     if len(told) > _MOST_TOLD:
-        console.print(f"and {len(told) - _MOST_TOLD} more", highlight=False)
+        yield f"and {len(told) - _MOST_TOLD} more"
     copies = sum(row["copy_of"] is not None for row in result.rows)
     if copies:
-        console.print(text_of_copies(copies), highlight=False, soft_wrap=True)
-    page = result.folder.path / "study.html"
-    console.print(f"all rows, intervals and differences: {page}", highlight=False, soft_wrap=True)
+        yield text_of_copies(copies)
+    yield f"all rows, intervals and differences: {result.folder.path / 'study.html'}"
 
 
 def _lost_rounds(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
@@ -173,11 +168,8 @@ def _invalid_text(invalid: Mapping[str, Any]) -> str:
 
 
 def _table(by: Sequence[str], groups: Sequence[Mapping[str, Any]]) -> Table:
-    table = Table(box=box.SIMPLE_HEAVY)
-    for heading in by:
-        table.add_column(heading)
-    for heading in ("variations", "right", "accuracy", "95 % interval", "not ok", "tokens", "cost"):
-        table.add_column(heading, justify="right")
+    numbers = ("variations", "right", "accuracy", "95 % interval", "not ok", "tokens", "cost")
+    table = result_table(*by, *numbers, right=numbers)
     for group in groups:
         counts = [(name, group[name]) for name in OUTCOMES[1:] if group[name]]
         faults = [f"{count} {name.replace('_', ' ')}" for name, count in counts]

@@ -1,18 +1,13 @@
 """`beliefnest suite`: answer all questions of a file from nests, and print the scores."""
 
-import json
 import os
 import re
-import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rich import box
-from rich.table import Table
-
-from beliefnest.cli.console import print_table, progress_on, stdout
+from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table
 from beliefnest.cli.films import run_films
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, UnknownNameError
@@ -66,10 +61,8 @@ def run_suite(options: SuiteOptions) -> int:
     started = time.perf_counter()
     judged = _answer(stories, options)
     report = _report(options, stories, found.unread, judged, time.perf_counter() - started)
-    if options.json:
-        sys.stdout.write(json.dumps(report, indent=2) + "\n")
-    else:
-        _print(options, stories, found.unread, judged)
+    parts = _parts(options, stories, found.unread, judged)
+    print_report(report, parts, as_json=options.json)
     return 0 if all(each.ok for each in judged) and not found.unread else 1
 
 
@@ -195,17 +188,15 @@ def _miss_json(judged: JudgedAnswer) -> dict[str, object]:
     }
 
 
-def _print(
+def _parts(
     options: SuiteOptions,
     stories: Sequence[StoryItems],
     not_read: Sequence[Unread],
     judged: Sequence[JudgedAnswer],
-) -> None:
+) -> Iterator[ReportPart]:
     title = f"{options.name}: {len(stories)} stories in the {options.world} world"
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAVY)
-    table.add_column("claims")
-    for heading in ("order", "questions", "right", "first believer matters", "right"):
-        table.add_column(heading, justify="right")
+    numbers = ("order", "questions", "right", "first believer matters", "right")
+    table = result_table("claims", *numbers, title=title, right=numbers)
     for tells, word in ((False, "none"), (True, "some")):
         part = _telling(judged, tells=tells)
         matters = _needs_first(part)
@@ -214,30 +205,23 @@ def _print(
             table.add_row(word, str(order), *cells)
     total = score(each for each in judged if each.needs_first)
     table.add_row("all", "all", *_cells(score(judged)), *_cells(total))
-    console = stdout()
-    print_table(console, table)
+    yield table
     if not_read:
         count = counted(sum(each.questions for each in not_read), "question")
-        console.print(f"not read and not counted: {count}")
-    for line in (line for each in not_read for line in each.lines):
-        console.print(f"    {line}", markup=False, highlight=False, soft_wrap=True)
-    for note in _notes(stories):
-        console.print(note, markup=False, highlight=False, soft_wrap=True)
+        yield f"not read and not counted: {count}"
+    yield from (f"    {line}" for each in not_read for line in each.lines)
+    yield from _notes(stories)
     unread = {each.item.row: each.unread for each in judged if each.unread is not None}
     for row, error in [*unread.items()][:1]:
-        console.print(
+        yield (
             f"{len(unread)} stories have utterances that could not be read for claims; "
-            f"the first, row {row}: {error}",
-            markup=False,
-            soft_wrap=True,
+            f"the first, row {row}: {error}"
         )
     for each in judged:
         if not each.ok:
-            console.print(f"row {each.item.row}: {each.item.question.text}", markup=False)
-            if each.data_fault is not None:
-                console.print(f"    {each.data_fault}", markup=False, soft_wrap=True)
-            for line in each.explanation:
-                console.print(f"    {line}", markup=False, highlight=False, soft_wrap=True)
+            yield f"row {each.item.row}: {each.item.question.text}"
+            faults = [] if each.data_fault is None else [each.data_fault]
+            yield from (f"    {line}" for line in (*faults, *each.explanation))
 
 
 def _cells(found: Score) -> tuple[str, str]:

@@ -2,14 +2,13 @@
 
 import contextlib
 import io
-import json
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from beliefnest.cli.console import progress_on
+from beliefnest.cli.console import print_report, progress_on
 from beliefnest.cli.options import RunOptions
 from beliefnest.cli.run import run_scenarios
 from beliefnest.cli.terminal_text import printable
@@ -87,10 +86,8 @@ def reproduce_supplement(supplement: Path, jobs: int, *, trust: bool, as_json: b
                 found = reproduce_study(folder, again, jobs, told, trust=trust)
         differences = [*damaged, *found.differences]
     other = _other_versions(result.plan["versions"])
-    if as_json:
-        sys.stdout.write(json.dumps(_report(found, differences, other), indent=2) + "\n")
-    else:
-        sys.stdout.write(printable("\n".join(_lines(found, differences, other))) + "\n")
+    lines = _lines(found, differences, other)
+    print_report(_report(found, differences, other), lines, as_json=as_json)
     return 1 if differences else 0
 
 
