@@ -35,7 +35,7 @@ from beliefnest.worlds.scripted.hand import REACH
 
 _KEY = "instances"
 _MOST_DRAWS = 2_000
-"""Height above the feet that is in the cell in which an agent stands, also on slabs."""
+"""Most draws for one instance; if none keeps the rules, that is an error."""
 _NEAR = 2
 """Cells around a line of sight whose blocks may hide something on it."""
 

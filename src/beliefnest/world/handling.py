@@ -21,18 +21,10 @@ _FORMAT = 1
 _SIDES = ((0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1), (-1, 0, 0), (1, 0, 0))
 _HALF_WIDTH, _HEIGHT = 0.3, 1.8
 _NEEDS_HOLDER = (
-    "lever",
-    "torch",
-    "ladder",
-    "_button",
-    "_carpet",
-    "_sign",
-    "_plate",
-    "_wire",
-    "rail",
+    *("lever", "torch", "ladder", "_button", "_carpet"),
+    *("_sign", "_plate", "_wire", "rail"),
 )
-
-"""Function that returns the block state at a position; air outside the world."""
+"""Ends of the names of blocks that need another block beside or below them."""
 
 
 class _Breaking(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -11,7 +11,7 @@ from beliefnest.viewer.page import runs
 from beliefnest.viewer.page.blocks import BlockPalette
 from beliefnest.viewer.page.pose_history import PoseBook
 from beliefnest.viewer.page.run import About, RunData
-from beliefnest.viewer.page.runs import numbers_text, text_numbers
+from beliefnest.viewer.page.runs import numbers_text
 from beliefnest.viewer.page.tracks import CURRENT, PLACED, STALE, UNKNOWN, Track, TrackRecorder
 from beliefnest.world import terrain
 from beliefnest.world.paths import paths_below
@@ -140,6 +140,19 @@ def test_what_an_act_shows_is_current_in_its_tick_alone(quiet: int) -> None:
     (rows,) = recorder.tracks[0].contents.values()
     opened = [row[:4] for row in rows if row[0]]
     assert opened == [[1, {}, True, True], [2, {}, True, False]]
+
+
+def text_numbers(text: str) -> list[int]:
+    """Return the numbers of a text, as the page reads them."""
+    numbers, value, shift = [], 0, 0
+    for letter in text.encode("ascii"):
+        code = runs._DIGITS.index(letter)
+        value |= (code & (2**runs._BITS - 1)) << shift
+        shift += runs._BITS
+        if code < 2**runs._BITS:
+            numbers.append(value)
+            value = shift = 0
+    return numbers
 
 
 def put_runs(grid, text, first) -> None:

@@ -37,19 +37,6 @@ def numbers_text(numbers: Sequence[int] | npt.NDArray[np.int64]) -> str:
     return letters.decode("ascii")
 
 
-def text_numbers(text: str) -> list[int]:
-    """Return the numbers of a text."""
-    numbers, value, shift = [], 0, 0
-    for letter in text.encode("ascii"):
-        code = _DIGITS.index(letter)
-        value |= (code & (2**_BITS - 1)) << shift
-        shift += _BITS
-        if code < 2**_BITS:
-            numbers.append(value)
-            value = shift = 0
-    return numbers
-
-
 def runs_text(
     cells: npt.NDArray[np.int64],
     states: npt.NDArray[np.int16],

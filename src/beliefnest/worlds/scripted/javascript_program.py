@@ -30,23 +30,9 @@ _INTRICATE = "the program is too intricate to be read; write it in simpler parts
 _ELSEWHERE = 'open the nest with world="embedded" for that'
 _HAS: Mapping[str, tuple[str, ...]] = {
     "bot": (
-        "username",
-        "entity",
-        "entities",
-        "players",
-        "inventory",
-        "health",
-        "food",
-        "blockAt",
-        "chat",
-        "whisper",
-        "openContainer",
-        "openChest",
-        "closeWindow",
-        "waitForTicks",
-        "on",
-        "once",
-        "off",
+        *("username", "entity", "entities", "players", "inventory", "health", "food", "blockAt"),
+        *("chat", "whisper", "openContainer", "openChest", "closeWindow", "waitForTicks"),
+        *("on", "once", "off"),
     ),
     "entity": ("type", "name", "username", "position", "yaw", "pitch", "height"),
 }
