@@ -1,15 +1,14 @@
 """`beliefnest play --baselines`: a table of tasks by policies, and its Markdown page."""
 
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
 from datetime import date
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from beliefnest.cli.console import print_report, progress_on, result_table
+from beliefnest.cli.console import print_report, result_table
 from beliefnest.cli.options import PlayOptions
+from beliefnest.cli.study import played
 from beliefnest.episodes.episode import Episode
 from beliefnest.episodes.shortcuts import CHANCE, rules_of, trained_rule
 from beliefnest.episodes.task import Task
@@ -17,7 +16,6 @@ from beliefnest.episodes.tasks import parameters_of, source_of
 from beliefnest.errors import InputError, ModelError
 from beliefnest.files import replace_file, replacing
 from beliefnest.studies.accuracy_figure import plot_accuracy
-from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
 from beliefnest.version import VERSION
 
@@ -31,9 +29,6 @@ _TRAINED, _TRAINING = 10_000, 6
 """First instance on which linear rules are tried, apart from those of the table; their number."""
 _SHORTCUT = 0.5
 """Success above which a rule without beliefs is a shortcut, if its whole interval lies above."""
-
-_REPORTS = 20
-"""Number of progress lines if stderr is not a terminal."""
 
 _COLUMNS = ("task", "order", "policy", "success", "95 %", "ticks", "messages", "false beliefs")
 
@@ -112,19 +107,8 @@ def _hides_goals(name: str) -> bool:
 
 def _summary(study: Study, options: PlayOptions, part: str) -> list[dict[str, Any]]:
     """Return the summary of one study, in a folder of its own."""
-    with ExitStack() as stack:
-        out = options.out
-        if out is None:
-            out = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        folder = out / part
-        on_progress = stack.enter_context(progress_on("baselines"))
-        step = max(1, len(study.plan().cells) // _REPORTS)
-
-        def told(progress: StudyProgress) -> None:
-            if progress.done % step == 0 or progress.done == progress.total:
-                on_progress("playing", progress.done, progress.total)
-
-        result = study.run(folder, options.jobs, on_progress=told)
+    folder = None if options.out is None else options.out / part
+    with played(study, "baselines", options.jobs, folder) as result:
         failed = [row["why_not"] for row in result.rows if row["outcome"] == "error"]
         if failed:
             raise ModelError(f"{len(failed)} episodes have no result; the first: {failed[0]}")

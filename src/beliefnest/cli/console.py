@@ -20,8 +20,8 @@ from beliefnest.cli.terminal_text import printable
 if TYPE_CHECKING:  # Importing nests takes long, and many commands need none.
     from beliefnest.nest.acting.script import OnProgress
 
-ReportPart = Table | Text | str
-"""ReportPart of a report: a table, words to wrap, or a line to leave whole."""
+Printed = Table | Text | str
+"""Part of a report: a table, words to wrap, or a line to leave whole."""
 
 _PLAIN_WIDTH = 140
 _PIPE_WIDTH = 280
@@ -83,7 +83,7 @@ def result_table(*headings: str, title: str | None = None, right: Collection[str
     return table
 
 
-def report_text(parts: Iterable[ReportPart]) -> str:
+def report_text(parts: Iterable[Printed]) -> str:
     """Return a report as text for stdout.
 
     Args:
@@ -101,7 +101,7 @@ def report_text(parts: Iterable[ReportPart]) -> str:
     return captured.get()
 
 
-def print_report(found: object, parts: Iterable[ReportPart], *, as_json: bool) -> None:
+def print_report(found: object, parts: Iterable[Printed], *, as_json: bool) -> None:
     """Print results: as a JSON value, or as a report (see `report_text`)."""
     sys.stdout.write(json.dumps(found, indent=2) + "\n" if as_json else report_text(parts))
 

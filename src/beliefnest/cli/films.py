@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.table import Table
 
-from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table
+from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, MissingExtraError
 from beliefnest.locking import holding
@@ -253,7 +253,7 @@ def _coefficient(pairs: JudgesAgreement, seed: int) -> str:
 
 def _parts(
     judged: Mapping[Lesion | None, Sequence[Judgment]], report: Mapping[str, Any]
-) -> Iterator[ReportPart]:
+) -> Iterator[Printed]:
     title = f"{FILMS}: {report['films']} films, {report['scored']} of them scored"
     if report["correlations"]["model"]:
         table = _table(title, "model", *_NUMBERS, _PUBLISHED)

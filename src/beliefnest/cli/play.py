@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.text import Text
 
-from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table, stdout
+from beliefnest.cli.console import Printed, print_report, progress_on, result_table, stdout
 from beliefnest.cli.options import PlayOptions, joining_address
 from beliefnest.cli.terminal_text import printable
 from beliefnest.episodes.considered import considered_lines
@@ -221,7 +221,7 @@ def _help(found: Help) -> dict[str, Any]:
     }
 
 
-def _parts(report: Mapping[str, Any]) -> Iterator[ReportPart]:
+def _parts(report: Mapping[str, Any]) -> Iterator[Printed]:
     headings = ("round", "agent", "program", "ended")
     table = result_table(*headings, title=report["task"], right=("round",))
     for part in report["rounds"]:

@@ -2,17 +2,16 @@
 
 import json
 import os
-import tempfile
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from beliefnest.cli.console import print_report, progress_on, result_table
+from beliefnest.cli.console import print_report, result_table
+from beliefnest.cli.study import played
 from beliefnest.errors import InputError
 from beliefnest.files import replace_file
-from beliefnest.studies.jobs import StudyProgress
 from beliefnest.studies.study import Study
 
 
@@ -108,12 +107,7 @@ def run_reproduction(copies: int, jobs: int, page: Path | None, *, as_json: bool
 
 def _played(study: Study, jobs: int, title: str) -> tuple[list[dict[str, Any]], float]:
     started = time.perf_counter()
-    with tempfile.TemporaryDirectory() as folder, progress_on(title) as on_progress:
-
-        def told(progress: StudyProgress) -> None:
-            on_progress("playing", progress.done, progress.total)
-
-        result = study.run(Path(folder), jobs, on_progress=told)
+    with played(study, title, jobs) as result:
         took = result.folder.seconds()
         rows = [{**row, "wall_seconds": took[row["cell"]]} for row in result.rows]
     return rows, time.perf_counter() - started

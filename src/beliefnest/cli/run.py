@@ -16,7 +16,7 @@ from rich.text import Text
 
 from beliefnest.belief.kernels_ahead import kernels_ahead
 from beliefnest.cli.accounts import accounts
-from beliefnest.cli.console import ReportPart, progress_on, report_text, stdout
+from beliefnest.cli.console import Printed, progress_on, report_text, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
 from beliefnest.cli.matrix import score_runs, score_table, scores_json
 from beliefnest.cli.options import RunOptions
@@ -307,12 +307,12 @@ def _failures_text(
     return f"{told}; run again with --out {folder.path} to go on; the first: {failures[0]['error']}"
 
 
-def _parts(run: _Run, cells: Sequence[RunCell], warned: Mapping[str, str]) -> Iterator[ReportPart]:
+def _parts(run: _Run, cells: Sequence[RunCell], warned: Mapping[str, str]) -> Iterator[Printed]:
     for number, about in cells[0].scenario.conditions.items():
         if any(cell.scenario.condition == number for cell in cells):
             yield Text(f"condition {number}: {about}")
-    if _is_one_round(run, cells):
-        # The results of each condition, or scores if there are several models or repeats.
+    # The results of each condition, or scores if there are several models or repeats.
+    if len(cells[0].folder.parts) == 1 and len(run.rows) == len(cells):
         yield outcome_table(run.rows, stdout())
         yield from (line for row in run.rows for line in row.notes)
     else:
@@ -332,8 +332,3 @@ def _unread(results: Sequence[Mapping[str, Any]]) -> list[str]:
         f"{count} of {asked} utterances could not be read for claims, and claim nothing; "
         f"the first: {failed[0]['first']}"
     ]
-
-
-def _is_one_round(run: _Run, cells: Sequence[RunCell]) -> bool:
-    flat = len(cells[0].folder.parts) == 1
-    return flat and bool(run.rows) and len(run.rows) == len(cells)

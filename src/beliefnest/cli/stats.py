@@ -7,7 +7,7 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
-from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table
+from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import PowerOptions, StatsOptions
 from beliefnest.cli.terminal_text import printable
 from beliefnest.errors import InputError
@@ -78,7 +78,7 @@ def _fits(result: StudyResult, options: StatsOptions) -> list[dict[str, Any]]:
     return [{**values, **fitted.plain()} for values, fitted in fits]
 
 
-def _parts(found: Mapping[str, Any], by: Sequence[str]) -> Iterator[ReportPart]:
+def _parts(found: Mapping[str, Any], by: Sequence[str]) -> Iterator[Printed]:
     shown = ["variations", "judged", "right", "accuracy", "low", "high", "interval"]
     if any(group["chance"] is not None for group in found["summary"]):
         shown.append("chance")
@@ -95,7 +95,7 @@ def _parts(found: Mapping[str, Any], by: Sequence[str]) -> Iterator[ReportPart]:
         yield from _shown("options chosen, by position of the right one", found["positions"])
 
 
-def _regression_parts(told: Mapping[str, Any], group: Sequence[str]) -> Iterator[ReportPart]:
+def _regression_parts(told: Mapping[str, Any], group: Sequence[str]) -> Iterator[Printed]:
     counts = f"{told['rows']} rows, {counted(told['variations'], 'variation')}"
     references = ", ".join(f"{name} {level}" for name, level in told["references"].items())
     within = f" with {', '.join(group)}" if group else ""
@@ -172,7 +172,7 @@ def run_power(options: PowerOptions) -> int:
     return 0
 
 
-def _power_parts(rows: _Rows, simulations: int) -> Iterator[ReportPart]:
+def _power_parts(rows: _Rows, simulations: int) -> Iterator[Printed]:
     for title, measure in (("accuracies", "width"), ("paired differences", "difference_width")):
         own = [row for row in rows if row[measure] is not None]
         yield from _shown(f"{title}, {simulations} simulated studies each", own, _POWER[measure])

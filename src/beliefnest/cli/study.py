@@ -5,13 +5,15 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from rich.table import Table
 
-from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table
+from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.options import StudyOptions
 from beliefnest.cli.report import cost_text
 from beliefnest.cli.streams import noted_warnings
@@ -30,6 +32,8 @@ _MOST_TOLD = 10
 _MANY = 100
 """Number of variations whose check takes no time that needs a report."""
 _REPORTS = 10
+_LINES = 20
+"""Number of progress lines of commands that play studies of their own."""
 
 
 def run_study(options: StudyOptions) -> int:
@@ -82,6 +86,21 @@ def run_study(options: StudyOptions) -> int:
     return _status(result)
 
 
+@contextmanager
+def played(
+    study: Study, title: str, jobs: int, folder: Path | None = None
+) -> Iterator[StudyResult]:
+    """Play a study and show the progress; without a folder, its results end with the block."""
+    with TemporaryDirectory() as scratch, progress_on(title) as on_progress:
+        step = max(1, len(study.plan().cells) // _LINES)
+
+        def told(progress: StudyProgress) -> None:
+            if progress.done % step == 0 or progress.done == progress.total:
+                on_progress("playing", progress.done, progress.total)
+
+        yield study.run(folder or Path(scratch), jobs, on_progress=told)
+
+
 def _shard(text: str | None) -> tuple[int, int] | None:
     if text is None:
         return None
@@ -119,9 +138,7 @@ def _report(result: StudyResult, by: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _parts(
-    result: StudyResult, by: Sequence[str], warned: Mapping[str, str]
-) -> Iterator[ReportPart]:
+def _parts(result: StudyResult, by: Sequence[str], warned: Mapping[str, str]) -> Iterator[Printed]:
     yield _table(by, result.counted(by))
     told = [f"no answer: {why}" for why in dict.fromkeys(result.failed.values())]
     told += [f"left out: {_invalid_text(each)}" for each in result.invalid]

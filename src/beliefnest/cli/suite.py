@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from beliefnest.cli.console import ReportPart, print_report, progress_on, result_table
+from beliefnest.cli.console import Printed, print_report, progress_on, result_table
 from beliefnest.cli.films import run_films
 from beliefnest.cli.options import SuiteOptions
 from beliefnest.errors import InputError, UnknownNameError
@@ -193,7 +193,7 @@ def _parts(
     stories: Sequence[StoryItems],
     not_read: Sequence[Unread],
     judged: Sequence[JudgedAnswer],
-) -> Iterator[ReportPart]:
+) -> Iterator[Printed]:
     title = f"{options.name}: {len(stories)} stories in the {options.world} world"
     numbers = ("order", "questions", "right", "first believer matters", "right")
     table = result_table("claims", *numbers, title=title, right=numbers)
