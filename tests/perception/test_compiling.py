@@ -82,6 +82,17 @@ def test_a_kernel_is_compiled_again_when_one_that_it_calls_changed(tmp_path, mon
     assert is_compiled(loaded(tmp_path / "second", monkeypatch))
 
 
+def test_a_kernel_that_stands_below_its_caller_counts(tmp_path, monkeypatch):
+    below = KERNEL.replace("from steps import more\n", "")
+    for number, step in enumerate((2, 3)):
+        place = installed(tmp_path / str(number))
+        code = STEPS.replace("2", str(step)).replace("from beliefnest", "\nfrom beliefnest")
+        (place / "kernels.py").write_text(below.format(decorator="compiled") + code)
+        kernel = loaded(place, monkeypatch)
+        assert not is_compiled(kernel)
+        assert kernel(2) == 2 * (2 + step)
+
+
 def test_damaged_files_are_compiled_and_written_again(tmp_path, folder, monkeypatch):
     assert loaded(installed(tmp_path / "first"), monkeypatch)(2) == 8
     for content in (b"", b"no machine code", b"cbeliefnest.perception.codes\nNoSuchType\n."):

@@ -89,6 +89,9 @@ def lane(kind: str, state: int, blocks: np.ndarray) -> Position:
         case "bridge":
             blocks[MIDDLE - 2 : MIDDLE + 3, 1 : FLOOR + 1] = 0
             blocks[MIDDLE - 2 : MIDDLE + 3, FLOOR] = state
+        case "below a layer":
+            carpet = Registry.load().state_id("white_carpet")
+            blocks[MIDDLE, FLOOR + 1], blocks[MIDDLE, FLOOR + 2] = state, carpet
         case "step":
             blocks[MIDDLE, FLOOR + 1] = state
             blocks[MIDDLE + 1 :, FLOOR + 1] = stone
@@ -206,6 +209,12 @@ def test_bodies_pass_alike_for_all_shapes(kind: str, scripted: World) -> None:
             check(world, scripted, [(kind, state) for state in states[first : first + 96]])
         finally:
             world.close()
+
+
+def test_bodies_jump_onto_layers_above_open_gates_alike(embedded: World, scripted: World) -> None:
+    gates = [f"oak_fence_gate[facing={way},open=true]" for way in ("east", "north")]
+    states = [Registry.load().state_id(text) for text in (*gates, "air", "oak_slab", "oak_fence")]
+    check(embedded, scripted, [("below a layer", state) for state in states])
 
 
 def test_gaps_are_jumped_alike(embedded: World, scripted: World) -> None:

@@ -197,10 +197,13 @@ def _landing_off_level(codes: Grid, sizes: Sizes, x: int, y: int, z: int, dx: in
     i, k = x + dx, z + dz
     own, ahead = code_at(codes, sizes, x, y, z), code_at(codes, sizes, i, y, k)
     is_free = own & _WAYS == 0 or _clears(code_at(codes, sizes, x, y + 1, z))
-    if ahead & FLOOR and is_free and code_at(codes, sizes, i, y + 1, k) & ROOM:
+    feet = code_at(codes, sizes, i, y + 1, k)
+    # Bots take an open gate for an obstacle, and jump onto a layer above it.
+    is_covered = _is_layer(feet) and ahead & _WAYS != 0 and ahead >> TOP_SHIFT == 0
+    if (ahead & FLOOR or is_covered) and is_free and feet & ROOM:
         high, top = code_at(codes, sizes, x, y + 2, z), code_at(codes, sizes, i, y + 2, k)
         is_low = _bears(codes, sizes, i, y, k) and _rise(codes, sizes, x, y, z, ahead) <= _JUMP
-        if is_low and _clears(high) and _clears(top):
+        if (is_low or is_covered) and _clears(high) and _clears(top):
             return y + 1
     if not _has_room(codes, sizes, i, y, k) or ahead & LIQUID:
         return -1

@@ -90,7 +90,8 @@ def is_compiled(function: Callable[..., object]) -> bool:
     kernel: Any = function
     if not hasattr(kernel, "py_func") or kernel.signatures:
         return True
-    return isinstance(kernel._cache, _Cache) and kernel._cache.holds_any(kernel.targetctx)
+    cache = _cache_of(kernel)
+    return cache is not None and cache.holds_any(kernel.targetctx)
 
 
 def kernel_folder(function: Callable[..., object]) -> Path | None:
@@ -99,19 +100,27 @@ def kernel_folder(function: Callable[..., object]) -> Path | None:
     It is the first writable one of: the folder that NUMBA_CACHE_DIR names, the user's cache
     folder, and `__pycache__` beside the source.
     """
-    kernel: Any = function
-    path = getattr(kernel, "_cache", caching.NullCache()).cache_path
-    return None if path is None else Path(path)
+    cache = _cache_of(function) if hasattr(function, "py_func") else None
+    return None if cache is None else Path(cache.cache_path)
 
 
 def _kept(function: F, options: dict[str, Any]) -> F:
     kernel = _jit(function, options)
-    if getattr(numba.config, "DISABLE_JIT", False):
-        return kernel
-    with suppress(RuntimeError):  # There is no writable folder.
-        cast(Any, kernel)._cache = _Cache(kernel)
-    cast(Any, kernel).compile = _shared(kernel)
+    if not getattr(numba.config, "DISABLE_JIT", False):
+        cast(Any, kernel).compile = _shared(kernel)
     return kernel
+
+
+def _cache_of(kernel: Any) -> "_Cache | None":
+    """Return the cache of a kernel, made on first use; None: there is no writable folder.
+
+    When a kernel is defined, those that it calls and that stand below it are not: its digest would
+    lack them.
+    """
+    if not isinstance(kernel._cache, _Cache):
+        with suppress(RuntimeError):
+            kernel._cache = _Cache(kernel)
+    return kernel._cache if isinstance(kernel._cache, _Cache) else None
 
 
 def _jit(function: F, options: dict[str, Any]) -> F:
@@ -128,8 +137,8 @@ def _shared(kernel: Any) -> Callable[..., Any]:
 
     @functools.wraps(compile_it)
     def run(*args: Any) -> Any:
-        cache = kernel._cache
-        if not isinstance(cache, _Cache):
+        cache = _cache_of(kernel)
+        if cache is None:
             folders = ", ".join(map(str, _folders(kernel.py_func.__code__.co_filename)))
             warnings.warn(
                 f"no folder for compiled kernels can be written ({folders}), so every run compiles "

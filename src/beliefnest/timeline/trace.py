@@ -356,9 +356,9 @@ class _Reader:
             held = [items for items in parts.values() if items is not None]
             name = self._registry.name(state_at(place))
             slots = slots_at(self._registry, state_at, place)
-            for items in held:
-                self._items(items, slots, f"a {name}")
-            total = dict(sum((Counter(items) for items in held), Counter()))
+            for each in held:
+                self._items(each, slots, f"a {name}")
+            total = dict(sum(map(Counter, held), Counter()))
             contents[place] = self._items(total, slots, f"a {name}") if held else None
         return contents, halves
 

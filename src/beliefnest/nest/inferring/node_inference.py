@@ -28,6 +28,8 @@ _MOST_READINGS, _MOST_FILTERS = 8, 4
 
 _STEP_TICKS = {"scripted": 1}
 _MINECRAFT_STEP = 5
+"""Ticks of a bot's diagonal step; a straight one takes 3 or 4. With fewer a diagonal step would
+count as a step and a stay."""
 
 
 def infer_in(
