@@ -25,12 +25,11 @@ from beliefnest.belief.holdings import (
     witness,
 )
 from beliefnest.belief.node_table import NodeTable
+from beliefnest.perception.percept import middle_of
 from beliefnest.world.double_chests import left_half_of, other_half
 from beliefnest.world.event_kinds import AT_CONTAINERS
 from beliefnest.world.frames import Frame
 from beliefnest.world.values import DroppedItem, Event, Items, Position
-
-_ITEM_HEIGHT = 0.125
 
 Vitals = tuple[float | None, float | None]
 
@@ -552,5 +551,4 @@ class HoldingsTable:
         known.update(seen)
 
     def _sees_item(self, node: int, item: DroppedItem) -> bool:
-        x, y, z = item.position
-        return self._table.sees_point(node, (x, y + _ITEM_HEIGHT, z))
+        return self._table.sees_point(node, middle_of(item))

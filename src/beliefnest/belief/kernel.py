@@ -59,13 +59,15 @@ from beliefnest.belief.seeing import eye_of, sees_agent, sees_cell
 from beliefnest.perception.beams import Eye
 from beliefnest.perception.chunks import chunk_in, place_at
 from beliefnest.perception.compiling import compiled, inlined, inner, merged
-from beliefnest.perception.options import HEAR_ALL, HEAR_SEEN, SenseLimits
+from beliefnest.perception.options import HEAR_ALL, SenseLimits
+from beliefnest.perception.percept import perceives
 from beliefnest.perception.rays import GridCell, RayScene, lower, upper
 from beliefnest.world.event_kinds import Sense
 from beliefnest.world.terrain import SIDE, VOLUME, ChunkCounts
 
 _WORD = 64
 _ABSENT, _STILL, _MOVED = 0, 1, 2
+_perceives = inlined(perceives)
 
 
 @merged
@@ -490,24 +492,13 @@ def _is_common_ground(senses: SenseLimits, facts: EntryFacts, event: int, me: in
     return bool(senses.hearing == HEAR_ALL or facts.event_actor[event] == me)
 
 
-@merged
-def _hears(senses: SenseLimits, poses: Poses, looks: Looks, node: int, speaker: int) -> bool:
-    """Return True if the present owner of a node hears another agent that speaks aloud.
-
-    The test runs on the speaker's pose in the parent, under `sight` or `radius` (section 5.5).
-    """
-    if senses.hearing == HEAR_SEEN:
-        known = looks.pose[looks.parent[node], speaker] != UNKNOWN
-        return bool(looks.sees[node, speaker] and known)
-    parent = whole(looks.parent[node])
-    other = whole(looks.pose[parent, speaker])
-    if other == UNKNOWN:
-        return False
-    own = whole(looks.pose[parent, looks.agent[node]])
-    x = poses.feet[own, 0] - poses.feet[other, 0]
-    y = poses.feet[own, 1] - poses.feet[other, 1]
-    z = poses.feet[own, 2] - poses.feet[other, 2]
-    return math.sqrt(x * x + z * z + y * y) <= senses.radius
+@inlined
+def _distance(poses: Poses, one: int, other: int) -> float:
+    """Return the distance between the feet of two poses."""
+    x = poses.feet[one, 0] - poses.feet[other, 0]
+    y = poses.feet[one, 1] - poses.feet[other, 1]
+    z = poses.feet[one, 2] - poses.feet[other, 2]
+    return math.sqrt(x * x + z * z + y * y)
 
 
 @merged
@@ -536,17 +527,19 @@ def _perceive_events(
         sense, actor = facts.event_sense[event], whole(facts.event_actor[event])
         if actor == me:
             got = True
-        elif sense == Sense.NONE:
-            got = False
-        elif sense == Sense.HEARING:
-            got = _is_common_ground(space.senses, facts, event, me) or (
-                facts.event_to[event] == NOBODY and _hears(space.senses, poses, looks, node, actor)
-            )
-        elif sense == Sense.PLACE:
-            place = grid_cell(space, whole(facts.event_cell[event]))
-            got = sees_cell(space, _scene(space, grids, parent), eye, place)
+        elif facts.event_to[event] != NOBODY:
+            got = facts.event_to[event] == me
         else:
-            got = actor >= 0 and looks.pose[parent, actor] != UNKNOWN and looks.sees[node, actor]
+            sees_actor, away = False, math.inf
+            other = whole(looks.pose[parent, actor]) if actor >= 0 else UNKNOWN
+            if other != UNKNOWN:
+                sees_actor = looks.sees[node, actor]
+                away = _distance(poses, whole(looks.pose[parent, me]), other)
+            sees_place = False
+            if sense == Sense.PLACE:
+                place = grid_cell(space, whole(facts.event_cell[event]))
+                sees_place = sees_cell(space, _scene(space, grids, parent), eye, place)
+            got = _perceives(space.senses, sense, sees_actor, sees_place, away)
         changes.perceived[event - first_event, node] = got
 
 

@@ -13,13 +13,14 @@ from beliefnest.belief.chunk_pool import cut_grids
 from beliefnest.belief.columns import place_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import AgentBelief, Basis, ContainerBelief, PerceivedEvent, Source
+from beliefnest.perception.percept import gaze_from
 from beliefnest.perception.sight import ChunkGeometry, Geometry, SightLines
 from beliefnest.world.double_chests import ByEitherHalf, believed_container_at, states_in
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.frames import BlockGrid, Snapshot
 from beliefnest.world.paths import BeliefPath
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import EYE_HEIGHT, AgentState, DroppedItem, Position
+from beliefnest.world.values import AgentState, DroppedItem, Position
 
 T = TypeVar("T")
 
@@ -202,8 +203,8 @@ class NodeView:
         viewer = self.agents[agent]
         if viewer.position is None:
             return np.zeros(self.box.shape, dtype=np.bool_)
-        x, y, z = viewer.position
-        return self._dense_geometry.visible_blocks((x, y + EYE_HEIGHT, z), viewer.yaw, viewer.pitch)
+        gaze = gaze_from(viewer.position, viewer.yaw, viewer.pitch)
+        return self._dense_geometry.visible_blocks(*gaze)
 
     def snapshot(self) -> Snapshot:
         """Return the snapshot with which a body of this state is filled.

@@ -15,10 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.chunk_pool import changed_lines, lines_of_sight
+from beliefnest.perception.percept import Gaze, Perceptibles, gaze_from, percept
 from beliefnest.perception.sight import Sight, SightLines
 from beliefnest.world.array_types import Cells
 from beliefnest.world.terrain import SIDE, VOLUME, Terrain
-from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Items, Point, Position
+from beliefnest.world.values import Box, DroppedItem, Items, Point, Position
 
 AgentPose = tuple[Point, float, float]
 """Feet, yaw and pitch."""
@@ -174,13 +175,13 @@ class AlternativeWorlds:
         everyone = (1 << count) - 1
         if not self.can_differ:
             return [everyone] * count
-        look: AgentPose = ((feet[0], feet[1] + EYE_HEIGHT, feet[2]), yaw, pitch)
+        look = gaze_from(feet, yaw, pitch)
         if self.has_one_view and not self._doubted_contents and not self._doubted_agents:
             return self._alike_by_blocks(look, all_round)
         percepts = self._percepts(look, all_round)
         undecided = self._undecided(percepts)
         # Doubted elements look the same in these, but may hide different things.
-        for cells in self._behind(look[0]) if undecided else ():
+        for cells in self._behind(look.eye) if undecided else ():
             for group in undecided:
                 further = self._seen(look, cells, group, all_round)
                 for number, seen in zip(group, further, strict=True):
@@ -193,15 +194,15 @@ class AlternativeWorlds:
     def _undecided(self, percepts: Sequence[object]) -> list[list[int]]:
         """Return groups of alternatives with equal percepts but different lines of sight."""
         groups: dict[object, list[int]] = {}
-        for number, percept in enumerate(percepts):
-            groups.setdefault(percept, []).append(number)
+        for number, each in enumerate(percepts):
+            groups.setdefault(each, []).append(number)
         return [
             group
             for group in groups.values()
             if len({id(self._geometry_of[number]) for number in group}) > 1
         ]
 
-    def _alike_by_blocks(self, look: AgentPose, all_round: bool) -> list[int]:
+    def _alike_by_blocks(self, look: Gaze, all_round: bool) -> list[int]:
         """Return the result of `alike` if only blocks differ, and all of them hide the same."""
         plain = self._geometry_of[0]
         seeing = self._round[id(plain)] if all_round else plain
@@ -217,7 +218,7 @@ class AlternativeWorlds:
         """Alternatives with the same percept, by which of the differing blocks are seen."""
         return {}
 
-    def _percepts(self, look: AgentPose, all_round: bool) -> list[object]:
+    def _percepts(self, look: Gaze, all_round: bool) -> list[object]:
         """Return the percepts of doubted blocks, of contents, agents and items."""
         everyone = range(len(self.worlds))
         return [
@@ -228,7 +229,7 @@ class AlternativeWorlds:
         ]
 
     def _seen(
-        self, look: AgentPose, cells: Cells, which: Sequence[int], all_round: bool
+        self, look: Gaze, cells: Cells, which: Sequence[int], all_round: bool
     ) -> list[npt.NDArray[np.bool_]]:
         """Return a mask of the cells whose blocks are seen, for some alternatives."""
         seen: dict[int, npt.NDArray[np.bool_]] = {}
@@ -298,34 +299,24 @@ class AlternativeWorlds:
         return lattice.starts(numbers[self._is_known[numbers]])
 
     def _percept(
-        self, number: int, look: AgentPose, all_round: bool, seen: npt.NDArray[np.bool_]
+        self, number: int, look: Gaze, all_round: bool, seen: npt.NDArray[np.bool_]
     ) -> tuple[object, ...]:
         """Return a percept of an alternative as a value to compare; `seen` masks doubted cells."""
         world, seeing = self.worlds[number], self._seeing(number, all_round)
         states = self.states(number)
         blocks = np.where(seen & (states >= 0), states, -1).tobytes()
-        contents: list[object] = []
-        if self._doubted_contents:
-            sees = seeing.sees_blocks(*look, np.array(self._doubted_contents, dtype=np.int64))
-            contents = [
-                (place, _items_key(world.contents.get(place)))
-                for place, is_seen in zip(self._doubted_contents, sees.tolist(), strict=True)
-                if is_seen
-            ]
-        names = [name for name in self._doubted_agents if name in world.agents]
-        agents: list[object] = []
-        if names:
-            sees = seeing.sees_agents(*look, [world.agents[name][0] for name in names])
-            agents = [
-                (name, world.agents[name])
-                for name, is_seen in zip(names, sees.tolist(), strict=True)
-                if is_seen
-            ]
-        items = b""
-        if self.items and not self.has_one_view:
-            places = [item.position for item in self.items.values()]
-            items = seeing.sees_points(*look, places).tobytes()
-        return blocks, tuple(contents), tuple(agents), items
+        seen_things = percept(
+            seeing,
+            look,
+            Perceptibles(
+                {place: world.contents.get(place) for place in self._doubted_contents},
+                {n: world.agents[n][0] for n in self._doubted_agents if n in world.agents},
+                {} if self.has_one_view else self.items,
+            ),
+        )
+        contents = [(place, _items_key(items)) for place, items in seen_things.contents.items()]
+        agents = [(name, world.agents[name]) for name in seen_things.agents]
+        return blocks, tuple(contents), tuple(agents), tuple(seen_things.items)
 
 
 def _is_behind(
@@ -360,9 +351,9 @@ def _is_behind(
 def _masks(percepts: Sequence[object]) -> list[int]:
     """Return for each percept the numbers of equal ones, as bits."""
     masks: dict[object, int] = {}
-    for number, percept in enumerate(percepts):
-        masks[percept] = masks.get(percept, 0) | 1 << number
-    return [masks[percept] for percept in percepts]
+    for number, each in enumerate(percepts):
+        masks[each] = masks.get(each, 0) | 1 << number
+    return [masks[each] for each in percepts]
 
 
 def _items_key(items: Items | None) -> object:

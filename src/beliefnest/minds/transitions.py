@@ -12,8 +12,9 @@ from beliefnest.minds.hypotheses import Hypotheses, Sums, WalkState, conditioned
 from beliefnest.minds.planner import Knowledge
 from beliefnest.minds.stage import Stage
 from beliefnest.minds.surroundings import Surroundings
+from beliefnest.perception.percept import gaze_from
 from beliefnest.world.array_types import Floats
-from beliefnest.world.values import EYE_HEIGHT, Position, feet_in
+from beliefnest.world.values import Position, feet_in
 
 Weights = Mapping[WalkState, Floats]
 
@@ -150,11 +151,9 @@ def unseen(moment: EvidenceMoment, actual: int, weights: Weights) -> Weights:
     """Return the states in which the observer, if it is present, does not see the agent."""
     if moment.watch is None or not weights:
         return weights
-    feet, yaw, pitch = moment.watch
     cells = sorted({state[0] for state in weights})
-    eye = (feet[0], feet[1] + EYE_HEIGHT, feet[2])
     geometry = moment.scene.worlds.geometry(actual)
-    seen = geometry.sees_agents(eye, yaw, pitch, [feet_in(cell) for cell in cells])
+    seen = geometry.sees_agents(*gaze_from(*moment.watch), [feet_in(cell) for cell in cells])
     visible = {cell for cell, is_seen in zip(cells, seen.tolist(), strict=True) if is_seen}
     return {state: weight for state, weight in weights.items() if state[0] not in visible}
 

@@ -18,6 +18,7 @@ import msgspec
 import numpy as np
 
 from beliefnest.errors import ScenarioError
+from beliefnest.perception.percept import gaze_from
 from beliefnest.perception.sight import Geometry, Sight
 from beliefnest.scenarios.content import ScenarioContent
 from beliefnest.scenarios.document import Document, YamlNode, plain
@@ -28,7 +29,7 @@ from beliefnest.scenarios.terrain_entry import terrain_in
 from beliefnest.world.registry import Registry
 from beliefnest.world.terrain import Terrain
 from beliefnest.world.texts import quoted
-from beliefnest.world.values import EYE_HEIGHT, Box, Point, Position
+from beliefnest.world.values import Box, Point, Position
 from beliefnest.world.words import counted
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH
@@ -218,10 +219,8 @@ class _Scene:
     def sees(self, agent: str, cell: Position) -> bool:
         """Return True if an agent sees a cell."""
         state = self._place.agents[agent]
-        x, y, z = state.position
-        eye = (x, y + EYE_HEIGHT, z)
-        geometry = self._geometry(eye, cell)
-        return bool(geometry.sees_blocks(eye, state.yaw, state.pitch, np.array([cell]))[0])
+        gaze = gaze_from(state.position, state.yaw, state.pitch)
+        return bool(self._geometry(gaze.eye, cell).sees_blocks(*gaze, np.array([cell]))[0])
 
     def reaches(self, agent: str, cell: Position) -> bool:
         """Return True if an agent can walk to where its hand reaches a cell, opening doors."""

@@ -9,9 +9,10 @@ import numpy as np
 from beliefnest.belief.chunk_pool import lines_of_sight
 from beliefnest.nest.acting.courses import Course, Glimpse
 from beliefnest.nest.past.percepts import Percept
+from beliefnest.perception.percept import Gaze, gaze_from
 from beliefnest.perception.sight import Sight, SightLines
 from beliefnest.world.terrain import Terrain
-from beliefnest.world.values import EYE_HEIGHT, Box, DroppedItem, Point, Position, block_at
+from beliefnest.world.values import Box, DroppedItem, Point, Position, block_at
 
 _MOST_GRIDS = 4096
 _DEEDS = "actions at containers"
@@ -250,10 +251,9 @@ class Agreement:
         return found
 
 
-def _eye(glimpse: Glimpse, owner: str) -> tuple[Point, float, float]:
+def _eye(glimpse: Glimpse, owner: str) -> Gaze:
     state = glimpse.agents[owner]
-    x, y, z = state.position
-    return (x, y + EYE_HEIGHT, z), state.yaw, state.pitch
+    return gaze_from(state.position, state.yaw, state.pitch)
 
 
 def _near(feet: Point, other: Point, cells: int) -> bool:

@@ -22,13 +22,14 @@ from beliefnest.belief.node_memory import paths_with_room
 from beliefnest.belief.node_view import NodeView
 from beliefnest.errors import BeliefNestError, InputError, PathError, WorldError
 from beliefnest.nest.past.embodiable import embodiable, with_chests
+from beliefnest.perception.percept import Perceptibles, gaze_from, percept
 from beliefnest.perception.sight import Sight, SightLines
 from beliefnest.skills.calls import Call
 from beliefnest.world.frames import Frame
 from beliefnest.world.paths import BeliefPath, normalised, path_text, paths_below
 from beliefnest.world.registry import AIR, Registry
 from beliefnest.world.terrain import BlockStates, Terrain
-from beliefnest.world.values import EYE_HEIGHT, AgentState, Event, Point, Position
+from beliefnest.world.values import AgentState, Event, Point, Position
 from beliefnest.worlds.protocol import ProgramResult, RunRules
 from beliefnest.worlds.scripted.footpaths import Ground, InReach
 from beliefnest.worlds.scripted.hand import REACH, Doing, Hand
@@ -213,14 +214,10 @@ class Imagination:
             return {}
         if self.root[-1:] == (agent,):
             others = {name: state for name, state in others.items() if not self._is_lost(name)}
-        x, y, z = agents[agent].position
-        seen = self._looking().sees_agents(
-            (x, y + EYE_HEIGHT, z),
-            agents[agent].yaw,
-            agents[agent].pitch,
-            np.array([state.position for state in others.values()]).reshape(-1, 3),
-        )
-        return {name: others[name] for name, is_seen in zip(others, seen, strict=True) if is_seen}
+        me, feet = agents[agent], {name: state.position for name, state in others.items()}
+        gaze = gaze_from(me.position, me.yaw, me.pitch)
+        seen = percept(self._looking(), gaze, Perceptibles(agents=feet)).agents
+        return {name: others[name] for name in seen}
 
     def knows(self, path: BeliefPath) -> bool:
         """Return True if the beliefs of a path below the root are followed."""

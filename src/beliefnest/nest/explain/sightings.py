@@ -9,11 +9,11 @@ import numpy as np
 from beliefnest.belief.grounds import AgentBelief
 from beliefnest.belief.node_view import NodeView
 from beliefnest.nest.explain.parts import Sighting, View
+from beliefnest.perception.percept import Gaze, gaze_from
 from beliefnest.perception.sight import SightLines
 from beliefnest.world.values import (
     AGENT_SAMPLE_HEIGHTS,
     BODY_CENTRE_HEIGHT,
-    EYE_HEIGHT,
     Box,
     Point,
     Position,
@@ -28,15 +28,15 @@ def sighting_of_block(reading: NodeView, box: Box, viewer: str, place: Position)
     cells = np.array([place])
 
     def sees(geometry: SightLines) -> bool:
-        return bool(geometry.sees_blocks(_eye(here), here.yaw, here.pitch, cells)[0])
+        return bool(geometry.sees_blocks(*_gaze(here), cells)[0])
 
     name = _block_name(reading, box, place)
     x, y, z = place
     centre = (x + 0.5, y + 0.5, z + 0.5)
-    away = math.dist(_eye(here), centre)
+    away = math.dist(_gaze(here).eye, centre)
     look = Sighting(name or "block", place, _view(reading.geometry, sees, away), away)
     # The block that is looked at does not block its own rays.
-    return _with_blocker(look, reading, box, _eye(here), [centre], place)
+    return _with_blocker(look, reading, box, _gaze(here).eye, [centre], place)
 
 
 def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> Sighting:
@@ -47,14 +47,14 @@ def sighting_of_agent(reading: NodeView, box: Box, viewer: str, other: str) -> S
     feet = np.array([seen.position])
 
     def sees(geometry: SightLines) -> bool:
-        return bool(geometry.sees_agents(_eye(here), here.yaw, here.pitch, feet)[0])
+        return bool(geometry.sees_agents(*_gaze(here), feet)[0])
 
     x, y, z = seen.position
     centre = (x, y + BODY_CENTRE_HEIGHT, z)
     samples = [centre, *((x, y + height, z) for height in AGENT_SAMPLE_HEIGHTS)]
-    away = math.dist(_eye(here), centre)
+    away = math.dist(_gaze(here).eye, centre)
     look = Sighting(other, seen.position, _view(reading.geometry, sees, away), away)
-    return _with_blocker(look, reading, box, _eye(here), samples)
+    return _with_blocker(look, reading, box, _gaze(here).eye, samples)
 
 
 def _view(geometry: SightLines, sees: _Sees, away: float) -> View:
@@ -89,11 +89,10 @@ def _with_blocker(
     return look
 
 
-def _eye(agent: AgentBelief) -> Point:
+def _gaze(agent: AgentBelief) -> Gaze:
     if agent.position is None:
         raise AssertionError("a look needs a viewer of known pose")
-    x, y, z = agent.position
-    return (x, y + EYE_HEIGHT, z)
+    return gaze_from(agent.position, agent.yaw, agent.pitch)
 
 
 def _block_name(reading: NodeView, box: Box, place: Position) -> str | None:

@@ -7,9 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from beliefnest.belief.node_view import NodeView
+from beliefnest.perception.percept import gaze_from
 from beliefnest.perception.sight import Sight
 from beliefnest.world.terrain import Index
-from beliefnest.world.values import EYE_HEIGHT
 
 _MARGIN = 2
 """Cells beyond the greatest visible distance that a line of sight may touch."""
@@ -71,14 +71,13 @@ def visible_part(reading: NodeView, sight: Sight, agent: str) -> VisiblePart | N
     whole = (0, 0, 0)
     if far is None:
         return VisiblePart(whole, reading.visible_from(agent))
-    x, y, z = viewer.position
-    eye = (x, y + EYE_HEIGHT, z)
+    gaze = gaze_from(viewer.position, viewer.yaw, viewer.pitch)
     reach = math.ceil(far) + _MARGIN
     box = reading.box
-    low = [max(math.floor(at) - reach - a, 0) for at, a in zip(eye, box.low, strict=True)]
+    low = [max(math.floor(at) - reach - a, 0) for at, a in zip(gaze.eye, box.low, strict=True)]
     high = [
         min(math.floor(at) + reach - a + 1, size)
-        for at, a, size in zip(eye, box.low, box.shape, strict=True)
+        for at, a, size in zip(gaze.eye, box.low, box.shape, strict=True)
     ]
     first, last = (low[0], low[1], low[2]), (high[0], high[1], high[2])
     if (first, last) == (whole, box.shape):
@@ -87,4 +86,4 @@ def visible_part(reading: NodeView, sight: Sight, agent: str) -> VisiblePart | N
         return None
     origin = (box.low[0] + first[0], box.low[1] + first[1], box.low[2] + first[2])
     near = sight.geometry(np.ascontiguousarray(reading.terrain.cut(first, last)), origin)
-    return VisiblePart(first, near.visible_blocks(eye, viewer.yaw, viewer.pitch))
+    return VisiblePart(first, near.visible_blocks(*gaze))
