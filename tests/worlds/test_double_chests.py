@@ -262,3 +262,37 @@ def test_lookups_by_half_count_each_container_once() -> None:
     assert (both[LEFT], both.get(LEFT), LEFT in both) == ("held", "held", True)
     assert (both.get((0, 0, 0)), (0, 0, 0) in both) == (None, False)
     assert (len(both), list(both), both) == (1, [RIGHT], {RIGHT: "held"})
+
+
+def heard_of(blocks: dict[tuple[int, int, int], str], place: tuple[int, int, int]) -> bn.Nest:
+    """Return a nest in which Ann claims to Bob what a block holds behind a full wall."""
+    wall = {(6, y, z): "bricks" for y in range(4) for z in range(5)}
+    floor = {(x, 0, z): "stone" for x in range(12) for z in range(5)}
+    world = bn.ScriptedWorld(
+        ((0, 0, 0), (11, 3, 4)),
+        {**floor, **wall, **blocks},
+        {"ann": (2.5, 1, 1.5), "bob": (4.5, 1, 2.5)},
+        containers={at: {} for at in blocks if "left" not in blocks[at]},
+    )
+    nest = bn.Nest(world, bn.Perception(testimony="accept"))
+    world.say("ann", "It is there.", claims=[bn.Claim.located("emerald", place)])
+    return nest
+
+
+def test_claims_about_halves_that_nobody_knows_mean_what_was_said() -> None:
+    left, right = (9, 1, 2), (8, 1, 2)
+    double = {left: "chest[facing=south,type=left]", right: "chest[facing=south,type=right]"}
+    nests = [heard_of(blocks, left) for blocks in ({left: "chest"}, double, {})]
+    for path in ("/bob", "/bob/ann"):
+        told = {repr(nest[path].state) for nest in nests}
+        assert len(told) == 1
+    assert [dict(nest["/bob"].state.containers[left].items) for nest in nests] == [
+        {"emerald": 1}
+    ] * 3
+    world = nests[1].scripted_world
+    # Bob comes to see the chest: what he heard is about its left half, and he learns of the whole.
+    world.place_agent("bob", (8.5, 1, 3.5))
+    assert str(nests[1]["/bob"].state.blocks[left]).startswith("chest")
+    world.say("ann", "It is there.", claims=[bn.Claim.located("emerald", left)])
+    assert dict(nests[1]["/bob"].state.containers[right].items) == {"emerald": 1}
+    assert "emerald is in (8, 1, 2)" in str(nests[1]["/bob"].explain(container=right))

@@ -7,6 +7,7 @@ think that i took the claim up?" is the same question one level deeper. The kern
 of condition 1b, in `Nodes`.
 """
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
 from typing import NamedTuple
@@ -23,6 +24,7 @@ from beliefnest.belief.holdings_table import HoldingsTable
 from beliefnest.belief.node_table import NodeTable
 from beliefnest.world.array_types import Flags
 from beliefnest.world.claims import Claim, ClaimKind, claims_of
+from beliefnest.world.double_chests import believed_container_at
 from beliefnest.world.event_kinds import EventKind
 from beliefnest.world.signs import plain_state, text_of
 from beliefnest.world.values import Event, Items, Sign
@@ -305,6 +307,24 @@ class EntryTestimony:
         item = str(claim.item)
         return [self._holdings.of(node).found.get(item, UNKNOWN) for node in which.tolist()]
 
+    def _containers(self, which: Numbers, claim: Claim) -> list[int]:
+        """Return by node the cell of the container that a claim is about.
+
+        If the node believes the claimed block to be half of a double chest, it is that chest.
+        """
+        box, registry, place = self._context.box, self._context.registry, claim.cell
+        x, y, z = place
+        steps = ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))
+        near = [at for i, k in steps if (at := (x + i, y, z + k)) in box]
+        numbers = np.stack([self._table.blocks_at(which, cell_of(box, at)) for at in near])
+        numbers[numbers >= registry.states] = registry.air  # signs with a text
+        cells: dict[tuple[int, ...], int] = {}
+        for states in dict.fromkeys(map(tuple, numbers.T.tolist())):
+            known = defaultdict(lambda: UNKNOWN, zip(near, states, strict=True))
+            whole = believed_container_at(registry, known.__getitem__, place)
+            cells[states] = cell_of(box, whole)
+        return [cells[tuple(states)] for states in numbers.T.tolist()]
+
     def _perceives(self, which: Numbers, cells: Iterable[int], claim: Claim) -> Flags:
         """Return by node if its owner perceives now whether the item is in a container."""
         item, nodes = str(claim.item), which.tolist()
@@ -342,14 +362,14 @@ class EntryTestimony:
                 ]
                 return nowhere, np.array(seen, dtype=np.bool_)
             case ClaimKind.LOCATED | ClaimKind.ABSENT:
-                item = str(claim.item)
-                at_place = self._perceives(which, [cell] * len(which), claim)
+                item, cells = str(claim.item), self._containers(which, claim)
+                at_place = self._perceives(which, cells, claim)
                 if claim.kind is ClaimKind.ABSENT:
                     return nowhere, at_place
                 elsewhere = [
-                    self._holdings.perceives_elsewhere(node, cell, item)
-                    or self._holdings.sees_no_container(node, cell)
-                    for node in which.tolist()
+                    self._holdings.perceives_elsewhere(node, whole, item)
+                    or self._holdings.sees_no_container(node, whole)
+                    for node, whole in zip(which.tolist(), cells, strict=True)
                 ]
                 return np.array(elsewhere, dtype=np.bool_), at_place
 
@@ -370,16 +390,15 @@ class EntryTestimony:
             case ClaimKind.BLOCK:
                 self._believe_block(which, claim, basis)
             case ClaimKind.LOCATED | ClaimKind.ABSENT:
-                place = claim.cell
-                cell, item = cell_of(self._context.box, place), str(claim.item)
+                item, cells = str(claim.item), self._containers(which, claim)
                 is_there = claim.kind is ClaimKind.LOCATED
                 believe = believe_located if is_there else believe_absent
-                for node in which.tolist():
+                for node, cell in zip(which.tolist(), cells, strict=True):
                     believe(self._holdings.of(node), cell, item, basis)
                     if is_there:
                         self._holdings.believe_only(node, item, cell, basis)
-                if is_there:
-                    self._holdings.doubt_all(which, cell)
+                for cell in dict.fromkeys(cells) if is_there else ():
+                    self._holdings.doubt_all(which[np.equal(cells, cell)], cell)
 
     def _believe_block(self, which: Numbers, claim: Claim, basis: Basis) -> None:
         context = self._context

@@ -1,6 +1,5 @@
 """Construction of scenarios from checked documents: setting, probes, and expectations."""
 
-import functools
 import math
 import re
 from collections import Counter
@@ -43,7 +42,6 @@ from beliefnest.scenarios.space import (
     parts_of,
 )
 from beliefnest.scenarios.yaml_reading import template_text
-from beliefnest.world.double_chests import container_at, states_in
 from beliefnest.world.frames import Snapshot
 from beliefnest.world.limits import AGENT_SLOTS, WORN_SLOTS
 from beliefnest.world.paths import parse_pattern
@@ -114,9 +112,7 @@ class _Builder:
         blocks = build_blocks(document, file, box, registry)
         containers = build_containers(document, file.containers, blocks, box, registry)
         signs = build_signs(document, file, blocks, box, registry)
-        state_at = states_in(box, blocks, registry.air)
-        whole = functools.partial(container_at, registry, state_at)
-        claims = build_sign_claims(document, file, signs, box, whole)
+        claims = build_sign_claims(document, file, signs, box)
         agents = build_agents(document, file, blocks, box, registry)
         self._snapshot = Snapshot(
             0, box, blocks, containers, agents, signs=signs, sign_claims=claims

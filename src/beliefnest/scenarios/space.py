@@ -1,7 +1,7 @@
 """Blocks, containers and signs of a scenario: from a file's entries to block states of a box."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 
 from beliefnest.facts.reading import fact_in
 from beliefnest.scenarios.checks import check_inside, check_items
@@ -97,9 +97,8 @@ def build_sign_claims(
     file: ScenarioFile,
     texts: Mapping[Position, str],
     box: Box,
-    whole: Callable[[Position], Position],
 ) -> dict[Position, PlainClaims]:
-    """Return the claims of signs by position, as plain data; `whole` as for `with_claims`."""
+    """Return the claims of signs by position, as plain data."""
     found: dict[Position, PlainClaims] = {}
     for number, entry in enumerate(file.signs):
         for index, told in enumerate(entry.claims):
@@ -116,7 +115,7 @@ def build_sign_claims(
                 )
             if entry.at not in texts:
                 raise document.fault(path, "is for signs with a text; add `text`")
-            plain = (claim.of_whole(whole).plain() for claim in claims)
+            plain = (claim.plain() for claim in claims)
             found[entry.at] = (*found.get(entry.at, ()), *plain)
     return found
 

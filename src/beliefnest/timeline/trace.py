@@ -322,7 +322,7 @@ class _Reader:
             claims = self._checked(claims_from_plain(line.claims))
         except BeliefNestError as fault:
             raise InputError(f"{where}: {fault}") from fault
-        return tuple(claim.of_whole(lambda at: self._whole(at, {})).plain() for claim in claims)
+        return tuple(claim.plain() for claim in claims)
 
     def _checked(self, claims: tuple[Claim, ...]) -> tuple[Claim, ...]:
         """Return claims that are about the box and the agents of the trace."""
@@ -436,13 +436,10 @@ class _Reader:
         if "block" in detail:
             self._registry.state_id(detail["block"])
         self._items(detail.get("items", {}), _AGENT_SLOTS, "an agent")
-        claims = self._checked(claims_of(event))
+        self._checked(claims_of(event))
         told = dict(detail)
         if event.kind in AT_CONTAINERS:
             told["position"] = self._whole(detail["position"], changed)
-        if claims:
-            wholes = (claim.of_whole(lambda at: self._whole(at, changed)) for claim in claims)
-            told["claims"] = tuple(claim.plain() for claim in wholes)
         return replace(event, detail=told)
 
     def _check_place(

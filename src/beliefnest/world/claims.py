@@ -58,7 +58,8 @@ class Claim:
     def of_whole(self, whole: Callable[[Position], Position]) -> "Claim":
         """Return the claim about the container to which the block at its place belongs.
 
-        Claims that are about no container stay as they are.
+        A claim is recorded as it was made. Whether its place is half of a double chest depends on
+        who hears it. Claims that are about no container stay as they are.
         """
         if self.kind not in (ClaimKind.LOCATED, ClaimKind.ABSENT):
             return self
@@ -233,7 +234,6 @@ def with_claims(
     claims: Iterable[Claim],
     box: Box,
     agents: Collection[str],
-    whole: Callable[[Position], Position],
 ) -> dict[str, Any]:
     """Return an event's detail with claims added, if there are any.
 
@@ -242,7 +242,6 @@ def with_claims(
         claims: Claims of its text.
         box: Box of the world.
         agents: Names of all agents.
-        whole: Function that returns the position of the container to which a block belongs.
 
     Raises:
         InputError: `claims` is not a list of claims, or a claim is not about this world.
@@ -258,8 +257,7 @@ def with_claims(
                 "block"
             )
         claim.check(box, agents)
-    told_of = (claim.of_whole(whole).plain() for claim in given)
-    plain = {"claims": tuple(told_of)} if given else {}
+    plain = {"claims": tuple(claim.plain() for claim in given)} if given else {}
     return {**detail, **plain}
 
 

@@ -65,13 +65,11 @@ class Hearsay:
     def _read(self, event: Event, tick: int, recording: Recording, key: TimelineKey) -> Event:
         speaker, text = str(event.actor), str(event.detail["text"])
         path = believer_of(key.path, speaker)
-        believed = recording.state(path)
-        nameable = _nameable(recording, path, believed)
+        nameable = _nameable(recording, path, recording.state(path))
         claims = tuple(self._reader.read(key.path, tick, text, speaker, nameable))
         if not claims:
             return event
-        whole = believed.container_at
-        found = with_claims(event.detail, claims, nameable.box, nameable.agents, whole)
+        found = with_claims(event.detail, claims, nameable.box, nameable.agents)
         return replace(event, detail={**found, "claims_from": self._reader.name})
 
 

@@ -12,6 +12,7 @@ from beliefnest.belief.columns import cell_of, place_of
 from beliefnest.belief.forest import Forest
 from beliefnest.belief.grounds import Basis, PerceivedEvent, Source
 from beliefnest.belief.holdings import Content, Holdings
+from beliefnest.belief.node_view import NodeView
 from beliefnest.belief.testimony import Verdict
 from beliefnest.nest.explain.element_history import LogStep
 from beliefnest.nest.explain.parts import (
@@ -121,21 +122,23 @@ class ElementGrounds:
             had: Items in the container before the entry.
         """
         forest = step.forest
-        node = forest.node(self.path)
+        node, whole = forest.node(self.path), NodeView(forest, self.path).container_at
         events = step.entry.events if isinstance(step.entry, Frame) else ()
         for row, event in enumerate(events):
             for index, claim in enumerate(claims_of(event) if event.kind is EventKind.CHAT else ()):
                 verdicts = forest.verdicts.get((row, index))
-                if verdicts and verdicts[node].believed and self._matters(claim, had):
-                    yield HeardClaim(forest.tick, event.actor, claim)
+                about = claim.of_whole(whole)
+                if verdicts and verdicts[node].believed and self._matters(about, had):
+                    yield HeardClaim(forest.tick, event.actor, about)
         for (cell, _), told in forest.holdings.of(node).told.items():
             if told.tick != forest.tick or isinstance(step.entry, Edit):
                 continue
             claims = forest.context.claims_on(forest.block(self.path, cell))
             for claim, verdict in zip(claims, told.verdicts, strict=False):
-                if self._matters(claim, had) and Verdict(verdict).believed:
+                about = claim.of_whole(whole)
+                if self._matters(about, had) and Verdict(verdict).believed:
                     sign = place_of(forest.context.box, cell)
-                    yield HeardClaim(forest.tick, told.speaker, claim, sign)
+                    yield HeardClaim(forest.tick, told.speaker, about, sign)
 
     def _matters(self, claim: Claim, had: Items) -> bool:
         """Return True if a believed claim changes or confirms the value of the element."""

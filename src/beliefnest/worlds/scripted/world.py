@@ -427,7 +427,7 @@ class ScriptedWorld(PoweredState):
         """Return an utterance's detail with its claims; WorldError if they do not fit."""
         try:
             agents = self._facts.agents
-            return with_claims(detail, claims, self._box, agents, self.container_at)
+            return with_claims(detail, claims, self._box, agents)
         except InputError as fault:
             raise WorldError(str(fault)) from None
 

@@ -6,16 +6,11 @@
 
 // Largest number of announced texts; a program that ended early never says its text.
 const MOST_WAITING = 64
-const ABOUT_CONTAINERS = new Set(['located', 'absent'])
 
 class Claims {
-  /**
-   * @param {import('./region').Region} region
-   * @param {(place: number[]) => number[]} wholeAt returns the position of the container to which a block belongs
-   */
-  constructor (region, wholeAt) {
+  /** @param {import('./region').Region} region */
+  constructor (region) {
     this.region = region
-    this.wholeAt = wholeAt
     this.waiting = []
   }
 
@@ -27,8 +22,7 @@ class Claims {
    */
   expect (actor, { text, to, position, claims }) {
     claims.forEach(claim => this.check(claim))
-    const told = claims.map(claim => ABOUT_CONTAINERS.has(claim.kind) ? { ...claim, place: this.wholeAt(claim.place) } : claim)
-    this.waiting.push({ actor, text, to, position: position?.join(), claims: told })
+    this.waiting.push({ actor, text, to, position: position?.join(), claims })
     if (this.waiting.length > MOST_WAITING) this.waiting.shift()
   }
 

@@ -68,8 +68,7 @@ function factsOf (serv, region) {
     items: () => itemStates(serv, region),
     changedContainers: () => changedContainers(serv, region),
     blockText: state => serv.blocks.text(state),
-    signText: position => serv.signs.get(region.toServer(position)),
-    wholeAt: place => region.toScenario(serv.containers.wholeAt(region.toServer(place)))
+    signText: position => serv.signs.get(region.toServer(position))
   }
 }
 

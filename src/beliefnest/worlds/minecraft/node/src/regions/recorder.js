@@ -9,15 +9,14 @@ class Recorder {
   /**
    * @param {import('./region').Region} region
    * @param {object} facts functions that read the server: `agents()` and `items()` for the present ones (in the form
-   *   of the channel), `changedContainers()` since the last call as [x, y, z, ITEMS or null], `blockText(state)`,
-   *   `signText(position)` (scenario; empty if nothing is written), and `wholeAt(position)`, the position of the
-   *   container to which a block belongs (both scenario)
+   *   of the channel), `changedContainers()` since the last call as [x, y, z, ITEMS or null], `blockText(state)`, and
+   *   `signText(position)` (scenario; empty if nothing is written)
    */
   constructor (region, facts) {
     this.region = region
     this.facts = facts
     this.known = { agents: new Map(), items: new Map() }
-    this.claims = new Claims(region, facts.wholeAt)
+    this.claims = new Claims(region)
     this.clear()
   }
 
@@ -68,7 +67,7 @@ class Recorder {
 
   /** Drop claims that were announced but never said, so that none is left to the next call or branch. */
   forgetClaims () {
-    this.claims = new Claims(this.region, this.facts.wholeAt)
+    this.claims = new Claims(this.region)
   }
 
   /** Take the present state as known, so that the next frames contain only differences from it. */

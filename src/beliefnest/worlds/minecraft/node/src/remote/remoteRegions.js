@@ -9,7 +9,7 @@ const { waitFor } = require('../bots/ticking')
 const { Box } = require('../regions/box')
 const { Terrain } = require('../regions/terrain')
 const { Recorder } = require('../regions/recorder')
-const { listOf, vecOf } = require('../server/plugins/lib/positions')
+const { vecOf } = require('../server/plugins/lib/positions')
 const { Agents } = require('./agents')
 const { commandsFor } = require('./commands')
 const { connect } = require('./connection')
@@ -117,8 +117,7 @@ class RemoteRegions {
     const agents = new Agents(scene, operator, commands, registry, agent => this.connection(agent, region.origin), this.invited)
     const { contents, items } = scene
     region.recorder = new Recorder(region, {
-      agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state), signText: ([x, y, z]) => scene.signText({ x, y, z }),
-      wholeAt: ([x, y, z]) => listOf(scene.wholeAt({ x, y, z }))
+      agents: () => agents.states(), items: () => items.states(), changedContainers: () => contents.drain(), blockText: state => states.text(state), signText: ([x, y, z]) => scene.signText({ x, y, z })
     })
     return { region, scene, setup, agents, saved: null, attach: (bot, client) => scene.attach(bot, client) }
   }
