@@ -24,8 +24,14 @@ class Watch:
         self._seen = start - 1
         self._players = task.players
         goals = {"": task.goal, **{agent: task.goal_of(agent) for agent in task.agents}}
+        # Equal goals have one progress: in most tasks, those of all agents.
+        self._distinct: list[Progress] = []
+        for goal in goals.values():
+            if all(each.goal != goal for each in self._distinct):
+                self._distinct.append(Progress.begun(goal, start))
         self.progress: Mapping[str, Progress] = {
-            name: Progress.begun(goal, start) for name, goal in goals.items()
+            name: next(each for each in self._distinct if each.goal == goal)
+            for name, goal in goals.items()
         }
         named = {path for goal in goals.values() for path in goal.paths}
         self._paths = sorted({"/", *map(path_text, named)})
@@ -48,7 +54,7 @@ class Watch:
             found[tuple(name for name in path.split("/") if name)] = getattr(held, "state", held)
         look = looking_at(found)
         said = 0 if tick == self._start else self._said_at(tick, found[()])
-        for each in self.progress.values():
+        for each in self._distinct:
             each.feed(tick, look, said)
 
     def _said_at(self, tick: int, reality: State) -> int:

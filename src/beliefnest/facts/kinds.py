@@ -477,11 +477,12 @@ class LeversHeld(Fact):
         return f"{' and '.join(self.agents)} at once at levers that are on, at {sites}"
 
     def holds(self, facts: Facts) -> bool:
-        return any(self._missing(facts, site) == (0, 0.0) for site in self._known(facts))
+        known = self._known(facts)
+        return any(not _is_off(facts, site) and not self._far(facts, site) for site in known)
 
     def effort(self, facts: PlanFacts) -> float:
-        left = [self._missing(facts, site) for site in self._known(facts)]
-        off = [deeds + far * PER_BLOCK for deeds, far in left]
+        known = self._known(facts)
+        off = [_is_off(facts, site) + self._far(facts, site) * PER_BLOCK for site in known]
         return 1.0 + min(off, default=2 * FAR * PER_BLOCK)
 
     def bringers(self, events: Iterable[PerceivedEvent]) -> set[str | None]:
@@ -503,17 +504,20 @@ class LeversHeld(Fact):
             if all(block_name(facts.block(place) or "") == "lever" for place in site)
         ]
 
-    def _missing(self, facts: Facts, site: tuple[Position, ...]) -> tuple[int, float]:
-        """Return the number of levers that are off, and the distance of their holders in blocks."""
-        is_off = sum(_property(facts.block(place), "powered") != "true" for place in site)
-        far = min(
+    def _far(self, facts: Facts, site: tuple[Position, ...]) -> float:
+        """Return how far the holders of levers are from them, in blocks."""
+        return min(
             sum(
                 _beyond_reach(facts.feet_of(agent), place)
                 for agent, place in zip(self.agents, places, strict=True)
             )
             for places in itertools.permutations(site)
         )
-        return is_off, far
+
+
+def _is_off(facts: Facts, levers: Iterable[Position]) -> int:
+    """Return the number of levers that are off."""
+    return sum(_property(facts.block(place), "powered") != "true" for place in levers)
 
 
 @dataclass(frozen=True, slots=True)

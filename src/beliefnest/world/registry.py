@@ -152,6 +152,7 @@ class Registry:
                 )
         return block.state_id(chosen)
 
+    @functools.cache  # noqa: B019 - a registry is loaded once per process
     def text(self, state_id: int) -> str:
         """Return the canonical text of a state: `name` or `name[a=b,c=d]`, sorted by property.
 

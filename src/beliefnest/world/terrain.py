@@ -471,9 +471,10 @@ class Terrain:
 
     def find(self, states: Collection[int]) -> npt.NDArray[np.intp]:
         """Return the indices (n, 3) of the cells with one of some states, in order."""
+        wanted = np.array([*states], dtype=np.int64)
         if self.is_dense:
-            return np.argwhere(np.isin(self.chunks[0], list(states)))
-        masks: npt.NDArray[np.bool_] = np.isin(np.stack(self.chunks), list(states))
+            return np.argwhere(np.isin(self.chunks[0], wanted, kind="table"))
+        masks: npt.NDArray[np.bool_] = np.isin(np.stack(self.chunks), wanted, kind="table")
         found = [np.empty((0, 3), dtype=np.intp)]
         has = masks.reshape(len(masks), -1).any(axis=1)
         for number in np.flatnonzero(np.asarray(has)[self.rows]).tolist():

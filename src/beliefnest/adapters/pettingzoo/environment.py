@@ -187,6 +187,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         players: Sequence[str] = ()
         if isinstance(source, Instances):
             options.check_task()
+            self._drawn = options.seed
             task = self._task = source.of(options.seed)
             scenario, players = task.scenario, task.players
         else:
@@ -515,10 +516,12 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         """Open the nest of an episode; return the executor of its actions."""
         chosen, source = self._options, self._source
         if isinstance(source, Instances):
-            task = source.of(self._seed)
+            # Read a file once for an episode that is played again, as after `restore`.
+            if self._task is None or self._drawn != self._seed:
+                self._task, self._drawn = source.of(self._seed), self._seed
+            task = self._task
             self._arrange(task.scenario)
             self._bounds.check(self.layout)
-            self._task = task
             playing = TaskActing(task, self.possible_agents, chosen.world, self._seed, worlds)
             self._nest = playing.nest
             return playing
