@@ -63,7 +63,7 @@ def middle_of(item: DroppedItem) -> Point:
 
 
 class Perceptibles(NamedTuple):
-    """Perceptibles in a state besides its blocks.
+    """Things in a state, besides its blocks, that somebody may perceive.
 
     Attributes:
         contents: Contents that show from outside, by container; None: unknown.
