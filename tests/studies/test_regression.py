@@ -194,6 +194,21 @@ variations: {count: [1, 2, 3, 4]}
 """
 
 
+def test_hundreds_of_levels_are_refused_and_many_have_no_estimates_in_place():
+    rows = [{**row, "d": number, "e": number % 96} for number, row in enumerate(table(even, 60))]
+    for kind, family in EVERY:
+        fit = fit_rows(rows, ["d"], kind, family)
+        assert (fit.sound, fit.substitute, len(fit.counts)) == (False, None, len(rows))
+        assert "480 coefficients, more than 200" in fit.note
+    assert fit_rows(rows, ["e"], "mixed", "binomial").substitute is None
+
+
+def test_a_column_that_interacts_with_itself_counts_once():
+    assert fit_rows(PLAIN, [("a", "a")], "gee", "binomial").terms == (
+        fit_rows(PLAIN, ["a"], "gee", "binomial").terms
+    )
+
+
 @pytest.mark.usefixtures("kept_worlds")
 def test_stats_tell_of_each_fit_if_it_is_sound(tmp_path, capsys):
     file = study_in(tmp_path, STUDY)

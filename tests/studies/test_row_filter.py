@@ -44,6 +44,7 @@ def test_rows_that_hold_a_condition_are_kept(text, kept):
     ("text", "told"),
     [
         ("ordr == 2", "no column 'ordr'; did you mean 'order'"),
+        ("model == offline", "no column 'offline'; .*; a text stands in quotation marks"),
         ("order = 2", "is no condition"),
         ("", "is no condition"),
         ("order", "compare it with a value"),

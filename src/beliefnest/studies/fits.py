@@ -27,6 +27,7 @@ _FARTHEST = 15.0
 _DRAWS = 2_000
 _ROUNDING = 1e-12
 _MOST_TERMS = 60
+_TOO_MANY = f"there are more than {_MOST_TERMS} coefficients"
 _ERRORS = (np.linalg.LinAlgError, ArithmeticError, ValueError)
 """Errors that numerical libraries raise if the data do not determine a model."""
 
@@ -185,6 +186,8 @@ def _logistic_mixed(right: Floats, design: Floats, groups: Any) -> Fit:
     from scipy.optimize import minimize
     from statsmodels.tools.numdiff import approx_fprime, approx_hess
 
+    if design.shape[1] > _MOST_TERMS:
+        return Fit.failed(_TOO_MANY)
     negative = _marginal(right, design, groups)
     begin = firth(right, design, groups).estimates
     with warnings.catch_warnings():
@@ -246,6 +249,8 @@ def firth(right: Floats, design: Floats, groups: Any) -> Fit:
     variation with equal levels; the smaller one counts. Intervals and tests are those of the
     profile penalised likelihood (Firth, 1993; Heinze and Schemper, 2002).
     """
+    if design.shape[1] > _MOST_TERMS:
+        return Fit.failed(_TOO_MANY)
     patterns, codes = np.unique(design, axis=0, return_inverse=True)
     codes = codes.ravel()
     _, alike = np.unique(np.column_stack([groups, codes]), axis=0, return_inverse=True)
@@ -377,7 +382,7 @@ def bootstrap(right: Floats, design: Floats, groups: Any) -> Fit:
     """
     terms, count = design.shape[1], int(groups.max()) + 1
     if terms > _MOST_TERMS:
-        return Fit.failed("there are too many coefficients")
+        return Fit.failed(_TOO_MANY)
     matrices, vectors = np.zeros((count, terms, terms)), np.zeros((count, terms))
     np.add.at(matrices, groups, design[:, :, None] * design[:, None, :])
     np.add.at(vectors, groups, design * right[:, None])

@@ -32,6 +32,8 @@ FAMILIES: tuple[Family, ...] = ("binomial", "gaussian")
 Effect = str | tuple[str, ...]
 """Name of a column, or names of columns that interact."""
 
+_MOST_COEFFICIENTS = 200
+
 _COUNTED = ("variations", "judged", "right", "accuracy", "low", "high", "interval")
 """Columns of counts, after those of the effects."""
 
@@ -184,7 +186,7 @@ def fit_rows(
     if family not in FAMILIES:
         raise InputError(f"family is {family!r}; give one of {', '.join(FAMILIES)}")
     wanted: list[ColumnNames] = [
-        (each,) if isinstance(each, str) else tuple(each) for each in effects
+        (each,) if isinstance(each, str) else tuple(dict.fromkeys(each)) for each in effects
     ]
     names = list(dict.fromkeys(name for each in wanted for name in each))
     if "variation" in names:
@@ -230,7 +232,7 @@ def _fitted(
     family: Family,
 ) -> tuple[Fit, Sequence[str], Substitute | None]:
     """Return the fit, the names of its terms, and what is sound in its place."""
-    fault = rows_fault(rows, names)
+    fault = rows_fault(rows, names) or _size_fault(rows, effects)
     if fault:
         return Fit.failed(fault), (), None
     design, terms = _design(rows, effects, names)
@@ -265,6 +267,20 @@ def _fitted(
     return Fit.failed(fault), (), other
 
 
+def _size_fault(rows: Sequence[Row], effects: Sequence[ColumnNames]) -> str:
+    """Return that effects have more coefficients than a fit can take; empty: they have not."""
+    count = 1 + sum(
+        math.prod(len({level_of(row, name) for row in rows}) - 1 for name in names)
+        for names in effects
+    )
+    if count <= _MOST_COEFFICIENTS:
+        return ""
+    return (
+        f"the effects have {count:,} coefficients, more than {_MOST_COEFFICIENTS}; name columns "
+        "with fewer levels"
+    )
+
+
 def _substitute(
     right: Floats,
     design: Floats,
@@ -294,7 +310,7 @@ def _substitute(
             return Substitute(_method("gee", family, found.told), _terms(terms, found))
     if family == "binomial":
         found = firth(right, design, groups)
-        return Substitute(_FIRTH, _terms(terms, found))
+        return None if found.fault else Substitute(_FIRTH, _terms(terms, found))
     if solid:
         found = bootstrap(right, design, groups)
         if not found.fault:

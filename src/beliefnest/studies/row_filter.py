@@ -119,7 +119,8 @@ def _side(text: str, node: ast.expr, known: Sequence[str]) -> Callable[[Mapping[
     if isinstance(node, ast.Name):
         name = node.id
         if name not in known:
-            raise InputError(f"there is no column {name!r}{nearest_or_all(name, known)}")
+            told = nearest_or_all(name, known)
+            raise InputError(f"there is no column {name!r}{told}; a text stands in quotation marks")
         return lambda row: row.get(name)
     # A literal: a text, a number, True, False, None, or a tuple or list of these.
     try:
