@@ -11,7 +11,8 @@ const NOTHING = { safe: false, physical: false, liquid: false, climbable: false,
 
 /**
  * Limit the bot's path searches by their number of nodes, and keep the pathfinder from changing the world: agents walk
- * around walls and do not dig through them. `bot.pathfinder.reset()` undoes the settings of a program.
+ * around walls and do not dig through them. A move costs at least its length, as in the scripted world: a drop by three
+ * blocks takes a bot as long as three steps, for which the pathfinder charges one. `bot.pathfinder.reset()` undoes the settings of a program.
  * @param {object} bot
  * @param {{charge?: (ms: number) => void}} clock charges for each node; without `charge` time is real and nodes are
  *   only counted
@@ -24,7 +25,9 @@ function chargePathfinder (bot, clock, unknownAt) {
     const getNeighbors = movements.getNeighbors
     movements.getNeighbors = node => {
       clock.charge?.(NODE_MS)
-      return getNeighbors.call(movements, node)
+      const moves = getNeighbors.call(movements, node)
+      for (const move of moves) move.cost = Math.max(move.cost, Math.hypot(move.x - node.x, move.y - node.y, move.z - node.z))
+      return moves
     }
     rememberBlocks(movements, bot, unknownAt)
     rememberEntities(movements)

@@ -46,6 +46,27 @@ test('goToPosition arrives, also where each step of the search for a way takes l
   })
 })
 
+test('no move costs a bot less than its length', async () => {
+  const box = [[-11, FLOOR - 1, -11], [11, FLOOR + 6, 11]]
+  const pillar = [0, 1, 2].map(up => [0, FLOOR + up, 0, 'stone'])
+  await withSkills({ box, blocks: pillar, agents: { sally: agent([0.5, FLOOR + 3, 0.5]) } }, async world => {
+    const { bots: { sally }, skills } = world
+    const { movements } = sally.pathfinder
+    const { getNeighbors } = movements
+    const drops = []
+    movements.getNeighbors = node => {
+      const moves = getNeighbors(node)
+      for (const { x, y, z, cost } of moves) {
+        assert.ok(cost >= Math.hypot(x - node.x, y - node.y, z - node.z))
+        if (y < node.y) drops.push(cost)
+      }
+      return moves
+    }
+    await world.during(skills.sally.goToPosition(sally, new Vec3(4, FLOOR, 0), 0))
+    assert.equal(drops[0], Math.hypot(1, 3))
+  })
+})
+
 test('goToPosition refuses what is no position', async () => {
   await withSkills({}, async world => {
     const { bots: { sally }, skills } = world
