@@ -413,7 +413,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         }
         told = self._told({agent: ActionState() for agent in self.agents}, spoken=True)
         self._left = self._reality()
-        self._show()
+        if self.render_mode == "human":
+            self.render()
         return told
 
     def calls(self, agent: str) -> tuple[Call | None, ...]:
@@ -422,7 +423,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         Raises:
             InputError: No episode has begun, or the agent cannot act.
         """
-        mind, found = self._mind(agent), []
+        mind = self._mind(agent)
+        found: list[Call | None] = []
         for number in range(len(self._flat.offers)):
             try:
                 found.append(self._flat.call(number, mind))
@@ -574,7 +576,8 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         truncations = dict.fromkeys(self.agents, cut)
         if ended or cut:
             self.agents = []
-        self._show()
+        if self.render_mode == "human":
+            self.render()
         return observations, rewards, terminations, truncations, infos
 
     def _chosen(self, agent: str, actions: Mapping[str, Any]) -> Choice:
@@ -628,11 +631,6 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
             sys.stdout.write(f"{line(self.nest, self._render_path)}\n")
         return None
 
-    def _show(self) -> None:
-        """Show a step to people who watch."""
-        if self.render_mode == "human":
-            self.render()
-
     def state(self) -> Any:
         """Return the real world: the arrays of an observation in one row, or plain data.
 
@@ -680,7 +678,7 @@ class BeliefEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc]  # it has no 
         }
         for agent in self.agents:
             self._orders[agent].note(self.nest[path_text((agent,))].state)
-        observations = {}
+        observations: dict[str, Any] = {}
         for agent in self.agents:
             # Deepest paths first: computing a belief also computes those above it.
             below = {p: self._belief(p, spoken=spoken) for p in self._nested_of[agent]}

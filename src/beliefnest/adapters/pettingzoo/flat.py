@@ -172,7 +172,7 @@ def _goal(named: Mapping[str, Any], mind: ActorMind) -> Position:
 
 def _lacks(skill: str, named: Mapping[str, Any], state: State) -> bool:
     """Return True if the holder of a belief knows that what an action needs is not there."""
-    item, me = named.get("item"), state.agents[state.path[-1]]
+    item, me = str(named.get("item")), state.agents[state.path[-1]]
     match skill:
         case "getItemFromChest":
             known = state.containers.get(named["container"])
