@@ -25,9 +25,7 @@ function chargePathfinder (bot, clock, unknownAt) {
     const getNeighbors = movements.getNeighbors
     movements.getNeighbors = node => {
       clock.charge?.(NODE_MS)
-      const moves = getNeighbors.call(movements, node)
-      for (const move of moves) move.cost = Math.max(move.cost, Math.hypot(move.x - node.x, move.y - node.y, move.z - node.z))
-      return moves
+      return getNeighbors.call(movements, node).map(move => Object.assign(move, { cost: Math.max(move.cost, Math.hypot(move.x - node.x, move.y - node.y, move.z - node.z)) }))
     }
     rememberBlocks(movements, bot, unknownAt)
     rememberEntities(movements)
