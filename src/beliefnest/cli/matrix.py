@@ -2,7 +2,6 @@
 
 import statistics
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
 from typing import Any
 
 from rich.table import Table
@@ -10,106 +9,78 @@ from rich.table import Table
 from beliefnest.cli.console import result_table
 from beliefnest.cli.report import cost_text, count_outcomes
 from beliefnest.scenarios.judging import unanswered_words
-from beliefnest.scenarios.scoring import wilson_interval
+from beliefnest.studies.counting import count_rows
+from beliefnest.studies.table import lost
 
-
-@dataclass(frozen=True, slots=True)
-class ConditionScore:
-    """Score of all repeats of one condition with one model, as reports have it.
-
-    Attributes:
-        condition: Number of the condition; None: the scenario has no conditions.
-        model: Name of the model.
-        passed: Number of repeats in which all expectations held.
-        total: Number of repeats in which the model was asked.
-        failed: Number of repeats without a result: the model gave no answer, which counts as not
-            passed, or was not there.
-        outcomes: Number of probes by outcome; a repeat without a result counts as one.
-        rate: Share of the repeats that passed; None: the model was never asked.
-        interval: 95 % interval of the rate; None: the model was never asked.
-        tokens: Tokens sent and received in all repeats.
-        cost: US dollars of all repeats; None: not known.
-        seconds: Mean wall time of a repeat, in seconds.
-    """
-
-    condition: int | None
-    model: str
-    passed: int
-    total: int
-    failed: int
-    outcomes: Mapping[str, int]
-    rate: float | None
-    interval: tuple[float, float] | None
-    tokens: int
-    cost: float | None
-    seconds: float
+_BY = ("condition", "model")
 
 
 def score_runs(
     runs: Sequence[Mapping[str, Any]], failures: Sequence[Mapping[str, Any]]
-) -> list[ConditionScore]:
-    """Return the scores of reported runs, ordered by condition, then by first appearance."""
-    keys = list(dict.fromkeys((each["condition"], each["model"]) for each in (*runs, *failures)))
-    keys.sort(key=lambda key: -1 if key[0] is None else key[0])
-    return [
-        _score(
-            condition,
-            model,
-            [run for run in runs if (run["condition"], run["model"]) == (condition, model)],
-            [f for f in failures if (f["condition"], f["model"]) == (condition, model)],
+) -> list[dict[str, Any]]:
+    """Return the scores of reported runs, ordered by condition, then by first appearance.
+
+    Returns:
+        For each condition and model: `passed`, the number of repeats in which all expectations
+        held; `total`, the number of those in which the model was asked; `failed`, the number of
+        those without a result; `outcomes`, the number of probes by outcome, where a repeat without
+        a result counts as one; `rate` and its 95 % `interval`, None if the model was never asked;
+        `tokens`; `cost` in US dollars, None if not known; `seconds`, the mean wall time.
+    """
+    found = []
+    for group in count_rows([*map(_ended, runs), *map(_failed, failures)], _BY):
+        own, without = (
+            [each for each in some if all(each[name] == group[name] for name in _BY)]
+            for some in (runs, failures)
         )
-        for condition, model in keys
-    ]
+        seconds = statistics.mean(run["seconds"] for run in own) if own else 0.0
+        found.append(
+            {
+                **{name: group[name] for name in _BY},
+                "passed": group["right"],
+                "total": group["judged"],
+                "failed": len(without),
+                "outcomes": count_outcomes(own, without),
+                "rate": group["accuracy"],
+                "interval": (group["low"], group["high"]) if group["judged"] else None,
+                "tokens": group["tokens"],
+                "cost": group["cost"],
+                "seconds": round(seconds, 3),
+            }
+        )
+    return sorted(found, key=lambda score: -1 if score["condition"] is None else score["condition"])
 
 
-def _score(
-    condition: int | None,
-    model: str,
-    runs: Sequence[Mapping[str, Any]],
-    failures: Sequence[Mapping[str, Any]],
-) -> ConditionScore:
-    used = [run["usage"] for run in runs]
-    costs = [usage["cost"] for usage in used]
-    unanswered = sum(failure["outcome"] == "no_answer" for failure in failures)
-    passed, total = sum(run["ok"] for run in runs), len(runs) + unanswered
-    return ConditionScore(
-        condition=condition,
-        model=model,
-        passed=passed,
-        total=total,
-        failed=len(failures),
-        outcomes=count_outcomes(runs, failures),
-        rate=passed / total if total else None,
-        interval=wilson_interval(passed, total) if total else None,
-        tokens=sum(usage["input_tokens"] + usage["output_tokens"] for usage in used),
-        cost=None if None in costs else sum(costs),
-        seconds=statistics.mean(run["seconds"] for run in runs) if runs else 0.0,
-    )
+def _ended(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of a repeat with a result."""
+    usage = run["usage"]
+    tokens = usage["input_tokens"] + usage["output_tokens"]
+    return {**run, "outcome": "ok", "tokens": tokens, "cost": usage["cost"]}
 
 
-def scores_json(scores: Sequence[ConditionScore]) -> list[dict[str, object]]:
-    """Return scores as plain data for the report."""
-    return [{**asdict(score), "seconds": round(score.seconds, 3)} for score in scores]
+def _failed(failure: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of a repeat without a result."""
+    return {**failure, **lost(failure, is_judged=True)}
 
 
-def score_table(name: str, scores: Sequence[ConditionScore]) -> Table:
+def score_table(name: str, scores: Sequence[Mapping[str, Any]]) -> Table:
     """Return a table with one row for each condition and model."""
-    words = [unanswered_words(score.outcomes) for score in scores]
+    words = [unanswered_words(score["outcomes"]) for score in scores]
     unanswered = ["not answered"] if any(words) else []
     numbers = ("condition", "passed", "rate", "95 % interval", "tokens", "cost", "seconds")
     headings = (*numbers[:1], "model", *numbers[1:4], *unanswered, *numbers[4:])
     table = result_table(*headings, title=name, right=numbers)
     for score, told in zip(scores, words, strict=True):
-        low, high = score.interval or (0.0, 1.0)
+        low, high = score["interval"] or (0.0, 1.0)
         table.add_row(
-            "-" if score.condition is None else str(score.condition),
-            score.model,
-            f"{score.passed} of {score.total}",
-            "-" if score.rate is None else f"{score.rate:.0%}",
+            "-" if score["condition"] is None else str(score["condition"]),
+            score["model"],
+            f"{score['passed']} of {score['total']}",
+            "-" if score["rate"] is None else f"{score['rate']:.0%}",
             f"{low:.0%} to {high:.0%}",
             *([told] if any(words) else []),
-            f"{score.tokens:,}",
-            cost_text(score.cost),
-            f"{score.seconds:.2f}",
+            f"{score['tokens']:,}",
+            cost_text(score["cost"]),
+            f"{score['seconds']:.2f}",
         )
     return table

@@ -18,7 +18,7 @@ from beliefnest.belief.kernels_ahead import kernels_ahead
 from beliefnest.cli.accounts import accounts
 from beliefnest.cli.console import Printed, progress_on, report_text, stdout
 from beliefnest.cli.folder import ConditionFolder, RunFolder, kept_scenario_file
-from beliefnest.cli.matrix import score_runs, score_table, scores_json
+from beliefnest.cli.matrix import score_runs, score_table
 from beliefnest.cli.options import RunOptions
 from beliefnest.cli.pictures import read_condition
 from beliefnest.cli.report import OutcomeRow, outcome_json, outcome_table, report_json
@@ -30,7 +30,7 @@ from beliefnest.errors import InputError, ModelError, NotBegunError, ScenarioErr
 from beliefnest.files import replace_file
 from beliefnest.llm.budget import RunLimits, RunSpending
 from beliefnest.llm.claim_reader import claims_from_model
-from beliefnest.llm.failures import NOT_ASKED, UnavailableModelError
+from beliefnest.llm.failures import UnavailableModelError
 from beliefnest.llm.messages import Model, Sampling, Usage
 from beliefnest.llm.resolve import Connection, check_model, open_model
 from beliefnest.nest.face.nest import Nest
@@ -40,6 +40,7 @@ from beliefnest.scenarios.judging import without_result_words
 from beliefnest.scenarios.probing import Asking
 from beliefnest.scenarios.running import run_scenario
 from beliefnest.scenarios.scenario import Scenario
+from beliefnest.studies.table import lost
 from beliefnest.timeline.store import Journal
 from beliefnest.world.nameable import ClaimsFrom
 from beliefnest.world.seeds import checked_seed
@@ -113,7 +114,7 @@ def _run_in(
     finally:
         report = report_json(first.name, settings, status, run.results, run.failures)
         report["versions"] = _versions(cells, folder)
-        report["scores"] = scores_json(score_runs(run.results, run.failures))
+        report["scores"] = score_runs(run.results, run.failures)
         folder.write_report(report)
         folder.write_page(_page(report, options, first))
     text = report_text(_parts(run, cells, warned))
@@ -170,15 +171,10 @@ class _Run:
             picture = _run(cell, place, model, hook, self._options, worlds)
         except ModelError as error:
             self.unavailable = isinstance(error, UnavailableModelError)
-            self.failures.append(
-                {
-                    "condition": cell.scenario.condition,
-                    "model": cell.model,
-                    "seed": cell.seed,
-                    "error": str(error),
-                    "outcome": ("error" if isinstance(error, NOT_ASKED) else "no_answer"),
-                }
-            )
+            failure = {"error": str(error), "kind": type(error).__name__}
+            key = {"condition": cell.scenario.condition, "model": cell.model, "seed": cell.seed}
+            outcome = lost(failure, is_judged=True)["outcome"]
+            self.failures.append({**key, **failure, "outcome": outcome})
             return
         self.pictures.append(picture)
         written = place.result()

@@ -32,6 +32,7 @@ class _FailureForm(msgspec.Struct):
     model: str
     seed: int
     error: str
+    kind: str
     outcome: str
 
 
@@ -114,10 +115,7 @@ class ReportedRun:
             found[name] = (self._planned(name, run, []), {"error": None, **run, "run": ""})
         for number, failure in enumerate(self.report["failures"], 1):
             name = f"failure-{number}"
-            there = failure["outcome"] != "error"
-            kind = "ModelError" if there else "UnavailableModelError"
-            content = {"error": failure["error"], "kind": kind}
-            found[name] = (self._planned(name, failure, self._probes), content)
+            found[name] = (self._planned(name, failure, self._probes), dict(failure))
         return found
 
     @property
