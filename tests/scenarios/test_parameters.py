@@ -50,3 +50,13 @@ def test_what_names_no_parameter_is_never_shown(tmp_path, shown):
 def test_nor_is_it_where_no_parameter_is_declared(tmp_path):
     with pytest.raises(ScenarioError, match=r"room\.yaml:6: description"):
         description(tmp_path, " {}\n", "Where is ${set[0]}?")
+
+
+@pytest.mark.parametrize("shown", ["Where is ${asked?", "It is ${asked[{0}]}.", "A ${"])
+def test_an_expression_without_an_end_is_not_shown_either(tmp_path, shown):
+    told = r"description: has a '\$\{' without an expression; write \$\{NAME\}"
+    for parameters in ("\n  asked: {default: x}\n", " {}\n"):
+        with pytest.raises(ScenarioError, match=told):
+            description(tmp_path, parameters, shown)
+    with pytest.raises(ScenarioError, match=told):
+        description(tmp_path, f"\n  asked: {{default: {shown!r}}}\n")

@@ -313,9 +313,13 @@ class _Filling:
         return filled
 
     def _check_whole(self, text: str, path: KeyPath) -> None:
-        """Refuse a text that would be shown with a `${...}` of a parameter's value in it."""
-        if self._is_program(path) or (left := _HOLE.search(text)) is None:
+        """Refuse a text that would be shown with a `${` in it."""
+        if "${" not in text or self._is_program(path):
             return
+        left = _HOLE.search(text)
+        if left is None:
+            told = "has a '${' without an expression; write ${NAME}, with no braces inside"
+            raise self._document.fault(path, told)
         raise self._document.fault(
             path,
             f"would hold {quoted(left[0])} from a parameter's value; name a declared parameter",
